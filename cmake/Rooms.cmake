@@ -1,0 +1,31 @@
+# A "room" is one folder of src/ and one static library, lumirank_<name>. It links only the rooms it may include, so an
+# upward dependency does not link; cmake/check_layers.py checks the includes too.
+
+set(LUMIRANK_WARNINGS -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wpedantic -Wno-psabi)
+if(LUMIRANK_WERROR)
+  list(APPEND LUMIRANK_WARNINGS -Werror)
+endif()
+
+# -ffp-contract=off: a sum of products is rounded the same way wherever it is inlined, so an entry has one value whether
+# it is asked for in a row, a column or a block.
+set(LUMIRANK_FLAGS -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(LUMIRANK_NATIVE)
+  list(APPEND LUMIRANK_FLAGS -march=native)
+endif()
+if(LUMIRANK_SANITIZE)
+  list(APPEND LUMIRANK_FLAGS -fsanitize=${LUMIRANK_SANITIZE} -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${LUMIRANK_SANITIZE})
+endif()
+
+# lumirank_room(base LINKS TBB::tbb) or lumirank_room(methods ROOMS matrix linalg)
+function(lumirank_room name)
+  cmake_parse_arguments(ROOM "" "" "ROOMS;LINKS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  add_library(lumirank_${name} STATIC ${sources})
+  target_include_directories(lumirank_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  target_compile_options(lumirank_${name} PRIVATE ${LUMIRANK_WARNINGS} PUBLIC ${LUMIRANK_FLAGS})
+  foreach(room IN LISTS ROOM_ROOMS)
+    target_link_libraries(lumirank_${name} PUBLIC lumirank_${room})
+  endforeach()
+  target_link_libraries(lumirank_${name} PRIVATE ${ROOM_LINKS})
+endfunction()

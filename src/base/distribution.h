@@ -1,0 +1,30 @@
+// Discrete distributions that are sampled by inverting their running sum, so strata stay strata.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace lumirank {
+
+class Distribution1D {
+ public:
+  Distribution1D() = default;
+  // Weights must be finite and not negative. All zero is allowed: then `total()` is 0 and nothing may be sampled.
+  explicit Distribution1D(std::span<const float> weights);
+
+  struct Sample {
+    std::size_t index;
+    float pmf;       // probability of `index`
+    float remapped;  // u, stretched again over [0, 1) within the chosen bin
+  };
+  Sample sample(float u) const;
+  float pmf(std::size_t i) const;
+  double total() const { return cdf_.empty() ? 0.0 : cdf_.back(); }
+  std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
+
+ private:
+  std::vector<double> cdf_;  // size + 1 entries, not normalised
+};
+
+}  // namespace lumirank

@@ -1,0 +1,58 @@
+// Small fixed-size vectors of floats: the currency of every other room.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace lumirank {
+
+inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr float kInvPi = 0.31830988618379067154f;
+inline constexpr float kInfinity = __builtin_huge_valf();
+
+struct Vec2f {
+  float x = 0, y = 0;
+  friend Vec2f operator+(Vec2f a, Vec2f b) { return {a.x + b.x, a.y + b.y}; }
+  friend Vec2f operator-(Vec2f a, Vec2f b) { return {a.x - b.x, a.y - b.y}; }
+  friend Vec2f operator*(Vec2f a, float s) { return {a.x * s, a.y * s}; }
+  friend bool operator==(const Vec2f&, const Vec2f&) = default;
+};
+
+struct Vec2i {
+  int x = 0, y = 0;
+  friend bool operator==(const Vec2i&, const Vec2i&) = default;
+};
+
+struct Vec3f {
+  float x = 0, y = 0, z = 0;
+  float operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
+  float& operator[](int i) { return i == 0 ? x : (i == 1 ? y : z); }
+  friend Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3f operator-(Vec3f a) { return {-a.x, -a.y, -a.z}; }
+  friend Vec3f operator*(Vec3f a, float s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend Vec3f operator*(float s, Vec3f a) { return a * s; }
+  friend Vec3f operator/(Vec3f a, float s) { return a * (1.0f / s); }
+  Vec3f& operator+=(Vec3f b) { return *this = *this + b; }
+  friend bool operator==(const Vec3f&, const Vec3f&) = default;
+};
+
+inline float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3f cross(Vec3f a, Vec3f b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline float length_squared(Vec3f a) { return dot(a, a); }
+inline float length(Vec3f a) { return std::sqrt(dot(a, a)); }
+inline Vec3f normalize(Vec3f a) { return a / length(a); }
+inline Vec3f min(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+inline Vec3f max(Vec3f a, Vec3f b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+inline bool is_finite(Vec3f a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline float square(float x) { return x * x; }
+inline float lerp(float a, float b, float t) { return a + (b - a) * t; }
+inline Vec3f lerp(Vec3f a, Vec3f b, float t) { return a + (b - a) * t; }
+
+// Mirror image of `w` about `n` (both pointing away from the surface).
+inline Vec3f reflect(Vec3f w, Vec3f n) { return n * (2 * dot(w, n)) - w; }
+
+}  // namespace lumirank

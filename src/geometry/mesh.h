@@ -1,0 +1,26 @@
+// Triangle meshes ready for tracing.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/bounds.h"
+#include "base/rgb.h"
+#include "base/vec.h"
+
+namespace lumirank::geometry {
+
+struct TriangleMesh {
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;  // empty (flat shading) or one per position, unit length
+  std::vector<Vec2f> uvs;      // empty or one per position
+  std::vector<Rgb> colors;     // empty or one per position
+  std::vector<std::uint32_t> indices;
+
+  std::size_t triangle_count() const { return indices.size() / 3; }
+  // Twice the area times the unit normal, by the order of the corners.
+  Vec3f area_vector(std::size_t triangle) const;
+  Bounds3f bounds() const;
+};
+
+}  // namespace lumirank::geometry

@@ -1,0 +1,86 @@
+// The lighting matrix: one row per receiver, one column per virtual light, entries on demand and in bulk only.
+//
+// A(i,j) = E(i,j)·V(i,j): E the unoccluded contribution (RGB), V the visibility (0 or 1 between surfaces). An entry is a
+// pure function of (seed, receiver id, light id): the same number whether it comes in a row, a column, a block or a list.
+// Implemented by transport's SceneMatrix and by the synthetic matrices of the tests; methods see nothing else.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/bounds.h"
+#include "base/rgb.h"
+#include "base/sinks.h"
+#include "base/vec.h"
+
+namespace lumirank::matrix {
+
+using Index = std::uint32_t;
+
+// What has been paid so far. Methods compare by cost as well as by time.
+struct Counters {
+  std::atomic<std::uint64_t> entries_evaluated{0};  // entries whose value was needed (zero or not)
+  std::atomic<std::uint64_t> entries_culled{0};     // of these, decided without a ray because E = 0
+  std::atomic<std::uint64_t> rays_shadow{0};
+};
+
+// Plain numbers about rows, for methods that use geometry. Arrays of length rows(); may be empty if unknown.
+struct RowFeatures {
+  std::span<const Vec2f> pixel;  // film position
+  std::span<const Vec3f> position;
+  std::span<const Vec3f> normal;
+};
+
+// Plain numbers about columns. Arrays of length columns(); may be empty if unknown.
+struct ColumnFeatures {
+  std::span<const Vec3f> position;
+  std::span<const Vec3f> normal;    // zero for omni lights
+  std::span<const float> power;     // scalar, ≥ 0; proportional to the light's emitted power
+  std::span<const std::uint16_t> group;  // clusters never cross groups; all 0 unless the image is split by light
+  std::span<const std::uint8_t> indirect;  // 0: stands for an emitter; 1: particle-traced
+};
+
+// Which part of an entry.
+enum class Part { value, unoccluded, visibility };
+
+// A column that stands for a cluster: its entries are multiplied per channel by `scale`.
+struct ScaledColumn {
+  Index column;
+  Rgb scale{1};
+};
+
+class LightingMatrix {
+ public:
+  virtual ~LightingMatrix() = default;
+
+  virtual std::size_t rows() const = 0;
+  virtual std::size_t columns() const = 0;
+
+  // Entries of one row for all columns: out[j], j < columns(). Part::visibility fills all three channels with 0 or 1.
+  virtual void row(Index i, std::span<Rgb> out, Part part = Part::value) const = 0;
+  // Entries of one column for all rows.
+  virtual void column(Index j, std::span<Rgb> out, Part part = Part::value) const = 0;
+  // The sub-matrix rows × columns, row-major: out[a·columns.size() + b].
+  virtual void block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+                     Part part = Part::value) const = 0;
+  // Single entries: out[k] = A(rows[k], columns[k]).
+  virtual void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+                       Part part = Part::value) const = 0;
+  // sums[i] += Σ_k scale_k · A(i, column_k), without storing a column. The order of the sum is the order of `columns`.
+  // Most of a render's time is spent here. Checks `sinks.cancel` and reports progress between blocks.
+  virtual void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
+                          const Sinks& sinks = {}) const = 0;
+
+  virtual RowFeatures row_features() const { return {}; }
+  virtual ColumnFeatures column_features() const { return {}; }
+
+  Counters& counters() const { return counters_; }
+
+ private:
+  mutable Counters counters_;
+};
+
+}  // namespace lumirank::matrix

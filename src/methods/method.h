@@ -1,0 +1,71 @@
+// A method estimates the row sums of a lighting matrix from few of its entries.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/sinks.h"
+#include "matrix/lighting_matrix.h"
+
+namespace lumirank::methods {
+
+// One parameter of a method, for --set, JSON, `lumirank methods` and the documentation alike.
+struct Parameter {
+  std::string key;          // "rows"
+  std::string type;         // "integer", "number", "choice"
+  std::string default_text; // "300"
+  std::string range;        // "1 …", "cost|random"
+  std::string unit;         // "" or "rows"
+  std::string help;         // what it does and what it costs
+};
+
+// What a run did, beside its numbers: seconds and counts by stable keys ("seconds.rows", "rows", "columns", …).
+struct Trace {
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::string> notes;
+};
+
+struct RunOptions {
+  std::uint64_t seed = 1;
+  double time_seconds = 0;   // > 0: stop when this much time has passed since the call
+  double target_error = 0;   // > 0: stop when the estimated relative error falls below
+  Sinks sinks;
+  // Called with a complete estimate of all row sums whenever a better one exists (progressive display). May be empty.
+  std::function<void(std::span<const Rgb> sums)> on_estimate;
+};
+
+struct Estimate {
+  std::vector<Rgb> sums;  // one per row
+  Trace trace;
+  bool interrupted = false;  // cancelled: `sums` is the best complete estimate so far
+};
+
+class Method {
+ public:
+  virtual ~Method() = default;
+  virtual Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const = 0;
+};
+
+struct MethodInfo {
+  std::string name;     // "row-column-sampling"
+  std::string summary;  // one sentence
+  std::string paper;    // "" for a baseline without one
+  std::vector<Parameter> parameters;
+  // Settings as JSON text; unknown keys and wrong values throw InputError that lists the valid ones.
+  std::function<std::unique_ptr<Method>(const std::map<std::string, std::string>& settings)> make;
+  // instant-radiosity wants fewer lights rather than all of them: how many of the generated columns it uses (0: all).
+  std::function<std::size_t(const std::map<std::string, std::string>& settings)> lights_wanted;
+};
+
+// The list: adding a method here enrols it in the command line, the documentation and the tests that all methods must pass.
+const std::vector<MethodInfo>& all_methods();
+// Throws InputError naming the valid methods.
+const MethodInfo& find_method(const std::string& name);
+
+}  // namespace lumirank::methods

@@ -1,0 +1,1 @@
+// keeps the room's library non-empty until its first source file arrives

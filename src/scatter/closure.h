@@ -1,0 +1,110 @@
+// How a surface scatters light at one point: a short sum of lobes with all textures already looked up.
+//
+// Every BSDF of a scene (scatter/material.h) becomes such a closure at a hit. The path tracer samples closures; the
+// lighting matrix evaluates them in bulk. Because a closure is plain data, one evaluation code serves both.
+//
+// Directions are in world space and point away from the surface. `wo` is the side that is known first (towards the
+// eye at a receiver, towards the previous vertex at a virtual light), `wi` the other one.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "base/frame.h"
+#include "base/rgb.h"
+#include "base/vec.h"
+
+namespace lumirank::scatter {
+
+enum class LobeKind : std::uint8_t {
+  // Smooth in direction:
+  diffuse,               // color/π on the side of wo
+  oren_nayar,            // color, alpha_u = σ (radians)
+  interfaced_diffuse,    // plastic's base: color/π · T(wi)·T(wo)/(eta²·(1 - color·Fdr_int)) (see material.cpp)
+  microfacet_reflect,    // color · F · D · G / (4 cos cos); Fresnel mode below
+  microfacet_transmit,   // rough dielectric's refraction
+  phong,                 // color · (n+2)/(2π) · cosⁿ(angle to the mirror direction), alpha_u = exponent
+  ward,                  // color, alpha_u, alpha_v; ward_variant
+  sheen,                 // Disney's sheen
+  disney_diffuse,        // Disney's diffuse with retro-reflection and flatness
+  // Delta lobes ("specular"): eval and pdf are 0, only sample() meets them:
+  delta_reflect,
+  delta_transmit,        // refracts by eta
+  delta_pass,            // goes straight on: null surfaces, thin dielectrics, cut-outs
+};
+inline bool is_delta(LobeKind kind) { return kind >= LobeKind::delta_reflect; }
+
+enum class FresnelKind : std::uint8_t { none, dielectric, conductor, schlick };
+enum class NormalDistribution : std::uint8_t { beckmann, ggx };
+
+// Plain data; which fields mean something depends on `kind`. 72 bytes.
+struct Lobe {
+  LobeKind kind = LobeKind::diffuse;
+  FresnelKind fresnel = FresnelKind::none;
+  NormalDistribution distribution = NormalDistribution::ggx;
+  std::uint8_t variant = 0;  // ward's variant; bit 0 of interfaced_diffuse: nonlinear
+  Rgb color{0};              // reflectance or scale, mixture weights multiplied in
+  float alpha_u = 0, alpha_v = 0;
+  float eta = 1;             // inside over outside, for wo on the outside
+  Rgb conductor_eta{0}, conductor_k{0};  // conductor; schlick: conductor_eta is F0
+  float extra = 0;           // interfaced_diffuse: internal diffuse Fresnel reflectance; sheen/disney: roughness, flatness
+};
+
+inline constexpr int kMaxLobes = 8;
+
+struct Closure {
+  Frame frame;        // shading frame; frame.n on the outside (towards wo if two-sided)
+  Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n
+  int count = 0;
+  Lobe lobes[kMaxLobes];
+
+  void add(const Lobe& lobe);  // ignored if its colour is black; throws InternalError when full
+  bool empty() const { return count == 0; }
+  bool has_smooth() const;  // any lobe that is not delta
+  bool has_delta() const;
+  // The only smooth lobe is `diffuse` (delta lobes may stand beside it).
+  bool is_lambertian() const;
+  // Least roughness alpha of a smooth glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0 if none is smooth.
+  float roughness() const;
+};
+
+// Which half of the closure a caller wants.
+enum class Lobes : std::uint8_t { smooth, delta, all };
+
+// Σ f(wo, wi)·|cos(wi, n)| of the smooth lobes, per steradian. 0 where wi and wo lie on sides that disagree between the
+// shading and the geometric normal (no light leaks).
+Rgb eval(const Closure& closure, Vec3f wo, Vec3f wi);
+// The same without the cosine: f alone.
+Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi);
+// Solid-angle density with which sample(…, Lobes::smooth or all) draws wi among the smooth lobes. With Lobes::all the
+// probability of choosing the smooth lobes at all is included.
+float pdf(const Closure& closure, Vec3f wo, Vec3f wi, Lobes which);
+
+struct BsdfSample {
+  Vec3f wi;
+  Rgb weight;        // f·|cos|/pdf, or the delta lobe's coefficient over its probability
+  float pdf = 0;     // solid-angle density; for a delta lobe its discrete probability
+  bool delta = false;
+  bool transmitted = false;
+  LobeKind kind = LobeKind::diffuse;
+  float eta = 1;     // relative index crossed (1 unless refracted); for radiance scaling in Russian roulette
+};
+// u1 chooses the lobe, u2 the direction. Empty if nothing is left to sample (absorbed).
+// Radiance transport: refraction scales by 1/eta² when `adjoint` is false; particles pass adjoint = true.
+std::optional<BsdfSample> sample(const Closure& closure, Vec3f wo, float u1, Vec2f u2, Lobes which,
+                                 bool adjoint = false);
+
+// One delta lobe followed deterministically: direction and coefficient (not divided by any probability).
+struct DeltaContinuation {
+  Vec3f wi;
+  Rgb weight;
+  LobeKind kind;
+  float eta = 1;
+};
+// All delta continuations at wo (at most kMaxLobes, total internal reflection resolved); returns how many.
+int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[kMaxLobes + 1], bool adjoint = false);
+
+// Directional albedo at wo: exact for diffuse, closely approximated otherwise (for Russian roulette, AOVs, sampling weights).
+Rgb albedo(const Closure& closure, Vec3f wo);
+
+}  // namespace lumirank::scatter

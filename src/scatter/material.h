@@ -1,0 +1,104 @@
+// The BSDFs of a scene, prepared: textures and nested BSDFs are indices, indices of refraction are resolved. A material
+// becomes a Closure at a surface point.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "base/frame.h"
+#include "base/rgb.h"
+#include "scatter/closure.h"
+#include "scatter/texture.h"
+
+namespace lumirank::scatter {
+
+// An input that may vary over the surface.
+struct ColorInput {
+  Rgb value{0};
+  int texture = -1;
+};
+struct FloatInput {
+  float value = 0;
+  int texture = -1;
+};
+
+// What a material needs to know of a point.
+struct SurfacePoint {
+  Vec3f position;
+  Vec3f ng;             // unit geometric normal, on the outside
+  Frame shading;        // shading.n in the hemisphere of ng; shading.s along dp/du where uv exist
+  Vec3f dpdu, dpdv;     // for bump maps; zero if the mesh has no uv
+  SurfaceUv uv;
+};
+
+struct NullMaterial {};
+struct DiffuseMaterial { ColorInput reflectance; };
+struct RoughDiffuseMaterial { ColorInput reflectance; FloatInput alpha; };
+struct ConductorMaterial {
+  Rgb eta, k;
+  ColorInput specular_reflectance;
+  NormalDistribution distribution;
+  FloatInput alpha_u, alpha_v;
+  bool smooth = false;
+};
+struct DielectricMaterial {
+  float eta;
+  ColorInput specular_reflectance, specular_transmittance;
+  NormalDistribution distribution;
+  FloatInput alpha_u, alpha_v;
+  bool smooth = true;
+};
+struct ThinDielectricMaterial { float eta; ColorInput specular_reflectance, specular_transmittance; };
+struct PlasticMaterial {
+  float eta;
+  ColorInput diffuse_reflectance, specular_reflectance;
+  bool nonlinear = false;
+  NormalDistribution distribution;
+  FloatInput alpha;
+  bool smooth = true;
+};
+struct PhongMaterial { ColorInput diffuse_reflectance, specular_reflectance; FloatInput exponent; };
+struct WardMaterial {
+  int variant = 2;  // 0 ward, 1 ward-duer, 2 balanced
+  ColorInput diffuse_reflectance, specular_reflectance;
+  FloatInput alpha_u, alpha_v;
+};
+struct PrincipledMaterial {
+  ColorInput base_color;
+  FloatInput roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, clearcoat, clearcoat_gloss,
+      flatness;
+  float eta = 1.5f;
+};
+struct MaskMaterial { FloatInput opacity; int nested; };
+struct TwoSidedMaterial { int front, back; };
+struct BumpMaterial { int texture; float scale; int nested; };
+struct NormalMapMaterial { int texture; int nested; };
+struct MixtureMaterial {
+  struct Part { FloatInput weight; bool complement; int nested; };
+  std::vector<Part> parts;
+};
+
+using Material =
+    std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
+                 ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
+                 MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
+
+// All materials of a world with the textures that they read; nested materials come before their users.
+struct MaterialSet {
+  std::vector<Material> materials;
+  TextureSet textures;
+
+  // The closure at a point, for a known direction wo (which decides the side of two-sided and dielectric BSDFs).
+  // A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
+  Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
+
+  // Whether shadow rays may pass straight through somewhere (null, thin dielectric, mask): such geometry gets a filter.
+  enum class Passage { opaque, smooth, cutout };  // smooth: coloured transmittance (goes into E); cutout: binary (into V)
+  Passage passage(int material) const;
+  // Straight-through transmittance along w (either sense): thin dielectrics and null surfaces.
+  Rgb transmittance(int material, const SurfacePoint& at, Vec3f w) const;
+  // Probability that a cut-out lets nothing through; 1 for anything without a mask.
+  float opacity(int material, const SurfaceUv& uv) const;
+};
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,61 @@
+// Prepared textures: pixels in memory, looked up at a uv.
+#pragma once
+
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/vec.h"
+
+namespace lumirank::scatter {
+
+enum class TexFilter { nearest, bilinear };
+enum class TexWrap { repeat, mirror, clamp };
+
+// Linear RGB plus alpha; row 0 is the top of the picture (v = 0 at the bottom unless a reader flips it: see the decisions).
+struct TexturePixels {
+  int width = 0, height = 0;
+  std::vector<Rgb> rgb;
+  std::vector<float> alpha;  // empty if the file has none
+};
+
+struct SurfaceUv {
+  Vec2f uv;
+  Rgb vertex_color{1};
+};
+
+struct ConstantTexture {
+  Rgb value;
+};
+struct BitmapTexture {
+  std::shared_ptr<const TexturePixels> pixels;  // shared by all textures of the same file and colour space
+  TexFilter filter = TexFilter::bilinear;
+  TexWrap wrap_u = TexWrap::repeat, wrap_v = TexWrap::repeat;
+  float to_uv[6] = {1, 0, 0, 0, 1, 0};
+};
+struct CheckerboardTexture {
+  int color0 = 0, color1 = 0;  // indices into the same texture list, each smaller than this texture's own
+  float to_uv[6] = {1, 0, 0, 0, 1, 0};
+};
+struct ScaleTexture {
+  int input = 0;
+  Rgb scale{1};
+};
+struct VertexColorTexture {};
+
+using Texture = std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture, ScaleTexture, VertexColorTexture>;
+
+// All textures of a world; a texture refers only to textures before it.
+struct TextureSet {
+  std::vector<Texture> textures;
+  Rgb lookup(int texture, const SurfaceUv& at) const;
+  // Scalar inputs read the luminance of colour textures (Mitsuba does the same).
+  float lookup_float(int texture, const SurfaceUv& at) const;
+  // ∂(lookup_float)/∂u and /∂v by central differences of one texel; for bump maps.
+  Vec2f gradient(int texture, const SurfaceUv& at) const;
+  // Mean over the unit square: for powers of textured emitters.
+  Rgb mean(int texture) const;
+};
+
+}  // namespace lumirank::scatter

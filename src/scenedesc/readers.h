@@ -1,0 +1,37 @@
+// Readers of scene and mesh files. With images and volumes, the only code that opens files.
+// Every function throws InputError with file, line and remedy, whatever the bytes are; none prints or exits.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "base/sinks.h"
+#include "scenedesc/mesh.h"
+#include "scenedesc/scene_desc.h"
+
+namespace lumirank::scenedesc {
+
+struct ReadOptions {
+  std::map<std::string, std::string> defines;  // --define NAME=VALUE: win over <default>
+  bool strict = false;                         // the first warning becomes an error
+};
+
+// Any supported format, chosen by the file's extension.
+SceneDesc read_scene(const std::string& filename, const ReadOptions& options = {});
+
+// Mitsuba XML, 0.6 and 3.x (by the version attribute).
+SceneDesc read_mitsuba(const std::string& filename, const ReadOptions& options = {});
+// The same from memory (tests, fuzzing); relative names are taken from the folder of `filename`.
+SceneDesc parse_mitsuba(const std::string& text, const std::string& filename, const ReadOptions& options = {});
+
+MeshData read_mesh(const MeshFileDesc& file);
+// From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are an
+// error, degenerate triangles are left out and noted.
+MeshData parse_obj(const std::string& bytes, const std::string& filename);
+MeshData parse_ply(const std::string& bytes, const std::string& filename);
+MeshData parse_serialized(const std::string& bytes, const std::string& filename, int shape_index);
+
+// Human-readable listing, for `lumirank info` and debugging.
+std::string describe(const SceneDesc& scene);
+
+}  // namespace lumirank::scenedesc

@@ -1,0 +1,290 @@
+// What a scene file says, after parsing and before anything is built: plain values, printable, rewritable, and the same
+// for every file format. Names are resolved to indices; files are named (absolute paths) but not opened, except that
+// a reader may check that they exist.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "base/rgb.h"
+#include "base/transform.h"
+#include "base/vec.h"
+
+namespace lumirank::scenedesc {
+
+inline constexpr int kNone = -1;  // "no index"
+
+// ---------------------------------------------------------------------------------------------------- textures
+
+// 2×3 affine map from mesh uv to texture uv.
+struct UvTransform {
+  float m[6] = {1, 0, 0, 0, 1, 0};
+  friend bool operator==(const UvTransform&, const UvTransform&) = default;
+};
+
+// A constant or a texture (an index into SceneDesc::textures), linear RGB.
+struct ColorInput {
+  Rgb value{0};
+  int texture = kNone;
+};
+struct FloatInput {
+  float value = 0;
+  int texture = kNone;
+};
+
+enum class FilterMode { nearest, bilinear };
+enum class WrapMode { repeat, mirror, clamp };
+
+struct BitmapTextureDesc {
+  std::string filename;
+  // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear anyway).
+  bool raw = false;
+  FilterMode filter = FilterMode::bilinear;
+  WrapMode wrap_u = WrapMode::repeat, wrap_v = WrapMode::repeat;
+  UvTransform to_uv;
+};
+struct CheckerboardTextureDesc {
+  ColorInput color0{Rgb(0.4f)}, color1{Rgb(0.2f)};
+  UvTransform to_uv;
+};
+struct ScaleTextureDesc {
+  ColorInput input;
+  Rgb scale{1};
+};
+struct VertexColorTextureDesc {
+  std::string attribute = "vertex_color";
+};
+struct TextureDesc {
+  std::string id;
+  SourceLocation where;
+  std::variant<BitmapTextureDesc, CheckerboardTextureDesc, ScaleTextureDesc, VertexColorTextureDesc> kind;
+};
+
+// ------------------------------------------------------------------------------------------------------- BSDFs
+
+enum class Distribution { beckmann, ggx };
+
+struct NullBsdfDesc {};
+struct DiffuseDesc {
+  ColorInput reflectance{Rgb(0.5f)};
+};
+struct RoughDiffuseDesc {  // Oren-Nayar, alpha as in Mitsuba (σ = alpha/√2)
+  ColorInput reflectance{Rgb(0.5f)};
+  FloatInput alpha{0.2f};
+};
+struct ConductorDesc {  // smooth if alpha_u and alpha_v are the constant 0
+  Rgb eta{0}, k{1};     // relative to the outside medium
+  ColorInput specular_reflectance{Rgb(1)};
+  Distribution distribution = Distribution::beckmann;
+  FloatInput alpha_u{0}, alpha_v{0};
+};
+struct DielectricDesc {  // smooth if alpha_u and alpha_v are the constant 0
+  float eta = 1.5046f / 1.000277f;  // interior index over exterior index
+  ColorInput specular_reflectance{Rgb(1)}, specular_transmittance{Rgb(1)};
+  Distribution distribution = Distribution::beckmann;
+  FloatInput alpha_u{0}, alpha_v{0};
+};
+struct ThinDielectricDesc {
+  float eta = 1.5046f / 1.000277f;
+  ColorInput specular_reflectance{Rgb(1)}, specular_transmittance{Rgb(1)};
+};
+struct PlasticDesc {  // smooth coating if alpha is the constant 0
+  float eta = 1.49f / 1.000277f;
+  ColorInput diffuse_reflectance{Rgb(0.5f)}, specular_reflectance{Rgb(1)};
+  bool nonlinear = false;
+  Distribution distribution = Distribution::beckmann;
+  FloatInput alpha{0};
+};
+struct PhongDesc {  // the modified (energy-conserving) Phong model
+  ColorInput diffuse_reflectance{Rgb(0.5f)}, specular_reflectance{Rgb(0.2f)};
+  FloatInput exponent{30};
+};
+struct WardDesc {
+  enum class Variant { ward, ward_duer, balanced };
+  Variant variant = Variant::balanced;
+  ColorInput diffuse_reflectance{Rgb(0.5f)}, specular_reflectance{Rgb(0.2f)};
+  FloatInput alpha_u{0.1f}, alpha_v{0.1f};
+};
+struct PrincipledDesc {  // Mitsuba 3's "principled" and "principledthin" without their thin-film lobes
+  ColorInput base_color{Rgb(0.5f)};
+  FloatInput roughness{0.5f}, anisotropic{0}, metallic{0}, spec_trans{0}, spec_tint{0}, sheen{0}, sheen_tint{0},
+      clearcoat{0}, clearcoat_gloss{0}, flatness{0};
+  float eta = 1.5f;
+};
+struct MaskDesc {  // opacity 1: the nested BSDF; 0: nothing there
+  FloatInput opacity{0.5f};
+  int nested = kNone;
+};
+struct TwoSidedDesc {
+  int front = kNone, back = kNone;  // equal if one BSDF serves both
+};
+struct BumpMapDesc {
+  int texture = kNone;  // displacement height, in world units per unit of uv
+  float scale = 1;
+  int nested = kNone;
+};
+struct NormalMapDesc {
+  int texture = kNone;  // raw RGB, n = 2·rgb - 1 in the tangent frame
+  int nested = kNone;
+};
+struct MixtureDesc {  // Σ weight_k · bsdf_k; "blendbsdf" has two entries and weights 1 - w, w
+  struct Part {
+    FloatInput weight;
+    bool complement = false;  // the weight is 1 - value
+    int bsdf = kNone;
+  };
+  std::vector<Part> parts;
+};
+
+struct BsdfDesc {
+  std::string id;
+  SourceLocation where;
+  std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc, ThinDielectricDesc,
+               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, MaskDesc, TwoSidedDesc, BumpMapDesc,
+               NormalMapDesc, MixtureDesc>
+      kind;
+};
+
+// ------------------------------------------------------------------------------------------------------ shapes
+
+enum class MeshFormat { obj, ply, serialized };
+
+struct MeshFileDesc {
+  MeshFormat format = MeshFormat::obj;
+  std::string filename;
+  int shape_index = 0;              // serialized only
+  bool face_normals = false;        // ignore the file's normals
+  bool flip_tex_coords = false;     // v → 1 - v
+  std::optional<float> max_smooth_angle;  // degrees; normals are made anew
+};
+struct RectangleDesc {};  // [-1,1]² in z = 0, normal +z
+struct CubeDesc {};       // [-1,1]³
+struct SphereDesc {
+  Vec3f center;
+  float radius = 1;
+};
+struct DiskDesc {};  // unit disk in z = 0, normal +z
+struct CylinderDesc {
+  Vec3f p0{0, 0, 0}, p1{0, 0, 1};
+  float radius = 1;
+};
+struct ShapeGroupDesc {
+  std::vector<int> shapes;  // indices into SceneDesc::shapes
+};
+struct InstanceDesc {
+  int group = kNone;  // index of a shape whose kind is ShapeGroupDesc
+};
+
+struct AreaEmitterDesc {
+  ColorInput radiance{Rgb(1)};
+  std::string id;  // for --aov light:NAME; the shape's id if the emitter has none
+  SourceLocation where;
+};
+
+struct ShapeDesc {
+  std::string id;
+  SourceLocation where;
+  Transform to_world;
+  bool flip_normals = false;
+  int bsdf = kNone;  // kNone: the default diffuse BSDF
+  std::optional<AreaEmitterDesc> emitter;
+  bool in_group = false;  // a member of a shape group: not in the world by itself
+  std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, ShapeGroupDesc, InstanceDesc>
+      kind;
+};
+
+// ---------------------------------------------------------------------------------------------------- emitters
+
+struct PointLightDesc {
+  Vec3f position;
+  Rgb intensity{1};  // W/sr
+};
+struct SpotLightDesc {  // at the origin of to_world, along its +z
+  Transform to_world;
+  Rgb intensity{1};
+  float cutoff_angle = 20;            // degrees: no light beyond
+  float beam_width = 20 * 3.0f / 4.0f;  // degrees: full intensity within
+};
+struct DirectionalLightDesc {
+  Vec3f direction{0, 0, 1};  // in which the light travels
+  Rgb irradiance{1};
+};
+struct ConstantEnvironmentDesc {
+  Rgb radiance{1};
+};
+struct EnvironmentMapDesc {  // latitude-longitude, +y up, as in Mitsuba
+  std::string filename;
+  float scale = 1;
+  Transform to_world;
+};
+struct SunSkyDesc {  // the models "sun", "sky" and "sunsky"
+  bool sun = true, sky = true;
+  float turbidity = 3;
+  Vec3f sun_direction{0, 1, 0};  // towards the sun, in the local frame of to_world (+y up)
+  float sun_scale = 1, sky_scale = 1;
+  float sun_radius_scale = 1;
+  Rgb albedo{0.2f};
+  Transform to_world;
+};
+struct EmitterDesc {
+  std::string id;
+  SourceLocation where;
+  std::variant<PointLightDesc, SpotLightDesc, DirectionalLightDesc, ConstantEnvironmentDesc, EnvironmentMapDesc,
+               SunSkyDesc>
+      kind;
+};
+
+// ------------------------------------------------------------------------------------- sensor, film, integrator
+
+enum class FilterKind { box, tent, gaussian, mitchell, catmullrom, lanczos };
+
+struct FilterDesc {
+  FilterKind kind = FilterKind::box;
+  float radius = 0;  // in pixels; 0: the kind's default (box 0.5, tent 1, gaussian 4σ, mitchell/catmullrom 2, lanczos = lobes)
+  float stddev = 0.5f;
+  float b = 1.0f / 3, c = 1.0f / 3;
+  int lobes = 3;
+};
+struct FilmDesc {
+  int width = 768, height = 576;
+  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // crop_width 0: no crop
+  FilterDesc filter;
+};
+enum class SensorKind { perspective, thinlens, orthographic };
+struct SensorDesc {
+  std::string id;
+  SourceLocation where;
+  SensorKind kind = SensorKind::perspective;
+  Transform to_world;          // camera looks along +z, +y up, +x left
+  float fov_x = 39.6f;         // degrees, across the width of the image (readers convert other axes)
+  float aperture_radius = 0;   // thinlens
+  float focus_distance = 1;
+  float near_clip = 1e-2f, far_clip = 1e4f;
+  Vec2f principal_point_offset;  // in fractions of the film
+  FilmDesc film;
+  int samples_per_pixel = 0;     // 0: not stated
+};
+
+struct Warning {
+  SourceLocation where;
+  std::string what;          // names the thing that Lumirank does not have
+  std::string used_instead;  // "" if it is left out
+};
+
+struct SceneDesc {
+  std::string source_file;
+  std::string format;  // "mitsuba 0.6", "mitsuba 3.0", …
+  std::vector<TextureDesc> textures;
+  std::vector<BsdfDesc> bsdfs;
+  std::vector<ShapeDesc> shapes;
+  std::vector<EmitterDesc> emitters;
+  std::vector<SensorDesc> sensors;  // at least one after a successful read
+  int max_depth = -1;               // Mitsuba's count; -1: unlimited
+  std::string integrator;           // as named in the file
+  std::vector<Warning> warnings;
+};
+
+}  // namespace lumirank::scenedesc

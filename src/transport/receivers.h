@@ -1,0 +1,54 @@
+// Rows: the points that the film sees, at the end of specular chains from the eye.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/sinks.h"
+#include "base/vec.h"
+#include "scatter/closure.h"
+#include "world/camera.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+struct ReceiverSettings {
+  std::uint64_t seed = 1;
+  int spp = 4;             // film samples per pixel, stratified √spp × √spp when square
+  int max_depth = -1;      // Mitsuba's count
+  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // 0: the whole film
+  int max_splits = 3;      // specular vertices at which both reflection and refraction are followed; then one is drawn
+};
+
+// Sorted in Morton order of 4×4-pixel tiles, so that neighbours in the image are neighbours in memory.
+// A film sample may have several receivers (glass, smooth coatings) or none (it sees only emitters or the background).
+struct Receivers {
+  std::vector<Vec3f> position, normal, ng, wo;  // normal: shading, towards wo; wo: unit, back along the eye path
+  std::vector<Rgb> weight;                      // throughput of the specular chain
+  std::vector<std::uint32_t> sample;            // film sample that it belongs to
+  std::vector<std::uint16_t> depth;             // path segments from the eye to here (1: seen directly)
+  std::vector<std::uint32_t> closure;           // index into closures (not lambertian), or kLambertian
+  std::vector<Rgb> albedo;                      // of lambertian receivers: diffuse reflectance
+  std::vector<scatter::Closure> closures;
+
+  static constexpr std::uint32_t kLambertian = 0xffffffffu;
+
+  // Film samples: position on the (cropped) film in pixels, and the emission that is seen directly or through the chain.
+  std::vector<Vec2f> film;
+  std::vector<Rgb> emission;
+  // First hit of each sample, for AOVs.
+  std::vector<Rgb> first_albedo;
+  std::vector<Vec3f> first_normal, first_position;
+  std::vector<float> first_distance;
+  int width = 0, height = 0;  // of the cropped film
+
+  std::size_t size() const { return position.size(); }
+  std::size_t samples() const { return film.size(); }
+  std::size_t memory_bytes() const;
+};
+
+Receivers trace_receivers(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings,
+                          const Sinks& sinks = {});
+
+}  // namespace lumirank::transport

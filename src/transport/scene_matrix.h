@@ -1,0 +1,52 @@
+// The lighting matrix of a world: receivers × virtual lights on the CPU.
+#pragma once
+
+#include <memory>
+
+#include "matrix/lighting_matrix.h"
+#include "transport/receivers.h"
+#include "transport/virtual_lights.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+struct SceneMatrixSettings {
+  std::uint64_t seed = 1;
+  float clamp = 1;        // X of the conventions; 0: off
+  int max_depth = -1;     // Mitsuba's count; receiver depth + light depth + the connecting segment may not exceed it
+  bool group_by_emitter = false;  // clusters may not cross emitters (for --aov light:NAME)
+  // Receivers whose direct light is traced instead (see render/traced_direct.h) get 0 from direct columns when their
+  // closure's roughness is below this.
+  float traced_direct_below = 0;
+};
+
+// Holds references: world, receivers and lights must outlive it.
+class SceneMatrix final : public matrix::LightingMatrix {
+ public:
+  SceneMatrix(const world::World& world, const Receivers& receivers, const VirtualLights& lights,
+              const SceneMatrixSettings& settings);
+  ~SceneMatrix() override;
+
+  std::size_t rows() const override;
+  std::size_t columns() const override;
+  void row(matrix::Index i, std::span<Rgb> out, matrix::Part part) const override;
+  void column(matrix::Index j, std::span<Rgb> out, matrix::Part part) const override;
+  void block(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns, std::span<Rgb> out,
+             matrix::Part part) const override;
+  void entries(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns, std::span<Rgb> out,
+               matrix::Part part) const override;
+  void accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
+                  const Sinks& sinks) const override;
+  matrix::RowFeatures row_features() const override;
+  matrix::ColumnFeatures column_features() const override;
+
+  // Energy that clamping removed, over the entries evaluated so far: Σ(unclamped − clamped) / Σ unclamped, receivers
+  // weighted equally.
+  double clamped_fraction() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lumirank::transport

@@ -1,0 +1,56 @@
+// Columns: virtual lights that stand for every emitter and every bounce.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/sinks.h"
+#include "base/vec.h"
+#include "scatter/closure.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+enum class LightKind : std::uint8_t {
+  omni,         // power: intensity (W/sr), point emitters
+  oriented,     // power: emitted radiance × area share; cosine emission about `normal`; emitter samples
+  surface,      // power: incident flux Φ; scatters with the closure at the hit; particle-traced
+  directional,  // power: irradiance; `normal` is the direction in which the light travels
+};
+
+struct LightSettings {
+  std::uint64_t seed = 1;
+  std::size_t count = 100000;  // target over all kinds
+  int max_depth = -1;          // Mitsuba's count
+  bool direct = true, indirect = true;
+};
+
+struct VirtualLights {
+  std::vector<LightKind> kind;
+  std::vector<Vec3f> position;
+  std::vector<Vec3f> normal;
+  std::vector<Vec3f> ng;              // geometric normal at surface lights
+  std::vector<Rgb> power;             // by kind, see above; spot fall-off needs `spot`
+  std::vector<float> area;            // a_j: the area that the light stands for (clamping); 0: never clamped
+  std::vector<std::uint16_t> emitter; // first emitter of the path
+  std::vector<std::uint16_t> depth;   // path segments from the emitter to here (0: on the emitter)
+  std::vector<std::uint32_t> closure; // surface lights that are not lambertian: index into closures; else kLambertian
+  std::vector<Rgb> albedo;            // lambertian surface lights
+  std::vector<Vec3f> incoming;        // surface lights: unit, back towards where the light came from
+  std::vector<scatter::Closure> closures;
+
+  static constexpr std::uint32_t kLambertian = 0xffffffffu;
+
+  std::size_t paths = 0;              // particles emitted: powers are divided by it
+  std::size_t direct_count = 0;       // columns that stand for emitters
+
+  std::size_t size() const { return kind.size(); }
+  std::size_t memory_bytes() const;
+};
+
+// Deterministic in the seed; the number of particle paths is fixed by a pilot before tracing, so the true count is near, not
+// exactly, the target.
+VirtualLights trace_virtual_lights(const world::World& world, const LightSettings& settings, const Sinks& sinks = {});
+
+}  // namespace lumirank::transport

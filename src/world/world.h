@@ -1,0 +1,73 @@
+// The scene, built and immutable: geometry, materials, emitters and the camera, ready for queries from any thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/bounds.h"
+#include "base/sinks.h"
+#include "emitters/emitter.h"
+#include "geometry/ray_scene.h"
+#include "scatter/material.h"
+#include "scenedesc/scene_desc.h"
+#include "world/camera.h"
+
+namespace lumirank::world {
+
+struct BuildOptions {
+  bool strict = false;  // warnings become errors
+};
+
+struct WorldInfo {
+  std::size_t meshes = 0, instances = 0, triangles = 0, unique_triangles = 0;
+  std::size_t textures = 0, materials = 0, emitters = 0;
+  std::size_t memory_bytes = 0;  // meshes, textures and acceleration structure
+};
+
+// A surface hit with everything that shading needs.
+struct SurfaceHit {
+  geometry::Hit hit;
+  scatter::SurfacePoint point;
+  int material = 0;
+  int emitter = -1;      // index into emitters(), -1: does not shine
+};
+
+class World {
+ public:
+  // Opens meshes and textures. Appends to `warnings` what had to be replaced or mended.
+  static World build(const scenedesc::SceneDesc& desc, const BuildOptions& options,
+                     std::vector<scenedesc::Warning>& warnings, const Sinks& sinks = {});
+  World(World&&) noexcept;
+  ~World();
+
+  const geometry::RayScene& rays() const;
+  const scatter::MaterialSet& materials() const;
+  const std::vector<emitters::Emitter>& emitters() const;
+  // The emitter that fills the background, or -1. At most one EnvironmentEmitter exists (sky and map are merged or warned about).
+  int environment() const;
+  const Bounds3f& bounds() const;
+  const WorldInfo& info() const;
+
+  std::optional<SurfaceHit> intersect(const geometry::Ray& ray) const;
+  // The surface point for a known placement, triangle and barycentric coordinates.
+  SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
+  // Radiance leaving an emitting hit towards wo (0 on the dark side), texture included.
+  Rgb emitted(const SurfaceHit& at, Vec3f wo) const;
+  // Radiance that arrives along a ray that leaves the scene (environment; delta directional light contributes nothing).
+  Rgb background(Vec3f direction) const;
+  // Direct samples of an area emitter read the texture here; for other emitters as in emitters::sample_direct.
+  emitters::DirectSample sample_direct(int emitter, Vec3f point, float u1, Vec2f u2) const;
+  emitters::Emission sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const;
+
+  // Where a ray from `p` should start so that it does not meet its own surface: offset along ng to the side of `direction`.
+  static Vec3f offset_origin(Vec3f p, Vec3f ng, Vec3f direction);
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lumirank::world
