@@ -42,6 +42,9 @@ struct RunOptions {
 
 struct Estimate {
   std::vector<Rgb> sums;  // one per row
+  // The same estimate as a linear combination of columns, sums = Σ scale_k · A(·, column_k), for methods whose estimate is one
+  // (all global ones): it splits the image by light and relights it. Empty for others.
+  std::vector<matrix::ScaledColumn> combination;
   Trace trace;
   bool interrupted = false;  // cancelled: `sums` is the best complete estimate so far
 };

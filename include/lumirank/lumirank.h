@@ -1,0 +1,78 @@
+// Lumirank: global illumination by sampling the many-light matrix. The whole library behind a few plain values.
+//
+//   auto scene = lumirank::Scene::load("room.xml");
+//   auto result = lumirank::render(scene, {.lights = 50000});
+//   lumirank::write_picture("room.exr", result.picture);
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lumirank/error.h"
+#include "lumirank/settings.h"
+#include "lumirank/sinks.h"
+
+namespace lumirank {
+
+std::string version();
+
+// A scene file after parsing; nothing is built yet. Cheap to copy.
+class Scene {
+ public:
+  // Throws InputError (file, line, remedy). Warnings go to `sinks.warning` and stay in the listing.
+  static Scene load(const std::string& filename, const LoadOptions& options = {}, const Sinks& sinks = {});
+
+  // What `lumirank info` prints: builds the world once to count triangles and emitters. As text or JSON.
+  std::string info_text(const Sinks& sinks = {}) const;
+  std::string info_json(const Sinks& sinks = {}) const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::shared_ptr<const Impl> impl_;
+};
+
+// Linear RGB, three floats per pixel, row 0 at the top.
+struct Plane {
+  std::string name;  // "" for the picture's colours, else the AOV
+  std::vector<float> rgb;
+};
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<Plane> planes;  // planes[0] is the colour
+};
+
+struct RenderResult {
+  Picture picture;
+  std::string report_json;
+  bool interrupted = false;  // cancelled: the picture is the best finished estimate
+};
+
+// `on_preview` is called, not more often than about twice a second, with complete pictures while the estimate improves.
+using PreviewCallback = std::function<void(const Picture&)>;
+
+RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
+                    const PreviewCallback& on_preview = {});
+
+// Ground truth by path tracing. Of `settings` it reads size, depth, only, seed, threads, camera, crop and aovs.
+RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
+                       const Sinks& sinks = {}, const PreviewCallback& on_preview = {});
+
+// By extension: .exr (all planes), .png, .pfm. Whole or absent.
+void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display = {});
+void check_writable(const std::string& filename);
+// A small text file (report, settings), written to a temporary name and renamed.
+void write_text(const std::string& filename, const std::string& text);
+
+// Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
+std::string error_json(const std::string& image_file, const std::string& reference_file);
+
+// The methods with their parameters and papers.
+std::string methods_text();
+std::string methods_json();
+
+}  // namespace lumirank
