@@ -8,6 +8,7 @@
 #include "base/sinks.h"
 #include "base/vec.h"
 #include "scatter/closure.h"
+#include "transport/closure_pool.h"
 #include "world/camera.h"
 #include "world/world.h"
 
@@ -15,29 +16,38 @@ namespace lumirank::transport {
 
 struct ReceiverSettings {
   std::uint64_t seed = 1;
-  int spp = 4;             // film samples per pixel, stratified √spp × √spp when square
-  int max_depth = -1;      // Mitsuba's count
+  int spp = 4;         // film samples per pixel, stratified √spp × √spp when square
+  int max_depth = -1;  // Mitsuba's count
   int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // 0: the whole film
-  int max_splits = 3;      // specular vertices at which both reflection and refraction are followed; then one is drawn
+  bool first_hits = true;  // keep the first_… arrays (40 B per sample), for AOVs
+  // Specular vertices at which both reflection and refraction are followed; at later ones, one is drawn.
+  int max_splits = 3;
 };
 
 // Sorted in Morton order of 4×4-pixel tiles, so that neighbours in the image are neighbours in memory.
-// A film sample may have several receivers (glass, smooth coatings) or none (it sees only emitters or the background).
+// A film sample may have several receivers (glass, smooth coatings) or none (it sees only emitters or the
+// background).
 struct Receivers {
-  std::vector<Vec3f> position, normal, ng, wo;  // normal: shading, towards wo; wo: unit, back along the eye path
-  std::vector<Rgb> weight;                      // throughput of the specular chain
-  std::vector<std::uint32_t> sample;            // film sample that it belongs to
-  std::vector<std::uint16_t> depth;             // path segments from the eye to here (1: seen directly)
-  std::vector<std::uint32_t> closure;           // index into closures (not lambertian), or kLambertian
-  std::vector<Rgb> albedo;                      // of lambertian receivers: diffuse reflectance
-  std::vector<scatter::Closure> closures;
+  std::vector<Vec3f> position;
+  std::vector<Vec3f> normal, ng;       // shading and geometric, in the hemisphere of wo where they agree
+  std::vector<Vec3f> wo;               // unit, back along the eye path
+  std::vector<Rgb> weight;             // throughput of the specular chain
+  std::vector<std::uint32_t> sample;   // film sample that it belongs to
+  std::vector<std::uint16_t> depth;    // path segments from the eye to here (1: seen directly)
+  std::vector<std::uint32_t> closure;  // index into closures (not lambertian), or kLambertian
+  std::vector<Rgb> albedo;             // of lambertian receivers: diffuse reflectance
+  ClosurePool closures;                // smooth lobes only
+  // The closure of any receiver, lambertian or not, without its delta lobes.
+  scatter::Closure closure_at(std::size_t i) const;
 
   static constexpr std::uint32_t kLambertian = 0xffffffffu;
 
-  // Film samples: position on the (cropped) film in pixels, and the emission that is seen directly or through the chain.
+  // Film samples: position on the (cropped) film in pixels, and the emission that is seen directly or through
+  // the chain.
   std::vector<Vec2f> film;
   std::vector<Rgb> emission;
-  // First hit of each sample, for AOVs.
+  // First hit of each sample, for AOVs: zero (distance: infinite) where the background is seen. Empty if not
+  // asked for.
   std::vector<Rgb> first_albedo;
   std::vector<Vec3f> first_normal, first_position;
   std::vector<float> first_distance;
@@ -48,7 +58,7 @@ struct Receivers {
   std::size_t memory_bytes() const;
 };
 
-Receivers trace_receivers(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings,
-                          const Sinks& sinks = {});
+Receivers trace_receivers(const world::World& world, const world::Camera& camera,
+                          const ReceiverSettings& settings, const Sinks& sinks = {});
 
 }  // namespace lumirank::transport

@@ -8,6 +8,7 @@
 #include "base/sinks.h"
 #include "base/vec.h"
 #include "scatter/closure.h"
+#include "transport/closure_pool.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -17,6 +18,14 @@ enum class LightKind : std::uint8_t {
   oriented,     // power: emitted radiance × area share; cosine emission about `normal`; emitter samples
   surface,      // power: incident flux Φ; scatters with the closure at the hit; particle-traced
   directional,  // power: irradiance; `normal` is the direction in which the light travels
+  spot,         // power: intensity on the axis; `normal` is the axis; `closure` is an index into `spots`
+};
+
+// Fall-off of a spot light: 1 within the beam, 0 outside the cutoff, linear in the angle between (as in
+// Mitsuba).
+struct SpotShape {
+  float cos_cutoff = 0, cos_beam = 1;
+  float cutoff = 0, beam = 0;  // radians
 };
 
 struct LightSettings {
@@ -26,31 +35,39 @@ struct LightSettings {
   bool direct = true, indirect = true;
 };
 
+// Sorted by kind (in the order of LightKind), lambertian surface lights before others, then along a Morton
+// curve (directional lights by direction, all others by position), so that kernels meet long runs of one
+// sort.
 struct VirtualLights {
   std::vector<LightKind> kind;
-  std::vector<Vec3f> position;
-  std::vector<Vec3f> normal;
-  std::vector<Vec3f> ng;              // geometric normal at surface lights
-  std::vector<Rgb> power;             // by kind, see above; spot fall-off needs `spot`
-  std::vector<float> area;            // a_j: the area that the light stands for (clamping); 0: never clamped
-  std::vector<std::uint16_t> emitter; // first emitter of the path
-  std::vector<std::uint16_t> depth;   // path segments from the emitter to here (0: on the emitter)
-  std::vector<std::uint32_t> closure; // surface lights that are not lambertian: index into closures; else kLambertian
-  std::vector<Rgb> albedo;            // lambertian surface lights
-  std::vector<Vec3f> incoming;        // surface lights: unit, back towards where the light came from
-  std::vector<scatter::Closure> closures;
+  std::vector<Vec3f> position;  // directional: where its ray to the scene's centre enters the bounding sphere
+  std::vector<Vec3f> normal;    // unit; zero for omni. Surface: shading normal on the side of `incoming`
+  std::vector<Vec3f> ng;   // geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds
+  std::vector<Rgb> power;  // by kind, see above
+  std::vector<float> area;             // a_j: the area that the light stands for (clamping); 0: never clamped
+  std::vector<std::uint16_t> emitter;  // first emitter of the path
+  std::vector<std::uint16_t> depth;    // path segments from the emitter to here (0: on the emitter)
+  std::vector<std::uint32_t> closure;  // surface lights that are not lambertian: index into closures; spot:
+                                       // into spots; else kLambertian
+  std::vector<Rgb> albedo;             // lambertian surface lights
+  std::vector<Vec3f> incoming;         // surface lights: unit, back towards where the light came from
+  ClosurePool closures;                // smooth lobes only
+  std::vector<SpotShape> spots;
+  // The closure of any surface light, lambertian or not. Evaluate it with wo = incoming.
+  scatter::Closure closure_at(std::size_t j) const;
 
   static constexpr std::uint32_t kLambertian = 0xffffffffu;
 
-  std::size_t paths = 0;              // particles emitted: powers are divided by it
-  std::size_t direct_count = 0;       // columns that stand for emitters
+  std::size_t paths = 0;         // particles emitted: powers are divided by it
+  std::size_t direct_count = 0;  // columns that stand for emitters
 
   std::size_t size() const { return kind.size(); }
   std::size_t memory_bytes() const;
 };
 
-// Deterministic in the seed; the number of particle paths is fixed by a pilot before tracing, so the true count is near, not
-// exactly, the target.
-VirtualLights trace_virtual_lights(const world::World& world, const LightSettings& settings, const Sinks& sinks = {});
+// Deterministic in the seed; the number of particle paths is fixed by a pilot before tracing, so the true
+// count is near, not exactly, the target.
+VirtualLights trace_virtual_lights(const world::World& world, const LightSettings& settings,
+                                   const Sinks& sinks = {});
 
 }  // namespace lumirank::transport
