@@ -1,15 +1,17 @@
-// Closures of many points in little memory. Points of one untextured material share one list of lobes (a
-// "recipe"); what differs from point to point is only the frame, of which the owner keeps the normals anyway.
-// So a closure costs 8 bytes here instead of about 700, and points of one recipe can be evaluated together.
+// Closures of many points in little memory. Points of one material share one list of lobes without their
+// colours (a "recipe"), and points of one colour the list of colours; what else differs from point to point
+// is only the frame, of which the owner keeps the normals anyway. So a closure costs 12 bytes here (24 to 36
+// with a colour of its own) instead of about 500, and points of one recipe can be evaluated together.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
+#include "base/rgb.h"
 #include "base/vec.h"
 #include "scatter/closure.h"
+#include "transport/list_store.h"
 
 namespace lumirank::transport {
 
@@ -21,14 +23,17 @@ class ClosurePool {
 
   // Appends all closures of `other`, in order; returns the index that its first one has here.
   std::uint32_t append(const ClosurePool& other);
+  // Keeps closure order[k] as the k-th, for all k: a permutation or a selection.
+  void reorder(std::span<const std::uint32_t> order);
 
   std::size_t size() const { return entries_.size(); }
-  std::size_t recipes() const { return offsets_.size() - 1; }
+  std::size_t recipes() const { return recipes_.size(); }
   // Which lobe list closure i uses, below recipes().
   std::uint32_t recipe(std::uint32_t i) const { return entries_[i].recipe_and_side >> 1; }
-  std::span<const scatter::Lobe> lobes(std::uint32_t recipe_index) const {
-    return {lobes_.data() + offsets_[recipe_index], offsets_[recipe_index + 1] - offsets_[recipe_index]};
-  }
+  // The lobes of a recipe, all with colour 1.
+  std::span<const scatter::Lobe> lobes(std::uint32_t recipe_index) const { return recipes_[recipe_index]; }
+  // Colours of the lobes of closure i, one per lobe of its recipe.
+  std::span<const Rgb> colors(std::uint32_t i) const { return palettes_[entries_[i].palette]; }
   // 1, or -1 where the closure's frame.n is the opposite of the normal that the owner keeps (a rough
   // dielectric seen from inside). The same holds for ng.
   float side(std::uint32_t i) const { return entries_[i].recipe_and_side & 1 ? -1.0f : 1.0f; }
@@ -40,21 +45,19 @@ class ClosurePool {
   scatter::Closure get(std::uint32_t i, Vec3f normal, Vec3f ng) const;
 
   std::size_t memory_bytes() const;
-  // Gives back spare capacity and the table that finds equal recipes: nothing can be added afterwards.
-  void freeze();
-  void clear() { *this = ClosurePool(); }
+  // Gives back spare capacity and the tables that find equal lists; call it when nothing more will be added.
+  void shrink();
 
  private:
   struct Entry {
     std::uint32_t recipe_and_side;  // recipe · 2 + (1: side is negative)
+    std::uint32_t palette;
     std::uint32_t tangent;
   };
-  std::uint32_t recipe_of(std::span<const scatter::Lobe> lobes);
 
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> offsets_{0};  // of recipes into lobes_, one more than recipes
-  std::vector<scatter::Lobe> lobes_;
-  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;
+  ListStore<scatter::Lobe> recipes_;
+  ListStore<Rgb> palettes_;
 };
 
 }  // namespace lumirank::transport
