@@ -1,0 +1,22 @@
+#include "linalg/clustering.h"
+
+#include "linalg/multiset_sampling.h"
+
+namespace lumirank::linalg {
+
+Splitter cluster(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members,
+                 std::span<const std::uint16_t> groups, const ClusteringSettings& settings) {
+  Partition start = partition_by_group(members, groups);
+  std::size_t sampled = 0;
+  if (settings.algorithm == ClusteringAlgorithm::sampling) sampled = settings.clusters;
+  if (settings.algorithm == ClusteringAlgorithm::combined) sampled = settings.clusters * 2 / 3;
+  if (sampled > start.clusters()) {
+    const Centres centres = draw_centres(edge_costs(points, norms, start), sampled, settings.seed);
+    start = assign_to_centres(points, norms, start, centres);
+  }
+  Splitter splitter(points, norms, std::move(start), settings.seed);
+  if (settings.algorithm != ClusteringAlgorithm::sampling) splitter.split_to(settings.clusters);
+  return splitter;
+}
+
+}  // namespace lumirank::linalg

@@ -1,0 +1,163 @@
+#include "linalg/multiset_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "linalg/blas.h"
+
+namespace lumirank::linalg {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+PointSum sum_of(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members) {
+  return parallel_sum(members.size(), kGrain, PointSum(points.dimension), [&](std::size_t b, std::size_t e) {
+    PointSum s(points.dimension);
+    for (std::size_t k = b; k < e; ++k) s.add(points[members[k]], norms[members[k]]);
+    return s;
+  });
+}
+
+}  // namespace
+
+std::vector<double> edge_costs(const Points& points, std::span<const double> norms, const Partition& groups) {
+  std::vector<double> alpha(groups.order.size());
+  for (std::size_t g = 0; g < groups.clusters(); ++g) {
+    const auto members = groups.members(g);
+    const PointSum sum = sum_of(points, norms, members);
+    double* out = alpha.data() + groups.starts[g];
+    parallel_for(members.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto x = points[members[k]];
+        double dot = 0;
+        for (std::size_t d = 0; d < x.size(); ++d) dot += static_cast<double>(x[d]) * sum.vector[d];
+        const double product = norms[members[k]] * sum.weight;
+        out[k] = product - dot > kZeroCost * product ? product - dot : 0.0;
+      }
+    });
+  }
+  return alpha;
+}
+
+Centres draw_centres(std::span<const double> alpha, std::size_t count, std::uint64_t seed) {
+  std::vector<double> cdf(alpha.size() + 1, 0.0);
+  std::size_t candidates = 0;
+  for (std::size_t k = 0; k < alpha.size(); ++k) {
+    cdf[k + 1] = cdf[k] + alpha[k];
+    candidates += alpha[k] > 0;
+  }
+  count = std::min(count, candidates);
+  Centres centres;
+  if (count == 0) return centres;
+  Rng rng(seed, Stage::clustering, 0);
+  std::map<std::uint32_t, double> multiset;
+  for (std::size_t draw = 0; multiset.size() < count && draw < 64 * count; ++draw) {
+    const double target = rng.next_double() * cdf.back();
+    // The bin whose right edge is the first above the target: never one of zero width.
+    const auto it = std::upper_bound(cdf.begin() + 1, cdf.end(), target);
+    if (it == cdf.end()) continue;  // rounding at the very end
+    const auto k = static_cast<std::uint32_t>(it - cdf.begin() - 1);
+    multiset[k] += cdf.back() / alpha[k];
+  }
+  for (const auto& [position, weight] : multiset) {
+    centres.position.push_back(position);
+    centres.weight.push_back(weight);
+  }
+  return centres;
+}
+
+namespace {
+
+constexpr std::size_t kPointBlock = 256, kCentreBlock = 256;
+// Cosines nearer to 1 than this differ only by rounding of single precision.
+constexpr float kSameDirection = 1e-6f;
+
+// label[k] = nearest of the centres (unit vectors in rows, scales w‖k‖) for the members [begin, end).
+void nearest_centres(const Points& points, std::span<const double> norms,
+                     std::span<const std::uint32_t> members, std::span<const float> units,
+                     std::span<const float> scales, std::uint32_t* label) {
+  const std::size_t dim = points.dimension;
+  std::vector<float> block(kPointBlock * dim), cosine(kPointBlock * kCentreBlock), best(kPointBlock);
+  for (std::size_t p = 0; p < members.size(); p += kPointBlock) {
+    const std::size_t rows = std::min(kPointBlock, members.size() - p);
+    for (std::size_t a = 0; a < rows; ++a) {
+      const std::uint32_t j = members[p + a];
+      const float inverse = norms[j] > 0 ? static_cast<float>(1.0 / norms[j]) : 0.0f;
+      for (std::size_t d = 0; d < dim; ++d) block[a * dim + d] = inverse * points[j][d];
+      best[a] = std::numeric_limits<float>::infinity();
+      label[p + a] = 0;
+    }
+    for (std::size_t q = 0; q < scales.size(); q += kCentreBlock) {
+      const std::size_t columns = std::min(kCentreBlock, scales.size() - q);
+      gemm({rows, columns, dim, false, true}, block.data(), dim, units.data() + q * dim, dim, cosine.data(),
+           kCentreBlock);
+      for (std::size_t a = 0; a < rows; ++a) {
+        const float* row = cosine.data() + a * kCentreBlock;
+        float least = best[a];
+        std::uint32_t at = label[p + a];
+        for (std::size_t k = 0; k < columns; ++k) {
+          const float angle = 1.0f - row[k];
+          const float distance = angle > kSameDirection ? scales[q + k] * angle : 0.0f;
+          if (distance < least) {
+            least = distance;
+            at = static_cast<std::uint32_t>(q + k);
+          }
+        }
+        best[a] = least;
+        label[p + a] = at;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Partition assign_to_centres(const Points& points, std::span<const double> norms, const Partition& groups,
+                            const Centres& centres) {
+  const std::size_t dim = points.dimension;
+  // Scales only matter by their ratios; the largest is made 1 to stay within single precision.
+  double largest = 0;
+  for (std::size_t k = 0; k < centres.position.size(); ++k)
+    largest = std::max(largest, centres.weight[k] * norms[groups.order[centres.position[k]]]);
+
+  Partition result;
+  result.order.reserve(groups.order.size());
+  result.starts.push_back(0);
+  std::size_t next = 0;
+  for (std::size_t g = 0; g < groups.clusters(); ++g) {
+    const auto members = groups.members(g);
+    const std::size_t first = next;
+    while (next < centres.position.size() && centres.position[next] < groups.starts[g + 1]) ++next;
+    const std::size_t count = next - first;
+    std::vector<std::uint32_t> label(members.size(), 0);
+    if (count > 1) {
+      std::vector<float> units(count * dim), scales(count);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t j = groups.order[centres.position[first + k]];
+        scales[k] = static_cast<float>(centres.weight[first + k] * norms[j] / largest);
+        for (std::size_t d = 0; d < dim; ++d)
+          units[k * dim + d] = static_cast<float>(points[j][d] / norms[j]);
+      }
+      parallel_for(members.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        nearest_centres(points, norms, members.subspan(begin, end - begin), units, scales,
+                        label.data() + begin);
+      });
+    }
+    std::vector<std::uint32_t> offset(std::max<std::size_t>(count, 1) + 1, 0);
+    for (std::uint32_t l : label) ++offset[l + 1];
+    const auto base = static_cast<std::uint32_t>(result.order.size());
+    for (std::size_t k = 1; k < offset.size(); ++k) {
+      if (offset[k] > 0) result.starts.push_back(base + offset[k - 1] + offset[k]);
+      offset[k] += offset[k - 1];
+    }
+    result.order.resize(base + members.size());
+    for (std::size_t k = 0; k < members.size(); ++k) result.order[base + offset[label[k]]++] = members[k];
+  }
+  return result;
+}
+
+}  // namespace lumirank::linalg
