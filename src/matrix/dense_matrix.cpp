@@ -1,0 +1,101 @@
+#include "matrix/dense_matrix.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace lumirank::matrix {
+
+DenseMatrix::DenseMatrix(std::size_t rows, std::size_t columns, std::vector<Rgb> unoccluded,
+                         std::vector<std::uint8_t> visibility)
+    : rows_(rows), columns_(columns), unoccluded_(std::move(unoccluded)), visibility_(std::move(visibility)) {
+  if (unoccluded_.size() != rows * columns) throw InternalError("dense matrix: wrong number of entries");
+  if (!visibility_.empty() && visibility_.size() != rows * columns)
+    throw InternalError("dense matrix: wrong number of visibilities");
+}
+
+Rgb DenseMatrix::at(std::size_t i, std::size_t j, Part part) const {
+  const Rgb e = unoccluded_[i * columns_ + j];
+  const float v = visibility_.empty() ? 1.0f : static_cast<float>(visibility_[i * columns_ + j]);
+  switch (part) {
+    case Part::unoccluded:
+      return e;
+    case Part::visibility:
+      return Rgb(v);
+    case Part::value:
+      break;
+  }
+  return e * v;
+}
+
+void DenseMatrix::pay(std::size_t i, std::size_t j) const {
+  Counters& c = counters();
+  c.entries_evaluated.fetch_add(1, std::memory_order_relaxed);
+  (is_black(unoccluded_[i * columns_ + j]) ? c.entries_culled : c.rays_shadow)
+      .fetch_add(1, std::memory_order_relaxed);
+}
+
+void DenseMatrix::row(Index i, std::span<Rgb> out, Part part) const {
+  for (std::size_t j = 0; j < columns_; ++j) {
+    pay(i, j);
+    out[j] = at(i, j, part);
+  }
+}
+
+void DenseMatrix::column(Index j, std::span<Rgb> out, Part part) const {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    pay(i, j);
+    out[i] = at(i, j, part);
+  }
+}
+
+void DenseMatrix::block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+                        Part part) const {
+  for (std::size_t a = 0; a < rows.size(); ++a)
+    for (std::size_t b = 0; b < columns.size(); ++b) {
+      pay(rows[a], columns[b]);
+      out[a * columns.size() + b] = at(rows[a], columns[b], part);
+    }
+}
+
+void DenseMatrix::entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+                          Part part) const {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    pay(rows[k], columns[k]);
+    out[k] = at(rows[k], columns[k], part);
+  }
+}
+
+void DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
+                             const Sinks& sinks) const {
+  if (sums.size() != rows_) throw InternalError("dense matrix: sums of the wrong length");
+  if (sinks.cancelled()) throw Cancelled();
+  parallel_for(rows_, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const ScaledColumn& c : columns) {
+        pay(i, c.column);
+        sums[i] += c.scale * at(i, c.column);
+      }
+  });
+  sinks.report("columns", 1.0);
+}
+
+RowFeatures DenseMatrix::row_features() const { return {pixel, row_position, row_normal}; }
+
+ColumnFeatures DenseMatrix::column_features() const {
+  return {column_position, column_normal, power, group, indirect};
+}
+
+std::vector<Rgb> DenseMatrix::exact_sums() const {
+  std::vector<Rgb> sums(rows_);
+  for (std::size_t i = 0; i < rows_; ++i) {
+    double s[3] = {0, 0, 0};
+    for (std::size_t j = 0; j < columns_; ++j) {
+      const Rgb v = at(i, j);
+      for (int c = 0; c < 3; ++c) s[c] += static_cast<double>(v[c]);
+    }
+    sums[i] = {static_cast<float>(s[0]), static_cast<float>(s[1]), static_cast<float>(s[2])};
+  }
+  return sums;
+}
+
+}  // namespace lumirank::matrix

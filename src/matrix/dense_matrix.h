@@ -1,0 +1,51 @@
+// A lighting matrix that is held in memory: for tests, and for small matrices whose singular values are
+// wanted.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "matrix/lighting_matrix.h"
+
+namespace lumirank::matrix {
+
+class DenseMatrix : public LightingMatrix {
+ public:
+  // unoccluded: rows × columns, row-major. visibility: the same number of 0s and 1s, or empty (all visible).
+  DenseMatrix(std::size_t rows, std::size_t columns, std::vector<Rgb> unoccluded,
+              std::vector<std::uint8_t> visibility = {});
+
+  std::size_t rows() const override { return rows_; }
+  std::size_t columns() const override { return columns_; }
+  void row(Index i, std::span<Rgb> out, Part part = Part::value) const override;
+  void column(Index j, std::span<Rgb> out, Part part = Part::value) const override;
+  void block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+             Part part = Part::value) const override;
+  void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+               Part part = Part::value) const override;
+  void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
+                  const Sinks& sinks = {}) const override;
+  RowFeatures row_features() const override;
+  ColumnFeatures column_features() const override;
+
+  Rgb at(std::size_t i, std::size_t j, Part part = Part::value) const;
+  // Sums of all columns, in double precision and in the order of the columns: what every method estimates.
+  std::vector<Rgb> exact_sums() const;
+
+  // Features, empty unless set; lengths must be those of the matrix.
+  std::vector<Vec2f> pixel;
+  std::vector<Vec3f> row_position, row_normal;
+  std::vector<Vec3f> column_position, column_normal;
+  std::vector<float> power;
+  std::vector<std::uint16_t> group;
+  std::vector<std::uint8_t> indirect;
+
+ private:
+  void pay(std::size_t i, std::size_t j) const;
+
+  std::size_t rows_, columns_;
+  std::vector<Rgb> unoccluded_;
+  std::vector<std::uint8_t> visibility_;
+};
+
+}  // namespace lumirank::matrix

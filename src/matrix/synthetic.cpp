@@ -1,0 +1,130 @@
+#include "matrix/synthetic.h"
+
+#include <cmath>
+
+#include "base/random.h"
+
+namespace lumirank::matrix {
+
+namespace {
+
+// Pixels of a square image, two rows each.
+std::vector<Vec2f> square_pixels(std::size_t rows) {
+  const auto width = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(rows) / 2)));
+  std::vector<Vec2f> pixel(rows);
+  for (std::size_t i = 0; i < rows; ++i)
+    pixel[i] = {static_cast<float>((i / 2) % width) + 0.5f, static_cast<float>((i / 2) / width) + 0.5f};
+  return pixel;
+}
+
+float image_width(const std::vector<Vec2f>& pixel) {
+  float w = 1;
+  for (Vec2f p : pixel) w = std::max(w, std::max(p.x, p.y) + 0.5f);
+  return w;
+}
+
+float log_uniform(Rng& rng, float low, float high) { return low * std::pow(high / low, rng.next_float()); }
+
+Rgb bright_colour(Rng& rng) {
+  const float r = rng.next_float(), g = rng.next_float(), b = rng.next_float();
+  return {0.5f + r, 0.5f + g, 0.5f + b};
+}
+
+}  // namespace
+
+DenseMatrix clustered_matrix(const SyntheticSize& size, std::size_t clusters) {
+  std::vector<Rgb> entries(size.rows * size.columns);
+  std::vector<float> scale(size.columns);
+  for (std::size_t j = 0; j < size.columns; ++j) {
+    Rng rng(size.seed, Stage::test, 1, j);
+    scale[j] = log_uniform(rng, 0.1f, 10.0f);
+  }
+  for (std::size_t k = 0; k < clusters; ++k) {
+    Rng rng(size.seed, Stage::test, 2, k);
+    const Rgb colour = bright_colour(rng);
+    for (std::size_t i = 0; i < size.rows; ++i) {
+      const float v = rng.next_float();
+      for (std::size_t j = k; j < size.columns; j += clusters)
+        entries[i * size.columns + j] = colour * (v * scale[j]);
+    }
+  }
+  DenseMatrix m(size.rows, size.columns, std::move(entries));
+  m.pixel = square_pixels(size.rows);
+  m.power = scale;
+  return m;
+}
+
+DenseMatrix low_rank_matrix(const SyntheticSize& size, std::size_t rank, std::size_t groups) {
+  const auto pixel = square_pixels(size.rows);
+  const float width = image_width(pixel);
+  std::vector<Rgb> entries(size.rows * size.columns);
+  std::vector<float> power(size.columns);
+  std::vector<Rgb> colour(size.columns);
+  for (std::size_t j = 0; j < size.columns; ++j) {
+    Rng rng(size.seed, Stage::test, 3, j);
+    power[j] = log_uniform(rng, 0.2f, 5.0f);
+    colour[j] = bright_colour(rng) * (power[j] * (0.5f + rng.next_float()));
+  }
+  for (std::size_t k = 0; k < rank; ++k) {
+    Rng rng(size.seed, Stage::test, 4, k);
+    const float cx = rng.next_float(), cy = rng.next_float(), centre = rng.next_float();
+    const float radius = log_uniform(rng, 0.1f, 0.5f), spread = log_uniform(rng, 0.05f, 0.3f);
+    for (std::size_t i = 0; i < size.rows; ++i) {
+      const float dx = pixel[i].x / width - cx, dy = pixel[i].y / width - cy;
+      const float over_image = std::exp(-(dx * dx + dy * dy) / (2 * radius * radius));
+      for (std::size_t j = 0; j < size.columns; ++j) {
+        const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(size.columns) - centre;
+        entries[i * size.columns + j] += colour[j] * (over_image * std::exp(-t * t / (2 * spread * spread)));
+      }
+    }
+  }
+  DenseMatrix m(size.rows, size.columns, std::move(entries));
+  m.pixel = pixel;
+  m.power = power;
+  if (groups > 1) {
+    m.group.resize(size.columns);
+    for (std::size_t j = 0; j < size.columns; ++j) m.group[j] = static_cast<std::uint16_t>(j % groups);
+  }
+  return m;
+}
+
+DenseMatrix sparse_matrix(const SyntheticSize& size, double share) {
+  std::vector<Rgb> entries(size.rows * size.columns);
+  std::vector<std::uint8_t> visible(size.rows * size.columns);
+  std::vector<float> power(size.columns);
+  const auto patch = static_cast<std::size_t>(share * static_cast<double>(size.rows)) + 1;
+  for (std::size_t j = 0; j < size.columns; ++j) {
+    Rng rng(size.seed, Stage::test, 5, j);
+    const Rgb colour = bright_colour(rng) * log_uniform(rng, 0.2f, 5.0f);
+    const std::size_t start = rng.next_below(size.rows);
+    if (j % 17 == 0) continue;  // no power, no light
+    power[j] = norm2(colour);
+    for (std::size_t i = 0; i < size.rows; ++i) {
+      entries[i * size.columns + j] = colour * (0.2f + rng.next_float());
+      const bool in_patch = (i + size.rows - start) % size.rows < patch;
+      visible[i * size.columns + j] = in_patch && j % 13 != 0;
+    }
+  }
+  DenseMatrix m(size.rows, size.columns, std::move(entries), std::move(visible));
+  m.pixel = square_pixels(size.rows);
+  m.power = power;
+  return m;
+}
+
+DenseMatrix recess_matrix(const SyntheticSize& size) {
+  DenseMatrix smooth = low_rank_matrix(size, 3);
+  std::vector<Rgb> entries(size.rows * size.columns);
+  for (std::size_t i = 0; i < size.rows; ++i)
+    for (std::size_t j = 0; j < size.columns; ++j) entries[i * size.columns + j] = smooth.at(i, j);
+  for (std::size_t j = 0; j < size.columns; ++j) {
+    Rng rng(size.seed, Stage::test, 6, j);
+    for (int k = 0; k < 3; ++k)
+      entries[rng.next_below(size.rows) * size.columns + j] += Rgb(30.0f * smooth.power[j]);
+  }
+  DenseMatrix m(size.rows, size.columns, std::move(entries));
+  m.pixel = smooth.pixel;
+  m.power = smooth.power;
+  return m;
+}
+
+}  // namespace lumirank::matrix
