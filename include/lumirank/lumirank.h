@@ -1,4 +1,5 @@
-// Lumirank: global illumination by sampling the many-light matrix. The whole library behind a few plain values.
+// Lumirank: global illumination by sampling the many-light matrix. The whole library behind a few plain
+// values.
 //
 //   auto scene = lumirank::Scene::load("room.xml");
 //   auto result = lumirank::render(scene, {.lights = 50000});
@@ -49,16 +50,19 @@ struct Picture {
 struct RenderResult {
   Picture picture;
   std::string report_json;
+  std::string summary;       // one line for a person
   bool interrupted = false;  // cancelled: the picture is the best finished estimate
 };
 
-// `on_preview` is called, not more often than about twice a second, with complete pictures while the estimate improves.
+// `on_preview` is called, not more often than about twice a second, with complete pictures while the estimate
+// improves.
 using PreviewCallback = std::function<void(const Picture&)>;
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
                     const PreviewCallback& on_preview = {});
 
-// Ground truth by path tracing. Of `settings` it reads size, depth, only, seed, threads, camera, crop and aovs.
+// Ground truth by path tracing. Of `settings` it reads size, depth, only, seed, threads, camera, crop and
+// aovs.
 RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
                        const Sinks& sinks = {}, const PreviewCallback& on_preview = {});
 

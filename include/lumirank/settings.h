@@ -1,5 +1,5 @@
-// What a render is asked for: plain values with their defaults. Each field's help, range and unit are listed once, in
-// render_fields(), from which the command line, JSON and the documentation are made.
+// What a render is asked for: plain values with their defaults. Each field's help, range and unit are listed
+// once, in render_fields(), from which the command line, JSON and the documentation are made.
 #pragma once
 
 #include <cstdint>
@@ -25,28 +25,29 @@ struct RenderSettings {
   double clamp = 1;           // X of docs/conventions; 0: off
   std::string only = "all";   // all, direct, indirect
   std::uint64_t seed = 1;
-  int threads = 0;            // 0: all
-  double time = 0;            // seconds; 0: no limit
-  double error = 0;           // estimated relative error to stop at; 0: the method's default
+  int threads = 0;   // 0: all
+  double time = 0;   // seconds; 0: no limit
+  double error = 0;  // estimated relative error to stop at; 0: the method's default
   std::string backend = "cpu";
-  std::string direct = "auto";  // matrix, traced, auto: traced where the receiver is glossier than a measured roughness
-  std::string rest = "skip";    // skip, trace
+  std::string direct =
+      "auto";  // matrix, traced, auto: traced where the receiver is glossier than a measured roughness
+  std::string rest = "skip";  // skip, trace
   std::string visibility = "exact";
-  std::string camera;           // "": the scene's first
-  int crop[4] = {0, 0, 0, 0};   // x, y, width, height; width 0: none
+  std::string camera;          // "": the scene's first
+  int crop[4] = {0, 0, 0, 0};  // x, y, width, height; width 0: none
   std::vector<std::string> aovs;
 };
 
 struct ReferenceSettings {
-  int spp = 0;        // 0: until time or error, or 64 if neither is given
-  double time = 0;    // seconds
-  double error = 0;   // stop when the stated relative L1 error is below
+  int spp = 0;                // 0: until time or error, or 64 if neither is given
+  double time = 0;            // seconds
+  double error = 0;           // stop when the stated relative L1 error is below
   std::string paths = "all";  // all, columns, rest
 };
 
 struct DisplaySettings {
-  double exposure = 0;             // stops
-  std::string tonemap = "none";    // none, reinhard, agx
+  double exposure = 0;           // stops
+  std::string tonemap = "none";  // none, reinhard, agx
 };
 
 // One row of the table of settings.
@@ -62,6 +63,9 @@ std::string get_field(const RenderSettings& settings, const std::string& key);
 // All fields as a JSON object and back; an unknown key is an InputError.
 std::string to_json(const RenderSettings& settings);
 RenderSettings render_settings_from_json(const std::string& text);
+
+// The settings of an earlier render, from its report.
+RenderSettings render_settings_from_report(const std::string& report);
 
 // Throws InputError for values that contradict each other or lie out of range.
 void validate(const RenderSettings& settings);

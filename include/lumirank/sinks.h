@@ -16,9 +16,15 @@ struct Sinks {
   // Set by the host (a signal handler, say) to stop early; checked between blocks of work.
   const std::atomic<bool>* cancel = nullptr;
 
-  void say(const std::string& m) const { if (info) info(m); }
-  void warn(const std::string& m) const { if (warning) warning(m); }
-  void report(const char* phase, double fraction) const { if (progress) progress(phase, fraction); }
+  void say(const std::string& m) const {
+    if (info) info(m);
+  }
+  void warn(const std::string& m) const {
+    if (warning) warning(m);
+  }
+  void report(const char* phase, double fraction) const {
+    if (progress) progress(phase, fraction);
+  }
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
 

@@ -1,0 +1,114 @@
+#include "render/aovs.h"
+
+#include <functional>
+
+#include "base/error.h"
+
+namespace lumirank::rendering {
+namespace {
+
+void add_plane(Picture& picture, const std::string& name, const film::Image& image) {
+  picture.planes.push_back({name, to_picture(image).planes[0].rgb});
+}
+
+// The part of the estimate made of the columns that `keep` chooses: light is linear, and so is the estimate.
+film::Image part_image(const Setup& setup, const methods::Estimate& estimate,
+                       const std::function<bool(matrix::Index)>& keep, bool with_traced, const Sinks& sinks) {
+  std::vector<matrix::ScaledColumn> columns;
+  for (const auto& c : estimate.combination)
+    if (keep(c.column)) columns.push_back(c);
+  std::vector<Rgb> sums(setup.receivers.size());
+  setup.matrix->accumulate(columns, sums, sinks);
+  return develop(setup,
+                 sample_values(setup, sums, {.emission = false, .matrix = true, .traced = with_traced}));
+}
+
+template <typename T, typename F>
+film::Image first_hit_image(const Setup& setup, const std::vector<T>& values, F&& to_rgb) {
+  std::vector<Rgb> rgb;
+  rgb.reserve(values.size());
+  for (const T& v : values) rgb.push_back(to_rgb(v));
+  return develop(setup, rgb);
+}
+
+// Names of the lights that `which` means ("*": all), each once.
+std::vector<std::string> matching_lights(const world::World& world, const std::string& which) {
+  std::vector<std::string> names;
+  for (const auto& e : world.emitters())
+    if ((which == "*" || e.name == which) && std::find(names.begin(), names.end(), e.name) == names.end())
+      names.push_back(e.name);
+  return names;
+}
+
+void add_lights(Picture& picture, const Setup& setup, const std::string& which,
+                const methods::Estimate& estimate, const Sinks& sinks) {
+  for (const std::string& name : matching_lights(*setup.world, which)) {
+    const auto from_it = [&](matrix::Index j) {
+      return setup.world->emitters()[setup.lights.emitter[j]].name == name;
+    };
+    add_plane(picture, "light:" + name, part_image(setup, estimate, from_it, false, sinks));
+  }
+}
+
+}  // namespace
+
+FilmParts wanted_parts(const RenderSettings& settings) {
+  return {.emission = settings.only == "all", .matrix = true, .traced = settings.only != "indirect"};
+}
+
+void check_aovs(const world::World& world, const RenderSettings& settings) {
+  const auto& emitters = world.emitters();
+  for (const std::string& aov : settings.aovs) {
+    if (!aov.starts_with("light:")) continue;
+    if (traced_roughness(settings) > 0)
+      throw InputError("'" + aov + "' needs all light in the matrix", "leave out --direct traced");
+    const std::string which = aov.substr(6);
+    if (!matching_lights(world, which).empty()) continue;
+    std::string known;
+    for (std::size_t e = 0; e < emitters.size() && e < 20; ++e) known += (e ? ", " : "") + emitters[e].name;
+    if (emitters.size() > 20) known += ", …";
+    throw InputError("there is no light '" + which + "'", "the lights are " + known);
+  }
+}
+
+void add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,
+              const methods::Estimate& estimate, const Sinks& sinks) {
+  const auto& receivers = setup.receivers;
+  const auto depth_of = [](float d) { return Rgb(std::isfinite(d) ? d : 0.0f); };
+  const auto vector_of = [](Vec3f v) { return Rgb(v.x, v.y, v.z); };
+  for (const std::string& aov : settings.aovs) {
+    const bool splits = aov == "direct" || aov == "indirect" || aov.starts_with("light:");
+    if (splits && estimate.combination.empty() && setup.lights.size() > 0)
+      throw InputError("the method '" + settings.method + "' cannot split its picture by light",
+                       "choose a method whose estimate is a sum of columns");
+    if (aov == "direct") {
+      add_plane(
+          picture, aov,
+          part_image(
+              setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] == 0; }, true, sinks));
+    } else if (aov == "indirect") {
+      add_plane(
+          picture, aov,
+          part_image(
+              setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] > 0; }, false, sinks));
+    } else if (aov.starts_with("light:")) {
+      add_lights(picture, setup, aov.substr(6), estimate, sinks);
+    } else if (aov == "emission") {
+      add_plane(picture, aov, develop(setup, receivers.emission));
+    } else if (aov == "albedo") {
+      add_plane(picture, aov, develop(setup, receivers.first_albedo));
+    } else if (aov == "normal") {
+      add_plane(picture, aov, first_hit_image(setup, receivers.first_normal, vector_of));
+    } else if (aov == "position") {
+      add_plane(picture, aov, first_hit_image(setup, receivers.first_position, vector_of));
+    } else if (aov == "depth") {
+      add_plane(picture, aov, first_hit_image(setup, receivers.first_distance, depth_of));
+    } else if (aov == "samples") {
+      std::vector<Rgb> count(receivers.samples());
+      for (std::size_t i = 0; i < receivers.size(); ++i) count[receivers.sample[i]] += Rgb(1);
+      add_plane(picture, aov, develop(setup, count));
+    }
+  }
+}
+
+}  // namespace lumirank::rendering

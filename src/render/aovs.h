@@ -1,0 +1,20 @@
+// Further layers of a picture: parts of the light, and what the eye's first hits know.
+#pragma once
+
+#include "lumirank/lumirank.h"
+#include "render/pipeline.h"
+
+namespace lumirank::rendering {
+
+// What `--only` leaves of the picture.
+FilmParts wanted_parts(const RenderSettings& settings);
+
+// Throws InputError for a light that the world does not have: before the render, not after it.
+void check_aovs(const world::World& world, const RenderSettings& settings);
+
+// Appends the planes that settings.aovs names. Throws InputError where a method's estimate cannot be split by
+// light.
+void add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,
+              const methods::Estimate& estimate, const Sinks& sinks);
+
+}  // namespace lumirank::rendering

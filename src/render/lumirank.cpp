@@ -1,0 +1,333 @@
+// The public façade: loading, rendering, the reference, and files.
+#include "lumirank/lumirank.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "film/image_io.h"
+#include "film/metrics.h"
+#include "render/aovs.h"
+#include "render/pipeline.h"
+#include "render/reference.h"
+#include "render/report.h"
+#include "scenedesc/readers.h"
+
+namespace lumirank {
+namespace {
+
+using rendering::Setup;
+
+std::string warning_text(const scenedesc::Warning& warning) {
+  std::string text = to_string(warning.where);
+  if (!text.empty()) text += ": ";
+  text += warning.what;
+  if (!warning.used_instead.empty()) text += "; used instead: " + warning.used_instead;
+  return text;
+}
+
+world::World build_world(const Scene& scene, const Sinks& sinks,
+                         std::vector<scenedesc::Warning>* keep = nullptr) {
+  std::vector<scenedesc::Warning> warnings;
+  world::BuildOptions options;
+  options.strict = scene.impl().options.strict;
+  world::World world = world::World::build(scene.impl().desc, options, warnings, sinks);
+  for (const auto& w : warnings) sinks.warn(warning_text(w));
+  if (keep) *keep = std::move(warnings);
+  return world;
+}
+
+// Calls back at most about twice a second: developing and encoding a picture costs more than many columns.
+class PreviewThrottle {
+ public:
+  explicit PreviewThrottle(const PreviewCallback& callback) : callback_(callback) {}
+  bool due() {
+    if (!callback_ || (shown_ && timer_.seconds() < 0.5)) return false;
+    timer_ = Timer();
+    return shown_ = true;
+  }
+  void show(const Picture& picture) const { callback_(picture); }
+
+ private:
+  const PreviewCallback& callback_;
+  Timer timer_;
+  bool shown_ = false;
+};
+
+film::LayeredImage to_layers(const Picture& picture) {
+  film::LayeredImage layers;
+  for (const Plane& plane : picture.planes) {
+    film::Image image(picture.width, picture.height);
+    for (std::size_t p = 0; p < image.pixels.size(); ++p)
+      image.pixels[p] = {plane.rgb[3 * p], plane.rgb[3 * p + 1], plane.rgb[3 * p + 2]};
+    if (plane.name.empty())
+      layers.color = std::move(image);
+    else
+      layers.layers.emplace_back(plane.name, std::move(image));
+  }
+  return layers;
+}
+
+film::DisplayOptions to_display_options(const DisplaySettings& display) {
+  film::DisplayOptions options;
+  options.exposure = static_cast<float>(display.exposure);
+  if (display.tonemap == "reinhard")
+    options.tonemap = film::ToneMap::reinhard;
+  else if (display.tonemap == "agx")
+    options.tonemap = film::ToneMap::agx;
+  else if (display.tonemap != "none")
+    throw InputError("'" + display.tonemap + "' is not a tone map", "choose one of none|reinhard|agx");
+  return options;
+}
+
+nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
+  const auto& desc = scene.impl().desc;
+  std::vector<scenedesc::Warning> warnings;
+  const world::World world = build_world(scene, sinks, &warnings);
+  nlohmann::ordered_json json;
+  json["file"] = desc.source_file;
+  json["format"] = desc.format;
+  const auto& info = world.info();
+  json["triangles"] = info.triangles;
+  json["triangles.unique"] = info.unique_triangles;
+  json["meshes"] = info.meshes;
+  json["instances"] = info.instances;
+  json["textures"] = info.textures;
+  json["materials"] = info.materials;
+  json["emitters"] = nlohmann::json::array();
+  for (const auto& e : world.emitters()) {
+    const Rgb p = emitters::power(e, world.bounds().radius());
+    json["emitters"].push_back({{"name", e.name}, {"group", e.group}, {"power", {p.r, p.g, p.b}}});
+  }
+  const auto& b = world.bounds();
+  json["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+  json["cameras"] = nlohmann::json::array();
+  for (const auto& s : desc.sensors)
+    json["cameras"].push_back(
+        {{"id", s.id}, {"width", s.film.width}, {"height", s.film.height}, {"fov_x", s.fov_x}});
+  json["max_depth"] = desc.max_depth;
+  json["memory.scene_bytes"] = info.memory_bytes;
+  json["warnings"] = nlohmann::json::array();
+  for (const auto& w : desc.warnings) json["warnings"].push_back(warning_text(w));
+  for (const auto& w : warnings) json["warnings"].push_back(warning_text(w));
+  return json;
+}
+
+}  // namespace
+
+std::string version() { return LUMIRANK_VERSION; }
+
+Scene Scene::load(const std::string& filename, const LoadOptions& options, const Sinks& sinks) {
+  auto impl = std::make_shared<Impl>();
+  impl->options = options;
+  scenedesc::ReadOptions read;
+  read.defines = options.defines;
+  read.strict = options.strict;
+  impl->desc = scenedesc::read_scene(filename, read);
+  for (const auto& w : impl->desc.warnings) sinks.warn(warning_text(w));
+  Scene scene;
+  scene.impl_ = std::move(impl);
+  return scene;
+}
+
+std::string Scene::info_json(const Sinks& sinks) const { return info_object(*this, sinks).dump(1) + "\n"; }
+
+std::string Scene::info_text(const Sinks& sinks) const {
+  const auto json = info_object(*this, sinks);
+  std::string text = scenedesc::describe(impl_->desc);
+  text += "\nbuilt: " + json["triangles"].dump() + " triangles (" + json["triangles.unique"].dump() +
+          " unique) in " + json["meshes"].dump() + " meshes and " + json["instances"].dump() +
+          " instances, " + json["textures"].dump() + " textures, " + json["materials"].dump() +
+          " materials\n";
+  text +=
+      "bounds: " + json["bounds"].dump() + "\nemitters: " + std::to_string(json["emitters"].size()) + "\n";
+  std::size_t shown = 0;
+  for (const auto& e : json["emitters"]) {
+    if (++shown > 32) {
+      text += "  … and " + std::to_string(json["emitters"].size() - 32) + " more (see --json)\n";
+      break;
+    }
+    text += "  " + e["name"].get<std::string>() + "  " + e["power"].dump() + " W\n";
+  }
+  text += "warnings: " + std::to_string(json["warnings"].size()) + "\n";
+  for (const auto& w : json["warnings"]) text += "  " + w.get<std::string>() + "\n";
+  return text;
+}
+
+RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
+                    const PreviewCallback& on_preview) {
+  validate(settings);
+  RenderResult result;
+  with_threads(settings.threads, [&] {
+    const Timer timer;
+    Setup setup;
+    setup.view = rendering::make_view(scene.impl().desc, settings);
+    const methods::MethodInfo& info = rendering::chosen_method(settings);
+    const auto method = info.make(settings.method_settings);
+    const world::World world = build_world(scene, sinks);
+    setup.world = &world;
+    setup.seconds["build"] = timer.seconds();
+    if (sinks.cancelled()) throw Cancelled();
+    rendering::check_aovs(world, settings);
+    rendering::make_receivers(setup, settings, sinks);
+    const std::size_t count = rendering::lights_for(info, settings);
+    rendering::make_matrix(setup, settings, count, sinks);
+
+    PreviewThrottle throttle(on_preview);
+    methods::RunOptions run;
+    run.seed = settings.seed;
+    run.target_error = settings.error;
+    if (settings.time > 0)
+      run.time_seconds = std::max(1e-3, settings.time - timer.seconds() - 0.05 * settings.time);
+    run.sinks = sinks;
+    if (on_preview)
+      run.on_estimate = [&](std::span<const Rgb> sums) {
+        if (throttle.due())
+          throttle.show(rendering::to_picture(rendering::develop(
+              setup, rendering::sample_values(setup, sums, rendering::wanted_parts(settings)))));
+      };
+    const Timer method_timer;
+    methods::Estimate estimate = method->run(*setup.matrix, run);
+    setup.seconds["method"] = method_timer.seconds();
+    result.interrupted = estimate.interrupted;
+
+    const Timer film_timer;
+    std::vector<Rgb> values =
+        rendering::sample_values(setup, estimate.sums, rendering::wanted_parts(settings));
+    film::Image image = rendering::develop(setup, values);
+    if (settings.rest == "trace" && !result.interrupted) {
+      ReferenceSettings rest;
+      rest.paths = "rest";
+      rest.spp = std::max(16, settings.spp);
+      const auto traced = rendering::path_trace(world, setup.view, settings, rest, sinks);
+      // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
+      for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += traced.image.pixels[p];
+      result.interrupted = traced.interrupted;
+    }
+    result.picture = rendering::to_picture(image);
+    rendering::add_aovs(result.picture, setup, settings, estimate, sinks);
+    setup.seconds["film"] = film_timer.seconds();
+    result.report_json = rendering::make_report(setup, settings, info, estimate, timer.seconds(), count);
+  });
+  return result;
+}
+
+RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
+                       const Sinks& sinks, const PreviewCallback& on_preview) {
+  validate(settings);
+  RenderResult result;
+  with_threads(settings.threads, [&] {
+    const Timer timer;
+    const rendering::View view = rendering::make_view(scene.impl().desc, settings);
+    const world::World world = build_world(scene, sinks);
+    const double build_seconds = timer.seconds();
+    PreviewThrottle throttle(on_preview);
+    const auto traced =
+        rendering::path_trace(world, view, settings, how, sinks, [&](const film::Image& image) {
+          if (throttle.due()) throttle.show(rendering::to_picture(image));
+        });
+    result.interrupted = traced.interrupted;
+    result.picture = rendering::to_picture(traced.image);
+    for (const auto& aov : settings.aovs) {
+      const film::Image* plane = aov == "direct"     ? &traced.direct
+                                 : aov == "indirect" ? &traced.indirect
+                                 : aov == "emission" ? &traced.emission
+                                                     : nullptr;
+      if (!plane)
+        throw InputError("the reference has no AOV '" + aov + "'", "it has direct, indirect and emission");
+      result.picture.planes.push_back({aov, rendering::to_picture(*plane).planes[0].rgb});
+    }
+    nlohmann::ordered_json json;
+    json["method"] = "reference";
+    json["version"] = version();
+    json["seed"] = settings.seed;
+    json["paths"] = how.paths;
+    json["spp"] = traced.spp;
+    json["error.relative_l1"] = traced.error;
+    json["seconds.total"] = timer.seconds();
+    json["seconds.build"] = build_seconds;
+    json["memory.peak_bytes"] = rendering::peak_memory_bytes();
+    json["parameters"] = nlohmann::ordered_json::parse(to_json(settings));
+    result.report_json = json.dump(1) + "\n";
+    result.summary = std::to_string(traced.spp) + " paths per pixel; stated relative L1 error " +
+                     nlohmann::json(traced.error).dump();
+  });
+  return result;
+}
+
+void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display) {
+  film::write_image(filename, to_layers(picture), to_display_options(display));
+}
+
+void check_writable(const std::string& filename) { film::check_writable(filename); }
+
+void write_text(const std::string& filename, const std::string& text) {
+  const std::string temporary = filename + ".tmp" + std::to_string(getpid());
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.flush();
+    if (!out) {
+      std::remove(temporary.c_str());
+      throw InputError({filename, 0}, "cannot be written", "does its folder exist, and is there space?");
+    }
+  }
+  std::error_code code;
+  std::filesystem::rename(temporary, filename, code);
+  if (code) {
+    std::remove(temporary.c_str());
+    throw InputError({filename, 0}, "cannot be written: " + code.message(), "choose another place");
+  }
+}
+
+std::string error_json(const std::string& image_file, const std::string& reference_file) {
+  const auto image = film::read_image(image_file), reference_image = film::read_image(reference_file);
+  const film::ErrorMetrics m = film::compare(image.color, reference_image.color);
+  nlohmann::ordered_json json = {{"relative_l1", m.relative_l1},
+                                 {"relative_l2", m.relative_l2},
+                                 {"rmse", m.rmse},
+                                 {"relmse", m.relmse},
+                                 {"bias", m.bias}};
+  return json.dump() + "\n";
+}
+
+std::string methods_json() {
+  nlohmann::ordered_json json = nlohmann::json::array();
+  for (const auto& m : methods::all_methods()) {
+    nlohmann::ordered_json parameters = nlohmann::json::array();
+    for (const auto& p : m.parameters)
+      parameters.push_back({{"key", p.key},
+                            {"type", p.type},
+                            {"default", p.default_text},
+                            {"range", p.range},
+                            {"unit", p.unit},
+                            {"help", p.help}});
+    json.push_back(
+        {{"name", m.name}, {"summary", m.summary}, {"paper", m.paper}, {"parameters", parameters}});
+  }
+  return json.dump(1) + "\n";
+}
+
+std::string methods_text() {
+  std::string text;
+  for (const auto& m : methods::all_methods()) {
+    text += m.name + "\n  " + m.summary + "\n";
+    if (!m.paper.empty()) text += "  " + m.paper + "\n";
+    for (const auto& p : m.parameters) {
+      text += "    --set " + p.key + "=" + (p.default_text.empty() ? "…" : p.default_text) + "  (" + p.type;
+      if (!p.range.empty()) text += ", " + p.range;
+      if (!p.unit.empty()) text += ", " + p.unit;
+      text += ")  " + p.help + "\n";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace lumirank

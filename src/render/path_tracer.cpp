@@ -1,0 +1,143 @@
+#include "render/path_tracer.h"
+
+#include "base/random.h"
+#include "scatter/closure.h"
+
+namespace lumirank::rendering {
+
+using scatter::Closure;
+using scatter::LobeKind;
+using scatter::Lobes;
+
+// The state of a path between two vertices.
+struct PathTracer::Walk {
+  Rng rng;
+  std::uint64_t key;
+  geometry::Ray ray;
+  Rgb throughput{1};
+  int segments = 1;             // traced so far, the current one included; straight passes do not count
+  int smooth_vertices = 0;      // non-specular vertices passed
+  bool after_receiver = false;  // the vertex that comes next is the first one after the receiver
+  bool counts;                  // whether light found now belongs to the wanted paths
+  bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
+  float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
+  float travelled = 0;   // since the last vertex
+  float eta_scale = 1;   // undoes refraction's scaling for Russian roulette
+  Radiance sum{};
+
+  void add(Rgb value) {
+    if (!counts) return;
+    Rgb& part = smooth_vertices == 0 ? sum.emission : (smooth_vertices == 1 ? sum.direct : sum.indirect);
+    part += value;
+  }
+};
+
+PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
+    : world_(world), lights_(world), settings_(settings) {}
+
+Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
+  Walk walk{.rng = Rng(settings_.seed, Stage::reference, pixel, sample),
+            .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
+            .ray = ray,
+            .counts = settings_.paths != Paths::rest};
+  // A bound on straight passes, so that coincident null surfaces cannot hold a path for ever.
+  constexpr int kMaxSteps = 4096;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const auto hit = world_.intersect(walk.ray);
+    if (hit) walk.travelled += hit->hit.t;
+    add_emission(walk, hit ? &*hit : nullptr);
+    if (!hit) break;
+    if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
+      // No further segment may follow, but a straight pass is no segment.
+      if (world_.materials().passage(hit->material) == scatter::MaterialSet::Passage::opaque) break;
+    }
+    Closure closure = world_.materials().closure(hit->material, hit->point, -walk.ray.direction);
+    if (!scatter(walk, *hit, closure)) break;
+  }
+  return walk.sum;
+}
+
+// What shines at the end of the current segment, weighted against light sampling (balance heuristic).
+void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
+  const Vec3f direction = walk.ray.direction;
+  Rgb emitted{0};
+  float light_pdf = 0;
+  if (hit) {
+    if (hit->emitter < 0) return;
+    emitted = world_.emitted(*hit, -direction);
+    if (!walk.specular && !is_black(emitted)) light_pdf = lights_.pdf_hit(*hit, direction, walk.travelled);
+  } else {
+    if (world_.environment() < 0) return;
+    emitted = world_.background(direction);
+    if (!walk.specular) light_pdf = lights_.pdf_background(direction);
+  }
+  if (is_black(emitted)) return;
+  const float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + light_pdf);
+  walk.add(walk.throughput * emitted * weight);
+}
+
+void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure) const {
+  const float u_emitter = walk.rng.next_float(), u1 = walk.rng.next_float();
+  const auto s = lights_.sample(hit.point.position, u_emitter, u1, walk.rng.next_2d());
+  if (!(s.pdf > 0)) return;
+  const Vec3f wo = -walk.ray.direction;
+  const Rgb f = scatter::eval(closure, wo, s.direct.direction);
+  if (is_black(f)) return;
+  const Rgb visible =
+      visible_fraction(world_, hit.point.position, hit.point.ng, s.direct.direction, s.direct.distance,
+                       mix64(walk.key + static_cast<std::uint64_t>(walk.segments)));
+  if (is_black(visible)) return;
+  const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
+  walk.add(walk.throughput * f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf)));
+}
+
+// Light sampling and the next direction; false ends the path.
+bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& closure) const {
+  const bool may_continue = settings_.max_depth < 0 || walk.segments < settings_.max_depth;
+  const bool first_after_receiver = walk.after_receiver;
+  if (first_after_receiver && settings_.paths != Paths::all) {
+    // Columns carry this vertex's smooth lobes, the rest its specular ones; both pass straight through.
+    const bool keep_specular = settings_.paths == Paths::rest;
+    int kept = 0;
+    for (int k = 0; k < closure.count; ++k) {
+      const LobeKind kind = closure.lobes[k].kind;
+      if (kind == LobeKind::delta_pass || scatter::is_delta(kind) == keep_specular)
+        closure.lobes[kept++] = closure.lobes[k];
+    }
+    closure.count = kept;
+  }
+  if (closure.has_smooth() && may_continue) {
+    // The vertex itself is non-specular for light that is found here.
+    ++walk.smooth_vertices;
+    sample_lights(walk, hit, closure);
+    --walk.smooth_vertices;
+  }
+
+  const Vec3f wo = -walk.ray.direction;
+  const float u_lobe = walk.rng.next_float();
+  const auto next = scatter::sample(closure, wo, u_lobe, walk.rng.next_2d(), Lobes::all);
+  if (!next || is_black(next->weight)) return false;
+  walk.throughput *= next->weight;
+  const bool pass = next->delta && next->kind == LobeKind::delta_pass;
+  if (!pass) {
+    if (!may_continue) return false;
+    ++walk.segments;
+    walk.travelled = 0;
+    walk.eta_scale *= next->eta * next->eta;
+    walk.specular = next->delta;
+    walk.bsdf_pdf = next->pdf;
+    if (first_after_receiver && next->delta) walk.counts = settings_.paths != Paths::columns;
+    walk.after_receiver = false;
+    if (!next->delta && ++walk.smooth_vertices == 1) walk.after_receiver = true;
+
+    const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
+    if (walk.segments > 5) {
+      if (walk.rng.next_float() >= survival) return false;
+      walk.throughput *= 1 / survival;
+    }
+  }
+  walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
+  return true;
+}
+
+}  // namespace lumirank::rendering

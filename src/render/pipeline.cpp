@@ -1,0 +1,179 @@
+#include "render/pipeline.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/timer.h"
+#include "render/traced_direct.h"
+
+namespace lumirank::rendering {
+namespace {
+
+const scenedesc::SensorDesc& find_sensor(const scenedesc::SceneDesc& desc, const std::string& name) {
+  if (desc.sensors.empty()) throw InputError({desc.source_file, 0}, "the scene has no sensor", "add one");
+  if (name.empty()) return desc.sensors.front();
+  std::string known;
+  for (const auto& sensor : desc.sensors) {
+    if (sensor.id == name) return sensor;
+    known += (known.empty() ? "'" : ", '") + sensor.id + "'";
+  }
+  throw InputError({desc.source_file, 0}, "there is no camera '" + name + "'", "the cameras are " + known);
+}
+
+}  // namespace
+
+View make_view(const scenedesc::SceneDesc& desc, const RenderSettings& settings) {
+  View view;
+  view.sensor = find_sensor(desc, settings.camera);
+  auto& film = view.sensor.film;
+  if (settings.width > 0) {
+    film.width = settings.width, film.height = settings.height;
+    film.crop_width = 0;  // the scene's own window belongs to its own size
+  }
+  view.max_depth = settings.max_depth != 0 ? settings.max_depth : desc.max_depth;
+  view.width = film.width, view.height = film.height;
+  if (film.crop_width > 0) {
+    view.crop_x = film.crop_x, view.crop_y = film.crop_y;
+    view.width = film.crop_width, view.height = film.crop_height;
+  }
+  if (settings.crop[2] > 0) {
+    view.crop_x = settings.crop[0], view.crop_y = settings.crop[1];
+    view.width = settings.crop[2], view.height = settings.crop[3];
+    if (view.crop_x + view.width > film.width || view.crop_y + view.height > film.height)
+      throw InputError("the crop reaches beyond the film of " + std::to_string(film.width) + "x" +
+                       std::to_string(film.height) + " pixels");
+  }
+  return view;
+}
+
+film::Filter make_filter(const scenedesc::FilterDesc& desc) {
+  film::Filter filter;
+  filter.kind = static_cast<film::FilterKind>(desc.kind);
+  filter.stddev = desc.stddev, filter.b = desc.b, filter.c = desc.c, filter.lobes = desc.lobes;
+  filter.radius = desc.radius;
+  if (filter.radius <= 0) {
+    switch (desc.kind) {
+      case scenedesc::FilterKind::box:
+        filter.radius = 0.5f;
+        break;
+      case scenedesc::FilterKind::tent:
+        filter.radius = 1;
+        break;
+      case scenedesc::FilterKind::gaussian:
+        filter.radius = 4 * desc.stddev;
+        break;
+      case scenedesc::FilterKind::mitchell:
+      case scenedesc::FilterKind::catmullrom:
+        filter.radius = 2;
+        break;
+      case scenedesc::FilterKind::lanczos:
+        filter.radius = static_cast<float>(desc.lobes);
+        break;
+    }
+  }
+  return filter;
+}
+
+double traced_roughness(const RenderSettings& settings) {
+  if (settings.only == "indirect" || settings.direct == "matrix") return 0;
+  if (settings.direct == "traced") return 2;  // roughness never exceeds 1
+  // Traced light does not know its emitter.
+  for (const auto& aov : settings.aovs)
+    if (aov.starts_with("light:")) return 0;
+  return 0.35;
+}
+
+void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
+  const Timer timer;
+  const world::Camera camera(setup.view.sensor);
+  transport::ReceiverSettings rs;
+  rs.seed = settings.seed;
+  rs.spp = settings.spp;
+  rs.max_depth = setup.view.max_depth;
+  rs.crop_x = setup.view.crop_x, rs.crop_y = setup.view.crop_y;
+  rs.crop_width = setup.view.width, rs.crop_height = setup.view.height;
+  rs.first_hits = !settings.aovs.empty();
+  setup.receivers = transport::trace_receivers(*setup.world, camera, rs, sinks);
+  setup.seconds["receivers"] = timer.seconds();
+  if (sinks.cancelled()) throw Cancelled();
+
+  setup.traced_below = traced_roughness(settings);
+  setup.traced_direct.clear();
+  if (setup.traced_below > 0) {
+    const Timer traced_timer;
+    TracedDirectSettings ts;
+    ts.seed = settings.seed;
+    ts.below = static_cast<float>(setup.traced_below);
+    ts.max_depth = setup.view.max_depth;
+    bool any = false;
+    for (std::size_t i = 0; i < setup.receivers.size() && !any; ++i)
+      any = is_traced(setup.receivers, i, ts.below);
+    if (any) setup.traced_direct = trace_direct(*setup.world, setup.receivers, ts, sinks);
+    setup.seconds["traced_direct"] = traced_timer.seconds();
+    if (sinks.cancelled()) throw Cancelled();
+  }
+}
+
+void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks) {
+  const Timer timer;
+  setup.matrix.reset();  // before its lights change
+  transport::LightSettings ls;
+  ls.seed = settings.seed;
+  ls.count = count;
+  ls.max_depth = setup.view.max_depth;
+  ls.direct = settings.only != "indirect";
+  ls.indirect = settings.only != "direct";
+  setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
+  setup.seconds["lights"] = timer.seconds();
+  if (sinks.cancelled()) throw Cancelled();
+
+  const Timer matrix_timer;
+  transport::SceneMatrixSettings ms;
+  ms.seed = settings.seed;
+  ms.clamp = static_cast<float>(settings.clamp);
+  ms.max_depth = setup.view.max_depth;
+  ms.traced_direct_below = static_cast<float>(setup.traced_below);
+  for (const auto& aov : settings.aovs)
+    if (aov.starts_with("light:") || aov == "direct" || aov == "indirect") ms.group_by_emitter = true;
+  setup.matrix = std::make_unique<transport::SceneMatrix>(*setup.world, setup.receivers, setup.lights, ms);
+  setup.seconds["matrix"] = matrix_timer.seconds();
+}
+
+const methods::MethodInfo& chosen_method(const RenderSettings& settings) {
+  return methods::find_method(settings.method == "auto" ? "row-column-sampling" : settings.method);
+}
+
+std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& settings) {
+  const std::size_t wanted = method.lights_wanted ? method.lights_wanted(settings.method_settings) : 0;
+  return wanted > 0 ? wanted : settings.lights;
+}
+
+std::vector<Rgb> sample_values(const Setup& setup, std::span<const Rgb> sums, FilmParts parts) {
+  const transport::Receivers& receivers = setup.receivers;
+  std::vector<Rgb> values(receivers.samples());
+  if (parts.emission) values = receivers.emission;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    Rgb radiance{0};
+    if (parts.matrix) radiance += sums[i];
+    if (parts.traced && !setup.traced_direct.empty()) radiance += setup.traced_direct[i];
+    values[receivers.sample[i]] += receivers.weight[i] * radiance;
+  }
+  return values;
+}
+
+film::Image develop(const Setup& setup, std::span<const Rgb> values) {
+  return film::splat(setup.view.width, setup.view.height, make_filter(setup.view.sensor.film.filter),
+                     setup.receivers.film, values);
+}
+
+Picture to_picture(const film::Image& image) {
+  Picture picture;
+  picture.width = image.width, picture.height = image.height;
+  picture.planes.emplace_back();
+  auto& rgb = picture.planes[0].rgb;
+  rgb.reserve(image.pixels.size() * 3);
+  for (const Rgb& p : image.pixels) rgb.insert(rgb.end(), {p.r, p.g, p.b});
+  return picture;
+}
+
+}  // namespace lumirank::rendering

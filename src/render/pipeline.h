@@ -1,0 +1,72 @@
+// From a scene description to a picture: the one way through, in stages that compare can also run one by one.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "film/filter.h"
+#include "lumirank/lumirank.h"
+#include "lumirank/settings.h"
+#include "methods/method.h"
+#include "scenedesc/scene_desc.h"
+#include "transport/receivers.h"
+#include "transport/scene_matrix.h"
+#include "transport/virtual_lights.h"
+#include "world/world.h"
+
+namespace lumirank::rendering {
+
+// A view: the sensor with the settings' resolution, crop and depth applied.
+struct View {
+  scenedesc::SensorDesc sensor;
+  int max_depth = -1;
+  int crop_x = 0, crop_y = 0, width = 0, height = 0;  // the window of the film that is rendered
+};
+// Throws InputError for an unknown camera or a crop outside the film.
+View make_view(const scenedesc::SceneDesc& desc, const RenderSettings& settings);
+
+film::Filter make_filter(const scenedesc::FilterDesc& desc);
+
+// Everything up to the matrix. Lights can be made again (for instant radiosity, or a sweep of --lights) while
+// the rest stays.
+struct Setup {
+  const world::World* world = nullptr;
+  View view;
+  transport::Receivers receivers;
+  transport::VirtualLights lights;
+  std::unique_ptr<transport::SceneMatrix> matrix;
+  // Direct light of the receivers that are traced instead of going through the matrix; empty if there are
+  // none.
+  std::vector<Rgb> traced_direct;
+  double traced_below = 0;                // roughness under which receivers are traced
+  std::map<std::string, double> seconds;  // per phase
+};
+
+// How receivers are traced directly, see traced_direct.h; the roughness below which `--direct auto` traces.
+double traced_roughness(const RenderSettings& settings);
+
+void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
+// `count` virtual lights and the matrix over them.
+void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks);
+
+// The method named by the settings ("auto" resolved) and how many lights it wants.
+const methods::MethodInfo& chosen_method(const RenderSettings& settings);
+std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& settings);
+
+// The picture for given row sums: chain weights, directly traced light, emission, reconstruction filter.
+struct FilmParts {
+  bool emission = true, matrix = true, traced = true;
+};
+std::vector<Rgb> sample_values(const Setup& setup, std::span<const Rgb> sums, FilmParts parts);
+film::Image develop(const Setup& setup, std::span<const Rgb> values);
+Picture to_picture(const film::Image& image);
+
+}  // namespace lumirank::rendering
+
+namespace lumirank {
+struct Scene::Impl {
+  scenedesc::SceneDesc desc;
+  LoadOptions options;
+};
+}  // namespace lumirank

@@ -1,0 +1,146 @@
+#include "render/reference.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/timer.h"
+#include "render/film_sampling.h"
+
+namespace lumirank::rendering {
+namespace {
+
+// Sums over the samples of one half, in double precision so that long runs lose nothing.
+struct Half {
+  struct Sum {
+    double r = 0, g = 0, b = 0;
+    void add(Rgb c) { r += c.r, g += c.g, b += c.b; }
+    Rgb scaled(double s) const {
+      return {static_cast<float>(r * s), static_cast<float>(g * s), static_cast<float>(b * s)};
+    }
+  };
+  std::vector<Sum> emission, direct, indirect;
+  int count = 0;
+  explicit Half(std::size_t pixels) : emission(pixels), direct(pixels), indirect(pixels) {}
+};
+
+Paths parse_paths(const std::string& text) {
+  if (text == "all") return Paths::all;
+  if (text == "columns") return Paths::columns;
+  if (text == "rest") return Paths::rest;
+  throw InputError("'" + text + "' is not a value of 'paths'", "choose one of all|columns|rest");
+}
+
+struct Wanted {
+  bool emission, direct, indirect;
+};
+
+film::Image mean_image(const View& view, std::span<const Half* const> halves, Wanted wanted) {
+  film::Image image(view.width, view.height);
+  int count = 0;
+  for (const Half* h : halves) count += h->count;
+  const double scale = 1.0 / std::max(1, count);
+  for (std::size_t p = 0; p < image.pixels.size(); ++p)
+    for (const Half* h : halves) {
+      if (wanted.emission) image.pixels[p] += h->emission[p].scaled(scale);
+      if (wanted.direct) image.pixels[p] += h->direct[p].scaled(scale);
+      if (wanted.indirect) image.pixels[p] += h->indirect[p].scaled(scale);
+    }
+  return image;
+}
+
+// Relative L1 of the mean of both halves. For the mean of two independent estimates E|mean - truth| is E|A -
+// B|/2.
+double stated_error(const View& view, const Half& a, const Half& b, Wanted wanted) {
+  if (a.count == 0 || b.count == 0) return std::numeric_limits<double>::infinity();
+  const Half* pa[] = {&a};
+  const Half* pb[] = {&b};
+  const film::Image ia = mean_image(view, pa, wanted), ib = mean_image(view, pb, wanted);
+  double difference = 0, total = 0;
+  for (std::size_t p = 0; p < ia.pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c) {
+      difference += std::abs(static_cast<double>(ia.pixels[p][c]) - ib.pixels[p][c]);
+      total += static_cast<double>(ia.pixels[p][c]) + ib.pixels[p][c];
+    }
+  return total > 0 ? difference / total : 0.0;
+}
+
+}  // namespace
+
+ReferenceResult path_trace(const world::World& world, const View& view, const RenderSettings& settings,
+                           const ReferenceSettings& how, const Sinks& sinks,
+                           const std::function<void(const film::Image&)>& on_pass) {
+  const PathTracer tracer(world, {settings.seed, view.max_depth, parse_paths(how.paths)});
+  const world::Camera camera(view.sensor);
+  const FilterSampler filter(make_filter(view.sensor.film.filter));
+  const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+  // `--only` is that part alone: emission seen directly belongs to neither.
+  const bool all = settings.only == "all";
+  const Wanted wanted{all, all || settings.only == "direct", all || settings.only == "indirect"};
+  const int limit = how.spp > 0 ? how.spp : (how.time > 0 || how.error > 0 ? 1 << 20 : 64);
+
+  Half halves[2] = {Half(pixels), Half(pixels)};
+  ReferenceResult result;
+  const Timer timer;
+  int done = 0;
+  while (done < limit) {
+    // Passes of growing size: the image is whole after each, and the error is not computed too often.
+    const int pass = std::min(limit - done, std::clamp(done / 4, 2, 64));
+    std::atomic<std::size_t> finished{0};
+    parallel_for(pixels, 256, [&](std::size_t begin, std::size_t end) {
+      if (sinks.cancelled()) return;
+      for (std::size_t p = begin; p < end; ++p) {
+        const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
+        const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
+        const std::uint64_t id =
+            static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
+            static_cast<std::uint64_t>(x);
+        for (int s = done; s < done + pass; ++s) {
+          Rng rng(settings.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
+          const auto at = filter.sample(rng.next_2d());
+          const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
+                           static_cast<float>(y) + 0.5f + at.offset.y};
+          const Radiance radiance =
+              tracer.trace(camera.ray(film, rng.next_2d()), id, static_cast<std::uint64_t>(s));
+          if (!is_finite(radiance.total()))
+            throw InternalError("the reference met a value that is not finite; replay pixel " +
+                                std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
+          Half& half = halves[s & 1];
+          half.emission[p].add(radiance.emission * at.weight);
+          half.direct[p].add(radiance.direct * at.weight);
+          half.indirect[p].add(radiance.indirect * at.weight);
+        }
+      }
+      const double fraction = static_cast<double>(finished += end - begin) / static_cast<double>(pixels);
+      double progress = (done + pass * fraction) / limit;
+      if (how.time > 0) progress = std::max(progress, timer.seconds() / how.time);
+      sinks.report("reference", std::min(1.0, progress));
+    });
+    if (sinks.cancelled()) {
+      // The pass was left half done: its samples are unevenly spread and cannot be used.
+      result.interrupted = true;
+      if (done == 0) throw Cancelled();
+      return result;
+    }
+    for (int s = done; s < done + pass; ++s) ++halves[s & 1].count;
+    done += pass;
+    const Half* both[] = {&halves[0], &halves[1]};
+    result.emission = mean_image(view, both, {true, false, false});
+    result.direct = mean_image(view, both, {false, true, false});
+    result.indirect = mean_image(view, both, {false, false, true});
+    result.spp = done;
+    result.error = stated_error(view, halves[0], halves[1], wanted);
+    result.image = mean_image(view, both, wanted);
+    if (on_pass) on_pass(result.image);
+    if (how.error > 0 && result.error <= how.error) break;
+    // A pass is not begun that would, at the pace so far, end well after the budget.
+    if (how.time > 0) {
+      const double next = std::clamp(done / 4, 2, 64);
+      if (timer.seconds() * (1 + 0.5 * next / done) > how.time) break;
+    }
+  }
+  return result;
+}
+
+}  // namespace lumirank::rendering

@@ -1,0 +1,26 @@
+// The path-traced reference: passes over the film until the samples, the time or the error asked for are
+// reached.
+#pragma once
+
+#include "base/sinks.h"
+#include "film/image.h"
+#include "lumirank/settings.h"
+#include "render/path_tracer.h"
+#include "render/pipeline.h"
+
+namespace lumirank::rendering {
+
+struct ReferenceResult {
+  film::Image image, direct, indirect, emission;
+  int spp = 0;
+  // Of the image, relative L1, from the difference of its two independent halves: Σ|A - B| / 2 / ΣI.
+  double error = 0;
+  bool interrupted = false;
+};
+
+// `only` and `paths` as in the settings. `on_pass` (may be empty) gets the image so far.
+ReferenceResult path_trace(const world::World& world, const View& view, const RenderSettings& settings,
+                           const ReferenceSettings& how, const Sinks& sinks,
+                           const std::function<void(const film::Image&)>& on_pass = {});
+
+}  // namespace lumirank::rendering

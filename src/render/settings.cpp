@@ -1,0 +1,287 @@
+// The one table of render settings: the command line, JSON and `--help` are made from it.
+#include "lumirank/settings.h"
+
+#include <charconv>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "lumirank/error.h"
+#include "methods/method.h"
+
+namespace lumirank {
+namespace {
+
+struct Row {
+  Field field;
+  std::function<void(RenderSettings&, const std::string&)> set;
+  std::function<std::string(const RenderSettings&)> get;
+};
+
+template <typename T>
+T parse_number(const std::string& key, const std::string& text) {
+  T value{};
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  bool ok = code == std::errc{} && end == text.data() + text.size();
+  if constexpr (std::is_floating_point_v<T>) ok = ok && std::isfinite(value);
+  if (!ok) throw InputError("'" + text + "' is not a valid number for '" + key + "'");
+  return value;
+}
+
+std::string format_number(double v) {
+  char buffer[32];
+  const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, v);
+  return code == std::errc{} ? std::string(buffer, end) : std::string{};
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    if (end > begin) parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+template <typename T>
+Row number(Field field, T RenderSettings::*member, double low, double high) {
+  const std::string key = field.key;
+  field.type = std::is_floating_point_v<T> ? "number" : "integer";
+  return {field,
+          [=](RenderSettings& s, const std::string& text) {
+            const T value = parse_number<T>(key, text);
+            if (static_cast<double>(value) < low || static_cast<double>(value) > high)
+              throw InputError("'" + key + "' is " + text + "; it must lie in " + field.range);
+            s.*member = value;
+          },
+          [=](const RenderSettings& s) {
+            if constexpr (std::is_floating_point_v<T>)
+              return format_number(s.*member);
+            else
+              return std::to_string(s.*member);
+          }};
+}
+
+Row choice(Field field, std::string RenderSettings::*member, std::vector<std::string> values) {
+  field.type = "choice";
+  for (const auto& v : values) field.range += (field.range.empty() ? "" : "|") + v;
+  const std::string key = field.key, range = field.range;
+  return {field,
+          [=](RenderSettings& s, const std::string& text) {
+            if (std::find(values.begin(), values.end(), text) == values.end())
+              throw InputError("'" + text + "' is not a value of '" + key + "'", "choose one of " + range);
+            s.*member = text;
+          },
+          [=](const RenderSettings& s) { return s.*member; }};
+}
+
+Row text_field(Field field, std::string RenderSettings::*member) {
+  field.type = "text";
+  return {field, [=](RenderSettings& s, const std::string& text) { s.*member = text; },
+          [=](const RenderSettings& s) { return s.*member; }};
+}
+
+Row method_row() {
+  Field field{"method", "choice", "auto", "auto", "", "how the row sums of the matrix are estimated"};
+  for (const auto& m : methods::all_methods()) field.range += "|" + m.name;
+  return {field,
+          [](RenderSettings& s, const std::string& text) {
+            if (text != "auto") methods::find_method(text);  // throws with the list
+            s.method = text;
+          },
+          [](const RenderSettings& s) { return s.method; }};
+}
+
+Row size_row() {
+  return {{"size", "text", "", "WxH, each 1 … 65536", "pixels", "resolution; default: as the scene says"},
+          [](RenderSettings& s, const std::string& text) {
+            if (text.empty()) return void(s.width = s.height = 0);
+            const auto parts = split(text, 'x');
+            if (parts.size() != 2) throw InputError("'" + text + "' is not a size", "write it as 800x600");
+            const int w = parse_number<int>("size", parts[0]), h = parse_number<int>("size", parts[1]);
+            if (w < 1 || h < 1 || w > 65536 || h > 65536)
+              throw InputError("the size " + text + " is out of range", "width and height lie in 1 … 65536");
+            s.width = w, s.height = h;
+          },
+          [](const RenderSettings& s) {
+            return s.width > 0 ? std::to_string(s.width) + "x" + std::to_string(s.height) : std::string{};
+          }};
+}
+
+Row crop_row() {
+  return {{"crop", "text", "", "X,Y,W,H", "pixels", "render only this window of the film"},
+          [](RenderSettings& s, const std::string& text) {
+            if (text.empty()) return void(std::fill(s.crop, s.crop + 4, 0));
+            const auto parts = split(text, ',');
+            if (parts.size() != 4) throw InputError("'" + text + "' is not a crop", "write it as X,Y,W,H");
+            for (int i = 0; i < 4; ++i)
+              s.crop[i] = parse_number<int>("crop", parts[static_cast<std::size_t>(i)]);
+            if (s.crop[0] < 0 || s.crop[1] < 0 || s.crop[2] < 1 || s.crop[3] < 1)
+              throw InputError("the crop " + text + " is negative or empty");
+          },
+          [](const RenderSettings& s) {
+            if (s.crop[2] == 0) return std::string{};
+            return std::to_string(s.crop[0]) + "," + std::to_string(s.crop[1]) + "," +
+                   std::to_string(s.crop[2]) + "," + std::to_string(s.crop[3]);
+          }};
+}
+
+bool known_aov(const std::string& name) {
+  if (name.starts_with("light:") && name.size() > 6) return true;
+  static const std::vector<std::string> names = {"direct", "indirect", "emission", "albedo",
+                                                 "normal", "depth",    "position", "samples"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Row aov_row() {
+  return {{"aov", "list", "",
+           "direct,indirect,emission,albedo,normal,depth,position,samples,light:NAME,light:*", "",
+           "further EXR layers, separated by commas; light:NAME is the part of one emitter or group, light:* "
+           "all of them"},
+          [](RenderSettings& s, const std::string& text) {
+            s.aovs.clear();
+            for (const auto& name : split(text, ',')) {
+              if (!known_aov(name))
+                throw InputError("'" + name + "' is not an AOV",
+                                 "choose from direct, indirect, emission, albedo, normal, depth, position, "
+                                 "samples, light:NAME");
+              s.aovs.push_back(name);
+            }
+          },
+          [](const RenderSettings& s) {
+            std::string joined;
+            for (const auto& a : s.aovs) joined += (joined.empty() ? "" : ",") + a;
+            return joined;
+          }};
+}
+
+const std::vector<Row>& table() {
+  using S = RenderSettings;
+  static const std::vector<Row> rows = [] {
+    std::vector<Row> t;
+    t.push_back(method_row());
+    t.push_back(number<std::uint64_t>(
+        {"lights", "", "100000", "1 … 50000000", "lights",
+         "virtual lights to generate, all kinds together; costs memory (about 400 B each) and time in rows"},
+        &S::lights, 1, 5e7));
+    t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"}, &S::light_type,
+                       {"point"}));
+    t.push_back(size_row());
+    t.push_back(
+        number<int>({"spp", "", "4", "1 … 4096", "receivers per pixel", "film samples per pixel (4 = 2×2)"},
+                    &S::spp, 1, 4096));
+    t.push_back(
+        number<int>({"max-depth", "", "0", "-1 … 1000000", "bounces",
+                     "longest path, 1: emission only, 2: direct light; 0: as the scene says; -1: unlimited"},
+                    &S::max_depth, -1, 1e6));
+    t.push_back(number<double>(
+        {"clamp", "", "1", "0 … 1e9", "", "bound on a_j·G·(π f_x)(π f_y) of one entry; 0: off"}, &S::clamp, 0,
+        1e9));
+    t.push_back(choice({"only", "", "all", "", "", "leave out the other part"}, &S::only,
+                       {"all", "direct", "indirect"}));
+    t.push_back(number<std::uint64_t>({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"},
+                                      &S::seed, 0, 9.3e18));
+    t.push_back(
+        number<int>({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
+                    &S::threads, 0, 1024));
+    t.push_back(number<double>({"time", "", "0", "0 … 1e7", "s", "time budget for seconds.total; 0: none"},
+                               &S::time, 0, 1e7));
+    t.push_back(number<double>({"error", "", "0", "0 … 10", "",
+                                "stop when the estimated relative error is below; 0: the method's default"},
+                               &S::error, 0, 10));
+    t.push_back(choice({"backend", "", "cpu", "", "", "who evaluates the matrix"}, &S::backend, {"cpu"}));
+    t.push_back(choice({"direct", "", "auto", "", "",
+                        "direct light at receivers: by columns, traced with multiple importance sampling, or "
+                        "traced where the receiver is glossy"},
+                       &S::direct, {"auto", "matrix", "traced"}));
+    t.push_back(choice({"rest", "", "skip", "", "",
+                        "paths that columns cannot carry: leave out, or add by path tracing (noisy)"},
+                       &S::rest, {"skip", "trace"}));
+    t.push_back(choice({"visibility", "", "exact", "", "", "how shadow rays are answered"}, &S::visibility,
+                       {"exact"}));
+    t.push_back(
+        text_field({"camera", "", "", "", "", "id of the scene's sensor; default: the first"}, &S::camera));
+    t.push_back(crop_row());
+    t.push_back(aov_row());
+    return t;
+  }();
+  return rows;
+}
+
+const Row& find_row(const std::string& key) {
+  for (const Row& row : table())
+    if (row.field.key == key) return row;
+  std::string valid;
+  for (const Row& row : table()) valid += (valid.empty() ? "" : ", ") + row.field.key;
+  throw InputError("there is no setting '" + key + "'", "the settings are " + valid);
+}
+
+}  // namespace
+
+const std::vector<Field>& render_fields() {
+  static const std::vector<Field> fields = [] {
+    std::vector<Field> f;
+    for (const Row& row : table()) f.push_back(row.field);
+    return f;
+  }();
+  return fields;
+}
+
+void set_field(RenderSettings& settings, const std::string& key, const std::string& value) {
+  find_row(key).set(settings, value);
+}
+
+std::string get_field(const RenderSettings& settings, const std::string& key) {
+  return find_row(key).get(settings);
+}
+
+std::string to_json(const RenderSettings& settings) {
+  nlohmann::ordered_json json;
+  for (const Row& row : table()) json[row.field.key] = row.get(settings);
+  json["set"] = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : settings.method_settings) json["set"][key] = value;
+  return json.dump();
+}
+
+RenderSettings render_settings_from_json(const std::string& text) {
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(std::string("the settings are not JSON: ") + e.what());
+  }
+  if (!json.is_object()) throw InputError("the settings must be a JSON object");
+  RenderSettings settings;
+  const auto as_text = [](const std::string& key, const nlohmann::json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number()) return value.dump();
+    throw InputError("the value of '" + key + "' must be text or a number");
+  };
+  for (const auto& [key, value] : json.items()) {
+    if (key == "set") {
+      if (!value.is_object()) throw InputError("'set' must be an object of the method's parameters");
+      for (const auto& [k, v] : value.items()) settings.method_settings[k] = as_text(k, v);
+    } else {
+      set_field(settings, key, as_text(key, value));
+    }
+  }
+  return settings;
+}
+
+RenderSettings render_settings_from_report(const std::string& report) {
+  const nlohmann::json json = nlohmann::json::parse(report, nullptr, false);
+  if (!json.is_object() || !json.contains("parameters"))
+    throw InputError("this is not a report of a render", "give the file that --report wrote");
+  return render_settings_from_json(json["parameters"].dump());
+}
+
+void validate(const RenderSettings& settings) {
+  for (const Row& row : table()) {  // ranges also hold for values that were assigned directly
+    RenderSettings scratch;
+    row.set(scratch, row.get(settings));
+  }
+  if (settings.method != "auto") methods::find_method(settings.method).make(settings.method_settings);
+}
+
+}  // namespace lumirank

@@ -1,0 +1,106 @@
+#include "render/traced_direct.h"
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "render/light_sampler.h"
+
+namespace lumirank::rendering {
+namespace {
+
+// The emission met along a ray, looking through whatever lets light pass straight; a cut-out is decided at
+// random.
+struct Met {
+  Rgb radiance{0};
+  float light_pdf = 0;  // with which LightSampler would have found it
+};
+Met emission_along(const world::World& world, const LightSampler& lights, Vec3f origin, Vec3f direction,
+                   Rng& rng) {
+  constexpr int kMaxPasses = 64;
+  Rgb through{1};
+  float travelled = 0;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    const auto hit = world.intersect({origin, direction});
+    if (!hit) {
+      if (world.environment() < 0) return {};
+      return {through * world.background(direction), lights.pdf_background(direction)};
+    }
+    travelled += hit->hit.t;
+    if (hit->emitter >= 0) {
+      const Rgb emitted = world.emitted(*hit, -direction);
+      if (!is_black(emitted)) return {through * emitted, lights.pdf_hit(*hit, direction, travelled)};
+    }
+    using Passage = scatter::MaterialSet::Passage;
+    const Passage passage = world.materials().passage(hit->material);
+    if (passage == Passage::opaque) return {};
+    if (passage == Passage::cutout) {
+      if (rng.next_float() < world.materials().opacity(hit->material, hit->point.uv)) return {};
+    } else {
+      through *= world.materials().transmittance(hit->material, hit->point, -direction);
+      if (is_black(through)) return {};
+    }
+    origin = world::World::offset_origin(hit->point.position, hit->point.ng, direction);
+  }
+  return {};
+}
+
+Rgb direct_at(const world::World& world, const LightSampler& lights, const transport::Receivers& receivers,
+              std::size_t i, const TracedDirectSettings& settings) {
+  using scatter::Lobes;
+  const scatter::Closure closure = receivers.closure_at(i);
+  const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
+  Rng rng(settings.seed, Stage::traced_direct, i);
+  const int n = settings.samples;
+  const float inv_n = 1.0f / static_cast<float>(n);
+  Rgb sum{0};
+  for (int k = 0; k < n; ++k) {
+    const float u_emitter = (static_cast<float>(k) + rng.next_float()) * inv_n;  // strata over the emitters
+    const float u1 = rng.next_float();
+    const auto s = lights.sample(position, std::min(u_emitter, 0x1.fffffep-1f), u1, rng.next_2d());
+    if (s.pdf > 0) {
+      const Rgb f = scatter::eval(closure, wo, s.direct.direction);
+      if (!is_black(f)) {
+        const float bsdf_pdf =
+            s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::smooth);
+        const Rgb visible =
+            visible_fraction(world, position, ng, s.direct.direction, s.direct.distance,
+                             hash_ids(settings.seed, Stage::opacity, i, static_cast<std::uint64_t>(k)));
+        sum += f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf));
+      }
+    }
+    const float u_lobe = rng.next_float();
+    const auto b = scatter::sample(closure, wo, u_lobe, rng.next_2d(), Lobes::smooth);
+    if (!b || is_black(b->weight)) continue;
+    const Met met =
+        emission_along(world, lights, world::World::offset_origin(position, ng, b->wi), b->wi, rng);
+    if (!is_black(met.radiance)) sum += b->weight * met.radiance * (b->pdf / (b->pdf + met.light_pdf));
+  }
+  return sum * inv_n;
+}
+
+}  // namespace
+
+bool is_traced(const transport::Receivers& receivers, std::size_t i, float below) {
+  if (receivers.closure[i] == transport::Receivers::kLambertian) return below > 1;
+  return receivers.closure_at(i).roughness() < below;
+}
+
+std::vector<Rgb> trace_direct(const world::World& world, const transport::Receivers& receivers,
+                              const TracedDirectSettings& settings, const Sinks& sinks) {
+  const LightSampler lights(world);
+  std::vector<Rgb> radiance(receivers.size());
+  std::atomic<std::size_t> done{0};
+  constexpr std::size_t kGrain = 1024;
+  parallel_for(receivers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    if (sinks.cancelled()) return;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (settings.max_depth >= 0 && receivers.depth[i] + 1 > settings.max_depth) continue;
+      if (is_traced(receivers, i, settings.below))
+        radiance[i] = direct_at(world, lights, receivers, i, settings);
+    }
+    sinks.report("traced direct",
+                 static_cast<double>(done += end - begin) / static_cast<double>(receivers.size()));
+  });
+  return radiance;
+}
+
+}  // namespace lumirank::rendering

@@ -1,0 +1,31 @@
+// Direct light at glossy receivers by multiple importance sampling: point samples of a lamp seen in a narrow
+// lobe are spots, so these receivers take their direct light from traced samples instead of the matrix's
+// direct columns.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/sinks.h"
+#include "transport/receivers.h"
+#include "world/world.h"
+
+namespace lumirank::rendering {
+
+struct TracedDirectSettings {
+  std::uint64_t seed = 1;
+  float below = 0.3f;  // receivers whose closure's roughness is below this are traced; > 1: all
+  int samples = 16;    // light samples and as many BSDF samples per receiver
+  int max_depth = -1;
+};
+
+// Radiance towards the eye, one per receiver; zero for receivers that are not traced.
+std::vector<Rgb> trace_direct(const world::World& world, const transport::Receivers& receivers,
+                              const TracedDirectSettings& settings, const Sinks& sinks = {});
+
+// Whether a receiver is traced: the same question as the matrix asks
+// (SceneMatrixSettings::traced_direct_below).
+bool is_traced(const transport::Receivers& receivers, std::size_t i, float below);
+
+}  // namespace lumirank::rendering
