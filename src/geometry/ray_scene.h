@@ -1,4 +1,4 @@
-// Ray queries over meshes and instances. The one file behind it (ray_scene.cpp) wraps Embree 3 or 4.
+// Ray queries over meshes and instances, by Embree 3 or 4 (embree.h knows which).
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Hit {
   std::uint32_t instance = 0;  // index into the instances of the scene
   std::uint32_t mesh = 0;
   std::uint32_t triangle = 0;
-  Vec2f barycentric;           // weights of the second and third corner
+  Vec2f barycentric;  // weights of the second and third corner
 };
 
 // What a shadow ray does at a mesh.
@@ -44,46 +44,59 @@ struct Placement {
   std::uint32_t material = 0, emitter = 0xffffffffu;  // carried for the owner; geometry does not read them
 };
 
-// 16 shadow segments from `origin` towards `origin + direction`, open at both ends (t in (epsilon, 1 - epsilon)). Structure of arrays.
+// A shadow segment is open at both ends by this part of its direction's length. Callers still start it off
+// the surface (along the geometric normal): this only keeps rounding at the far end from counting the light's
+// own surface.
+inline constexpr float kShadowEpsilon = 1e-4f;
+
+// 16 shadow segments from o towards o + t_far·d, open at both ends: t in (ε, (1 - ε)·t_far), ε =
+// kShadowEpsilon. For a segment to a light, d is the whole way and t_far is 1. Towards a direction, t_far is
+// huge or infinite, and d should have the length over which ε makes sense (unit length, or a part of the
+// scene's size). Structure of arrays.
 struct alignas(64) ShadowPacket {
   float ox[16], oy[16], oz[16], dx[16], dy[16], dz[16], t_far[16];
-  std::uint64_t key[16];   // decides cut-outs; the same for the same (receiver, light)
-  int valid[16];           // -1: trace; 0: leave out
+  std::uint64_t key[16];  // decides cut-outs; the same for the same (receiver, light)
+  int valid[16];          // -1: trace; 0: leave out
 };
 
 class RayScene {
  public:
-  // For a segment passing `hit` with direction w: the chance that a cut-out blocks, or (smooth) the transmittance.
+  // For a segment passing `hit` with direction w (as in the query: any length): the chance that a cut-out
+  // blocks, or (smooth) the transmittance. Called from any thread, through Embree: they must not throw.
   struct PassageCallbacks {
     std::function<float(const Hit&)> opacity;
     std::function<Rgb(const Hit&, Vec3f w)> transmittance;
   };
 
-  // Throws InputError when there is no triangle at all.
+  // Meshes placed once, or often but small, are traced in world space; the others as instances. Throws
+  // InputError when there is no triangle at all or a transform is not affine.
   RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements, PassageCallbacks callbacks);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
 
   const std::vector<TriangleMesh>& meshes() const;
   const std::vector<Placement>& placements() const;  // Hit::instance indexes it
   Bounds3f bounds() const;
   bool has_smooth() const;  // some placement attenuates
 
+  // The closest hit with t in [t_min, t_max], whatever the placement's blocking.
   std::optional<Hit> intersect(const Ray& ray) const;
-  // True if something blocks; cut-outs are decided by `key`.
+  // True if something blocks in [t_min, t_max] (no ε is added); cut-outs are decided by `key`.
   bool occluded(const Ray& ray, std::uint64_t key) const;
   // Product of the smooth placements' transmittances along the ray (1 if none); ignores everything else.
   Rgb transmittance(const Ray& ray) const;
 
-  // Bit k of the result: segment k is unblocked. Coherent packets, the widest form that measures fastest.
+  // Bit k of the result: segment k is traced (valid) and unblocked. Neighbouring segments should be alike.
   std::uint16_t visible16(const ShadowPacket& packet) const;
   // Transmittance of the smooth placements for 16 segments; only worth calling if has_smooth().
   void transmittance16(const ShadowPacket& packet, Rgb out[16]) const;
 
   std::size_t memory_bytes() const;  // of the acceleration structure
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,0 +1,156 @@
+// Building the acceleration structures.
+#include <map>
+#include <utility>
+
+#include "base/error.h"
+#include "geometry/ray_scene_impl.h"
+
+namespace lumirank::geometry {
+namespace {
+
+// Copies of one mesh are flattened into the top scene up to this many triangles in all: overlapping instances
+// cost more time than flat triangles, which cost memory.
+constexpr std::size_t kFlattenLimit = std::size_t{1} << 18;
+
+void on_error(void* user, RTCError, const char* message) {
+  auto& first = *static_cast<std::string*>(user);
+  if (first.empty()) first = message ? message : "unknown error";
+}
+
+bool on_memory(void* user, ssize_t bytes, bool) {
+  static_cast<std::atomic<long long>*>(user)->fetch_add(bytes, std::memory_order_relaxed);
+  return true;
+}
+
+void validate(const TriangleMesh& mesh, std::size_t k) {
+  const std::string name = "mesh " + std::to_string(k);
+  const std::size_t n = mesh.positions.size();
+  if (mesh.indices.size() % 3 != 0)
+    throw InternalError(name + ": the number of indices is not a multiple of 3");
+  for (const std::uint32_t i : mesh.indices)
+    if (i >= n)
+      throw InternalError(name + ": index " + std::to_string(i) + " of " + std::to_string(n) + " vertices");
+  for (const std::size_t size : {mesh.normals.size(), mesh.uvs.size(), mesh.colors.size()})
+    if (size != 0 && size != n) throw InternalError(name + ": a vertex attribute has the wrong length");
+}
+
+bool is_affine(const Transform& t) {
+  return t.m[12] == 0 && t.m[13] == 0 && t.m[14] == 0 && t.m[15] == 1 && t.is_finite();
+}
+
+}  // namespace
+
+void RayScene::Impl::open_device() {
+  device.reset(rtcNewDevice(nullptr));
+  if (!device)
+    throw InternalError("Embree does not start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+  rtcSetDeviceErrorFunction(device.get(), on_error, &first_error);
+  rtcSetDeviceMemoryMonitorFunction(device.get(), on_memory, &bytes);
+}
+
+embree::Scene RayScene::Impl::new_scene() {
+  embree::Scene scene(rtcNewScene(device.get()));
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+void RayScene::Impl::commit(RTCScene scene) {
+  rtcCommitScene(scene);
+  const RTCError code = rtcGetDeviceError(device.get());
+  if (code == RTC_ERROR_OUT_OF_MEMORY)
+    throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
+  if (code != RTC_ERROR_NONE || !first_error.empty()) throw InternalError("Embree: " + first_error);
+}
+
+// With `baked`, a copy of the vertices in world space; otherwise the mesh's own arrays.
+embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Transform* baked,
+                                              Blocking blocking_kind) {
+  embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  const std::size_t n = mesh.positions.size();
+  if (baked) {
+    auto* out = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                            RTC_FORMAT_FLOAT3, sizeof(Vec3f), n));
+    if (!out) throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
+    for (std::size_t k = 0; k < n; ++k) out[k] = baked->point(mesh.positions[k]);
+  } else {
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               mesh.positions.data(), 0, sizeof(Vec3f), n);
+  }
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
+                             0, 3 * sizeof(std::uint32_t), mesh.triangle_count());
+  if (blocking_kind == Blocking::cutout)
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_cutout);
+  else if (blocking_kind == Blocking::smooth)
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_smooth);
+  rtcCommitGeometry(geometry.get());
+  return geometry;
+}
+
+embree::Scene RayScene::Impl::build_part(std::uint32_t mesh, Blocking blocking_kind) {
+  embree::Scene part = new_scene();
+  rtcAttachGeometry(part.get(), triangles_of(meshes[mesh], nullptr, blocking_kind).get());
+  commit(part.get());
+  return part;
+}
+
+void RayScene::Impl::build() {
+  std::vector<std::size_t> copies(meshes.size());
+  std::size_t triangles = 0;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    validate(meshes[k], k);
+    // Embree reads 16 bytes at the last vertex.
+    meshes[k].positions.reserve(meshes[k].positions.size() + 1);
+  }
+  for (std::size_t k = 0; k < placements.size(); ++k) {
+    const Placement& p = placements[k];
+    if (p.mesh >= meshes.size()) throw InternalError("placement " + std::to_string(k) + ": no such mesh");
+    if (!is_affine(p.to_world))
+      throw InputError("the transform of placement " + std::to_string(k) + " is not affine or not finite",
+                       "use translations, rotations, scales and shears only");
+    ++copies[p.mesh];
+    triangles += meshes[p.mesh].triangle_count();
+  }
+  if (triangles == 0) throw InputError("the scene has no triangle", "add a shape");
+
+  open_device();
+  std::map<std::pair<std::uint32_t, Blocking>, RTCScene> part_of;
+  for (std::size_t k = 0; k < placements.size(); ++k) {
+    const Placement& p = placements[k];
+    const TriangleMesh& mesh = meshes[p.mesh];
+    if (mesh.indices.empty()) continue;
+    embree::Scene& top = p.blocking == Blocking::smooth ? smooth : blocking;
+    if (!top) top = new_scene();
+    const auto id = static_cast<unsigned>(k);
+    const std::optional<Transform> inverse = p.to_world.inverse();
+    // A transform that flattens the mesh cannot be undone on rays, so it must be applied to the vertices.
+    if (p.to_world.is_identity() || !inverse || copies[p.mesh] == 1 ||
+        copies[p.mesh] * mesh.triangle_count() <= kFlattenLimit) {
+      const bool moved = !p.to_world.is_identity();
+      rtcAttachGeometryByID(top.get(), triangles_of(mesh, moved ? &p.to_world : nullptr, p.blocking).get(),
+                            id);
+      continue;
+    }
+    RTCScene& part = part_of[{p.mesh, p.blocking}];
+    if (!part) {
+      parts.push_back(build_part(p.mesh, p.blocking));
+      part = parts.back().get();
+    }
+    embree::Geometry instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(instance.get(), part);
+    float rows[12];
+    for (int i = 0; i < 12; ++i) rows[i] = static_cast<float>(p.to_world.m[i]);
+    rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows);
+    rtcCommitGeometry(instance.get());
+    rtcAttachGeometryByID(top.get(), instance.get(), id);
+  }
+  if (!blocking) blocking = new_scene();
+  for (RTCScene scene : {blocking.get(), smooth.get()}) {
+    if (!scene) continue;
+    commit(scene);
+    RTCBounds box;
+    rtcGetSceneBounds(scene, &box);
+    bounds.extend(Bounds3f{{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}});
+  }
+}
+
+}  // namespace lumirank::geometry

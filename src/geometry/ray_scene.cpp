@@ -1,0 +1,139 @@
+#include "geometry/ray_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "geometry/ray_scene_impl.h"
+
+namespace lumirank::geometry {
+namespace {
+
+RTCRay to_embree(const Ray& ray) {
+  RTCRay r;
+  r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
+  r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
+  r.tnear = ray.t_min, r.tfar = ray.t_max;
+  r.time = 0, r.mask = 0xffffffffu, r.id = 0, r.flags = 0;
+  return r;
+}
+
+Ray segment(const ShadowPacket& p, int k) {
+  return {{p.ox[k], p.oy[k], p.oz[k]},
+          {p.dx[k], p.dy[k], p.dz[k]},
+          kShadowEpsilon,
+          p.t_far[k] * (1 - kShadowEpsilon)};
+}
+
+QueryContext context_for(const RayScene::Impl& scene) {
+  QueryContext context;
+  embree::initialise(context.embree);
+  context.callbacks = &scene.callbacks;
+  context.scene = &scene;
+  return context;
+}
+
+// Shortens `best` to the closest hit in `scene` before it.
+void closest(RTCScene scene, RTCRayHit& best) {
+  embree::Context context;
+  embree::initialise(context);
+  embree::intersect1(scene, context, best);
+}
+
+}  // namespace
+
+RayScene::RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements,
+                   PassageCallbacks callbacks)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->meshes = std::move(meshes);
+  impl_->placements = std::move(placements);
+  impl_->callbacks = std::move(callbacks);
+  impl_->build();
+}
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+const std::vector<TriangleMesh>& RayScene::meshes() const { return impl_->meshes; }
+const std::vector<Placement>& RayScene::placements() const { return impl_->placements; }
+Bounds3f RayScene::bounds() const { return impl_->bounds; }
+bool RayScene::has_smooth() const { return impl_->smooth != nullptr; }
+std::size_t RayScene::memory_bytes() const { return static_cast<std::size_t>(impl_->bytes.load()); }
+
+std::optional<Hit> RayScene::intersect(const Ray& ray) const {
+  RTCRayHit query;
+  query.ray = to_embree(ray);
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  closest(impl_->blocking.get(), query);
+  if (impl_->smooth) closest(impl_->smooth.get(), query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  Hit hit;
+  hit.t = query.ray.tfar;
+  hit.instance = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
+  hit.mesh = impl_->placements[hit.instance].mesh;
+  hit.triangle = query.hit.primID;
+  hit.barycentric = {query.hit.u, query.hit.v};
+  return hit;
+}
+
+bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
+  QueryContext context = context_for(*impl_);
+  context.keys = &key;
+  RTCRay query = to_embree(ray);
+  embree::occluded1(impl_->blocking.get(), context.embree, query);
+  return query.tfar < 0;
+}
+
+std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
+  QueryContext context = context_for(*impl_);
+  context.keys = packet.key;
+  RTCRay16 rays;
+  std::memcpy(rays.org_x, packet.ox, sizeof packet.ox);
+  std::memcpy(rays.org_y, packet.oy, sizeof packet.oy);
+  std::memcpy(rays.org_z, packet.oz, sizeof packet.oz);
+  std::memcpy(rays.dir_x, packet.dx, sizeof packet.dx);
+  std::memcpy(rays.dir_y, packet.dy, sizeof packet.dy);
+  std::memcpy(rays.dir_z, packet.dz, sizeof packet.dz);
+  for (unsigned k = 0; k < 16; ++k) {
+    rays.tnear[k] = kShadowEpsilon;
+    rays.tfar[k] = packet.t_far[k] * (1 - kShadowEpsilon);
+    rays.time[k] = 0;
+    rays.mask[k] = 0xffffffffu;
+    rays.id[k] = k;
+    rays.flags[k] = 0;
+  }
+  embree::occluded16_coherent(packet.valid, impl_->blocking.get(), context.embree, rays);
+  unsigned visible = 0;
+  for (unsigned k = 0; k < 16; ++k)
+    visible |= static_cast<unsigned>(packet.valid[k] != 0 && rays.tfar[k] >= 0) << k;
+  return static_cast<std::uint16_t>(visible);
+}
+
+Rgb RayScene::transmittance(const Ray& ray) const {
+  Rgb product(1);
+  if (!impl_->smooth) return product;
+  thread_local std::vector<Hit> crossed;
+  crossed.clear();
+  QueryContext context = context_for(*impl_);
+  context.crossed = &crossed;
+  RTCRay query = to_embree(ray);
+  embree::occluded1(impl_->smooth.get(), context.embree, query);
+  // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.
+  std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.instance, a.t, a.triangle) < std::tie(b.instance, b.t, b.triangle);
+  });
+  const Hit* last = nullptr;
+  for (const Hit& hit : crossed) {
+    // A ray through the edge between two triangles crosses the surface once.
+    const bool again = last && last->instance == hit.instance && hit.t - last->t <= 1e-6f * hit.t;
+    if (!again) product *= impl_->callbacks.transmittance(hit, ray.direction);
+    last = &hit;
+  }
+  return product;
+}
+
+void RayScene::transmittance16(const ShadowPacket& packet, Rgb out[16]) const {
+  for (int k = 0; k < 16; ++k) out[k] = packet.valid[k] ? transmittance(segment(packet, k)) : Rgb(1);
+}
+
+}  // namespace lumirank::geometry

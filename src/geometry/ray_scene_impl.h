@@ -1,0 +1,52 @@
+// What stands behind RayScene: two Embree scenes over the same meshes, one of what can block and one of what
+// only attenuates, so that shadow rays never visit glass and no build option of Embree (ray masks) is needed.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "geometry/embree.h"
+#include "geometry/ray_scene.h"
+
+namespace lumirank::geometry {
+
+struct RayScene::Impl {
+  std::vector<TriangleMesh> meshes;
+  std::vector<Placement> placements;
+  PassageCallbacks callbacks;
+
+  std::atomic<long long> bytes{0};
+  std::string first_error;  // of Embree, if any
+  // Declared before the scenes, so released after them.
+  embree::Device device;
+  std::vector<embree::Scene> parts;  // scenes of the meshes that are instanced
+  embree::Scene blocking, smooth;    // smooth is null if no placement attenuates
+  Bounds3f bounds;
+
+  void build();
+
+ private:
+  void open_device();
+  embree::Scene new_scene();
+  void commit(RTCScene scene);
+  embree::Geometry triangles_of(const TriangleMesh& mesh, const Transform* baked, Blocking blocking_kind);
+  embree::Scene build_part(std::uint32_t mesh, Blocking blocking_kind);
+};
+
+// What a filter needs to know about the query that called it. Embree's context comes first: it is all that
+// Embree hands to the filter.
+struct QueryContext {
+  embree::Context embree;
+  const RayScene::PassageCallbacks* callbacks = nullptr;
+  const RayScene::Impl* scene = nullptr;
+  const std::uint64_t* keys = nullptr;  // indexed by the ray's id
+  std::vector<Hit>* crossed = nullptr;  // smooth hits are noted here
+};
+
+// Lets a hit on a cut-out count with the probability of its opacity.
+void filter_cutout(const RTCFilterFunctionNArguments* arguments);
+// Notes a hit on a smooth surface and lets the ray go on.
+void filter_smooth(const RTCFilterFunctionNArguments* arguments);
+
+}  // namespace lumirank::geometry
