@@ -11,16 +11,22 @@
 namespace lumirank::film {
 
 enum class FilterKind { box, tent, gaussian, mitchell, catmullrom, lanczos };
+// The profiles and defaults of Mitsuba. The cubic filters do not stretch with the radius, they are only cut
+// by it.
 struct Filter {
   FilterKind kind = FilterKind::box;
   float radius = 0.5f;
   float stddev = 0.5f, b = 1.0f / 3, c = 1.0f / 3;
   int lobes = 3;
-  float eval(float x) const;  // 1-D profile; 0 beyond the radius
+  float eval(float x) const;                // 1-D profile of (sample - pixel centre); 0 beyond the radius
+  static Filter standard(FilterKind kind);  // with the radius that suits the kind
 };
 
-// Image of samples at film positions (pixels; (0,0) upper left of a width × height window): every pixel is the weighted mean of the
-// samples under the filter. Values are divided by the sum of weights. The order of sums is fixed.
+// Image of samples at film positions (pixels; (0,0) upper left of a width × height window): every pixel is
+// the weighted mean of the samples under the filter. Values are divided by the sum of weights; where negative
+// lobes nearly cancel that sum, the weights' magnitudes are taken instead. A pixel that no sample reaches is
+// black. The order of sums is fixed. Samples outside the window count as far as the filter reaches. Throws
+// InternalError if the spans differ in length or a position is not finite.
 Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
             std::span<const Rgb> values);
 

@@ -13,19 +13,20 @@ struct DisplayOptions {
   ToneMap tonemap = ToneMap::none;
 };
 
-// By extension: .exr (all layers, 32-bit float), .pfm (colour only), .png (8-bit sRGB after exposure and tone map).
-// Throws InputError for an unknown extension or an unwritable path.
+// By extension: .exr (all layers, 32-bit float), .pfm (colour only), .png (8-bit sRGB after exposure and tone
+// map). Throws InputError for an unknown extension or an unwritable path.
 void write_image(const std::string& filename, const LayeredImage& image, const DisplayOptions& display = {});
 // Throws before any work is done if write_image could not write there.
 void check_writable(const std::string& filename);
 
-// .exr, .pfm, .hdr, and what else OpenImageIO reads. Float values as stored; 8-bit files are decoded from sRGB unless raw.
-// Throws InputError (missing, truncated, not an image, larger than max_pixels).
+// .exr, .pfm, .hdr, and what else OpenImageIO reads. Float values as stored; 8-bit files are decoded from
+// sRGB unless raw. Throws InputError (missing, truncated, not an image, larger than max_pixels).
 struct LoadedImage {
   Image color;
   std::vector<float> alpha;  // empty if the file has none
 };
-LoadedImage read_image(const std::string& filename, bool raw = false, std::size_t max_pixels = std::size_t{1} << 28);
+LoadedImage read_image(const std::string& filename, bool raw = false,
+                       std::size_t max_pixels = std::size_t{1} << 28);
 
 // 8-bit sRGB pixels of one image, row-major RGB.
 std::vector<unsigned char> to_display(const Image& image, const DisplayOptions& display);

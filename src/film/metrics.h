@@ -9,8 +9,8 @@ struct ErrorMetrics {
   double relative_l1 = 0;  // Σ|I-R| / ΣR
   double relative_l2 = 0;  // ‖I-R‖₂ / ‖R‖₂
   double rmse = 0;
-  double relmse = 0;       // mean of (I-R)²/(R² + 0.01²·mean(R)²)
-  double bias = 0;         // Σ(I-R) / ΣR
+  double relmse = 0;  // mean of (I-R)²/(R² + 0.01²·mean(R)²)
+  double bias = 0;    // Σ(I-R) / ΣR
 };
 
 // Throws InputError if sizes differ or either image has NaN or infinite pixels (the message says how many).
