@@ -1,0 +1,150 @@
+#include "transport/kernels/groups.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/parallel.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+namespace {
+
+// Big enough that the runs of a tile are long, small enough that a tile stays in a core's own cache.
+constexpr std::uint32_t kRowTile = 2048;
+constexpr std::uint32_t kColumnTile = 4096;
+constexpr float kNoLimit = 1e9f;
+
+bool transmits(const ClosurePool& pool, std::uint32_t closure) {
+  const auto lobes = pool.lobes(pool.recipe(closure));
+  return std::any_of(lobes.begin(), lobes.end(), [](const scatter::Lobe& lobe) {
+    return lobe.kind == scatter::LobeKind::microfacet_transmit;
+  });
+}
+
+float roughness(const Receivers& receivers, std::size_t i) {
+  if (receivers.closure[i] == Receivers::kLambertian) return 1;
+  return receivers.closure_at(i).roughness();
+}
+
+template <typename Group>
+Group empty_group() {
+  Group group;
+  float* all = reinterpret_cast<float*>(&group);
+  std::fill(all, all + sizeof(Group) / sizeof(float), 0.0f);
+  return group;
+}
+
+// A lambertian surface answers only where wo lies on the same side of both normals (scatter::eval).
+bool answers(Vec3f n, Vec3f ng, Vec3f wo) { return dot(n, wo) * dot(ng, wo) > 0; }
+
+}  // namespace
+
+RowStore make_rows(const Receivers& receivers, const SceneMatrixSettings& settings) {
+  RowStore store;
+  const std::size_t count = receivers.size();
+  std::vector<std::uint16_t> kinds(count);
+  bool some_transmit = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t closure = receivers.closure[i];
+    kinds[i] = closure == Receivers::kLambertian ? kRowLambertian : kRowScatter;
+    some_transmit = some_transmit || (kinds[i] == kRowScatter && transmits(receivers.closures, closure));
+  }
+  store.plan = TilePlan::build(kinds, kRowTile);
+  store.groups.assign(store.plan.groups(), empty_group<RowGroup>());
+  if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
+
+  parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t slot = store.plan.slot[i];
+      float* to = store.at(slot);
+      const Vec3f wo = receivers.wo[i];
+      const float side = dot(receivers.normal[i], wo) < 0 ? -1.0f : 1.0f;
+      const Vec3f n = receivers.normal[i] * side, ng = receivers.ng[i] * side;
+      const bool lambertian = kinds[i] == kRowLambertian;
+      const bool dark = lambertian && !answers(n, ng, wo);
+      write3(to, receivers.position[i]);
+      if (!dark) write3(to + 3 * 16, n), write3(to + 6 * 16, ng);
+      write3(to + 9 * 16, world::World::offset_origin(receivers.position[i], ng, n));
+      if (lambertian) {
+        const Rgb f = receivers.albedo[i] * kInvPi;
+        write3(to + 12 * 16, {f.r, f.g, f.b});
+      } else if (some_transmit) {
+        store.two_sided[slot] = transmits(receivers.closures, receivers.closure[i]);
+      }
+      const bool direct_elsewhere =
+          settings.traced_direct_below > 0 && roughness(receivers, i) < settings.traced_direct_below;
+      to[15 * 16] = direct_elsewhere ? 1.0f : 0.0f;
+      to[16 * 16] = settings.max_depth < 0 ? kNoLimit
+                                           : static_cast<float>(settings.max_depth) - 1.0f -
+                                                 static_cast<float>(receivers.depth[i]);
+    }
+  });
+  return store;
+}
+
+ColumnStore make_columns(const VirtualLights& lights) {
+  ColumnStore store;
+  const std::size_t count = lights.size();
+  std::vector<std::uint16_t> kinds(count);
+  bool some_transmit = false;
+  for (std::size_t j = 0; j < count; ++j) {
+    switch (lights.kind[j]) {
+      case LightKind::omni:
+        kinds[j] = kColumnOmni;
+        break;
+      case LightKind::oriented:
+        kinds[j] = kColumnFacing;
+        break;
+      case LightKind::directional:
+        kinds[j] = kColumnDirectional;
+        break;
+      case LightKind::spot:
+        kinds[j] = kColumnSpot;
+        break;
+      case LightKind::surface:
+        kinds[j] = lights.closure[j] == VirtualLights::kLambertian ? kColumnFacing : kColumnScatter;
+        some_transmit =
+            some_transmit || (kinds[j] == kColumnScatter && transmits(lights.closures, lights.closure[j]));
+        break;
+    }
+  }
+  store.plan = TilePlan::build(kinds, kColumnTile);
+  store.groups.assign(store.plan.groups(), empty_group<ColumnGroup>());
+  if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
+
+  parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      const std::uint32_t slot = store.plan.slot[j];
+      float* to = store.at(slot);
+      const LightKind kind = lights.kind[j];
+      const Vec3f p = lights.position[j];
+      Vec3f n = lights.normal[j], ng = kind == LightKind::surface ? lights.ng[j] : n;
+      Vec3f target = p;
+      Rgb power = lights.power[j];
+      float area = lights.area[j];
+      if (kind == LightKind::directional) {
+        target = -n;
+      } else if (kind == LightKind::oriented) {
+        target = world::World::offset_origin(p, n, n);
+      } else if (kind == LightKind::surface) {
+        const Vec3f wo = lights.incoming[j];
+        if (dot(n, wo) < 0) n = -n, ng = -ng;
+        target = world::World::offset_origin(p, ng, n);
+        if (lights.closure[j] == VirtualLights::kLambertian) {
+          if (!answers(n, ng, wo)) power = Rgb(0);
+          power *= lights.albedo[j] * kInvPi;
+          area *= max_component(lights.albedo[j]);
+        } else if (some_transmit) {
+          store.two_sided[slot] = transmits(lights.closures, lights.closure[j]);
+        }
+      }
+      write3(to, p), write3(to + 3 * 16, n), write3(to + 6 * 16, ng), write3(to + 9 * 16, target);
+      write3(to + 12 * 16, {power.r, power.g, power.b});
+      to[15 * 16] = area;
+      to[16 * 16] = static_cast<float>(lights.depth[j]);
+    }
+  });
+  return store;
+}
+
+}  // namespace lumirank::transport

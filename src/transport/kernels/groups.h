@@ -1,0 +1,88 @@
+// Receivers and lights as the kernels read them: groups of 16, structure of arrays within a group.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "transport/kernels/lanes.h"
+#include "transport/kernels/tile_plan.h"
+#include "transport/receivers.h"
+#include "transport/scene_matrix.h"
+#include "transport/virtual_lights.h"
+
+namespace lumirank::transport {
+
+struct RowGroup {
+  Lane3 p, n, ng;             // position; shading and geometric normal, both on the side of wo
+  Lane3 origin;               // where shadow rays start
+  Lane3 f;                    // lambertian receivers: albedo/π
+  Lane depth_min, depth_max;  // light depths that may shine here
+};
+
+struct ColumnGroup {
+  Lane3 p, n, ng;
+  Lane3 target;     // where shadow rays end; directional: the direction towards the light
+  Lane3 power;      // oriented, omni, spot, directional: as in VirtualLights; lambertian surface:
+                    // Φ·albedo/π; other surface lights: Φ
+  Lane clamp_area;  // a_j, times max(π·f_y) where f_y is constant
+  Lane depth;
+};
+
+// Classes of receivers.
+inline constexpr std::uint16_t kRowLambertian = 0, kRowScatter = 1;
+
+// Classes of lights.
+enum ColumnKind : std::uint16_t {
+  kColumnOmni,
+  kColumnFacing,
+  kColumnDirectional,
+  kColumnSpot,
+  kColumnScatter
+};
+
+template <typename Group>
+struct GroupStore {
+  static constexpr std::size_t kFields = sizeof(Group) / sizeof(Lane);
+
+  TilePlan plan;
+  std::vector<Group> groups;
+  std::vector<std::uint8_t>
+      two_sided;  // slot: transmits, so the ray's side depends on its direction; empty: none
+
+  // The first field of a slot; field k of the same slot is 16·k floats on.
+  const float* at(std::uint32_t slot) const {
+    return reinterpret_cast<const float*>(groups.data() + (slot >> 4)) + (slot & 15);
+  }
+  float* at(std::uint32_t slot) { return const_cast<float*>(static_cast<const GroupStore*>(this)->at(slot)); }
+
+  // 16 copies of one slot.
+  void splat(std::uint32_t slot, Group& out) const {
+    const float* from = at(slot);
+    float* to = reinterpret_cast<float*>(&out);
+    for (std::size_t k = 0; k < kFields; ++k) store(to + 16 * k, transport::splat(from[16 * k]));
+  }
+  // 16 slots from anywhere.
+  void gather(const std::uint32_t slots[16], Group& out) const {
+    float* to = reinterpret_cast<float*>(&out);
+    for (int lane = 0; lane < 16; ++lane) {
+      const float* from = at(slots[lane]);
+      for (std::size_t k = 0; k < kFields; ++k) to[16 * k + lane] = from[16 * k];
+    }
+  }
+  std::size_t memory_bytes() const {
+    return groups.size() * sizeof(Group) + two_sided.size() +
+           (plan.item.size() + plan.slot.size() + plan.first_run.size()) * 4 + plan.kind.size() * 2 +
+           plan.runs.size() * sizeof(TilePlan::Run);
+  }
+};
+
+using RowStore = GroupStore<RowGroup>;
+using ColumnStore = GroupStore<ColumnGroup>;
+
+RowStore make_rows(const Receivers& receivers, const SceneMatrixSettings& settings);
+ColumnStore make_columns(const VirtualLights& lights);
+
+inline Vec3f read3(const float* p) { return {p[0], p[16], p[32]}; }
+inline void write3(float* p, Vec3f v) { p[0] = v.x, p[16] = v.y, p[32] = v.z; }
+
+}  // namespace lumirank::transport

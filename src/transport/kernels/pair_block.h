@@ -1,0 +1,130 @@
+// E of many pairs at once, in tiles; the survivors' shadow rays are packed in the order of the pairs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/ray_scene.h"
+#include "matrix/lighting_matrix.h"
+#include "transport/kernels/groups.h"
+#include "transport/kernels/pair_kernel.h"
+#include "transport/kernels/scatter_group.h"
+
+namespace lumirank::transport {
+
+// What all blocks of one matrix share.
+struct PairContext {
+  const RowStore* rows;
+  const ColumnStore* columns;
+  ScatterSide row_scatter, column_scatter;
+  const VirtualLights* lights;
+  const geometry::RayScene* rays;
+  std::uint64_t seed;
+  float clamp;       // X; infinite: off
+  bool has_cutouts;  // rays need keys
+  bool has_smooth;   // rays need transmittances
+};
+
+// What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.
+struct Tally {
+  std::uint64_t evaluated = 0, culled = 0, rays = 0;
+  double value = 0, removed = 0;  // Σ over visible entries of r + g + b, after clamping and taken away by it
+  Tally& operator+=(const Tally& o) {
+    evaluated += o.evaluated, culled += o.culled, rays += o.rays;
+    value += o.value, removed += o.removed;
+    return *this;
+  }
+  friend Tally operator+(Tally a, const Tally& b) { return a += b; }
+};
+
+// The pairs of a block in one of three shapes. Places count from 0 within the block, 16 to a group.
+enum class BlockShape {
+  column,  // a tile of receivers × one light
+  row,     // one receiver × a tile of lights
+  list,    // listed slots on both sides
+};
+
+class PairBlock {
+ public:
+  explicit PairBlock(const PairContext& context) : context_(context) {}
+
+  // Each prepares a shape; evaluate() may then be called for one partner after another.
+  void set_row_tile(std::size_t tile);
+  void set_column_tile(std::size_t tile);
+  void evaluate_column(std::uint32_t column_slot);  // after set_row_tile
+  void evaluate_row(std::uint32_t row_slot);        // after set_column_tile
+  // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbour; `used`: a
+  // bit per lane that is not padding, by group.
+  void evaluate_list(std::span<const std::uint32_t> row_slots, std::span<const std::uint32_t> column_slots,
+                     std::span<const std::uint16_t> used);
+
+  // Shoots the survivors' rays: afterwards visible(group) tells which lanes are unblocked and not zero, and e
+  // is multiplied by the transmittance of smooth surfaces.
+  void trace();
+  // Takes all survivors as visible; e is multiplied by transmittances.
+  void skip_visibility();
+
+  std::size_t groups() const { return groups_; }
+  Lane3 e(std::size_t group) const { return {e_[3 * group], e_[3 * group + 1], e_[3 * group + 2]}; }
+  std::uint32_t alive(std::size_t group) const { return alive_[group]; }
+  std::uint32_t visible(std::size_t group) const { return visible_[group]; }
+  // Lanes whose value was clamped; their excess is unclamped/clamped - 1.
+  std::uint32_t clamped(std::size_t group) const { return clamped_[group]; }
+  Lane excess(std::size_t group) const { return excess_[group]; }
+  std::size_t survivors() const { return survivors_; }
+  std::uint32_t first_slot() const { return first_slot_; }
+  // Σ r + g + b of visible entries, and what clamping took away from them; in the order of places.
+  double visible_energy() const;
+  double removed_energy() const;
+
+  // Running sums of the receivers of a row tile, in registers' order: sums += scale · E · V, column by
+  // column.
+  void load_sums(std::span<const Rgb> sums);
+  double add_to_sums(Rgb scale);                 // returns the energy that clamping took away
+  double store_sums(std::span<Rgb> sums) const;  // returns Σ r + g + b of what was added since load_sums
+
+ private:
+  friend struct PairBlockKernels;
+  void resize(std::size_t places);
+  void keep(std::size_t group, const PairResult& result);
+  void collect_survivors();
+  std::uint32_t row_slot(std::uint32_t place) const;
+  std::uint32_t column_slot(std::uint32_t place) const;
+  bool to_infinity(std::uint32_t column_slot) const;
+  void fill(geometry::ShadowPacket& packet, const std::uint32_t* places, int count) const;
+  void attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count);
+
+  const PairContext& context_;
+  BlockShape shape_ = BlockShape::column;
+  std::size_t tile_ = 0, groups_ = 0, survivors_ = 0;
+  std::uint32_t first_slot_ = 0, fixed_slot_ = 0;
+  std::span<const std::uint32_t> row_list_, column_list_;
+  ScatterArena tile_arena_, partner_arena_;
+  std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
+  std::vector<const SpotShape*> tile_spots_;
+  std::vector<Lane> e_, excess_, sums_;
+  std::vector<std::uint16_t> alive_, visible_, clamped_;
+  std::vector<std::uint32_t> places_;
+  std::vector<std::uint16_t> packet_bits_;
+};
+
+// Finishes an evaluated block: rays where they are needed, and the cost. `pairs`: without padding.
+Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs);
+
+// Copies what was asked for to out(items[place]), leaving out the places of kNoItem.
+template <typename Out>
+void copy_out(const PairBlock& block, matrix::Part part, std::span<const std::uint32_t> items, Out&& out) {
+  for (std::size_t g = 0; g < block.groups(); ++g) {
+    const Lane3 e = block.e(g);
+    const std::uint32_t seen = block.visible(g);
+    for (int k = 0; k < kLanes; ++k) {
+      const std::uint32_t item = items[16 * g + static_cast<std::size_t>(k)];
+      if (item == kNoItem) continue;
+      const bool lit = seen >> k & 1;
+      out(item) = !lit ? Rgb(0) : part == matrix::Part::visibility ? Rgb(1) : Rgb(e.x[k], e.y[k], e.z[k]);
+    }
+  }
+}
+
+}  // namespace lumirank::transport
