@@ -9,8 +9,8 @@ namespace lumirank::emitters {
 
 namespace {
 
-// The spot's fall-off integrated over the sphere: 1 up to the beam angle b, then linear in angle down to 0 at the cutoff c,
-// so ∫ = 2π (1 - (sin c - sin b)/(c - b)).
+// The spot's fall-off integrated over the sphere: 1 up to the beam angle b, then linear in angle down to 0 at
+// the cutoff c, so ∫ = 2π (1 - (sin c - sin b)/(c - b)).
 double spot_solid_angle(const SpotEmitter& e) {
   const double b = e.beam, c = e.cutoff;
   if (c - b < 1e-6) return 2 * 3.14159265358979323846 * (1 - std::cos(c));

@@ -1,4 +1,5 @@
-// Emitters, prepared: what shines, in world space. Sampling returns values and densities; no random state inside.
+// Emitters, prepared: what shines, in world space. Sampling returns values and densities; no random state
+// inside.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@
 
 namespace lumirank::emitters {
 
-// One-sided diffuse emission from triangles in world space (radiance may be textured: one value per triangle then is its mean,
-// the exact value is looked up by the world).
+// One-sided diffuse emission from triangles in world space (radiance may be textured: one value per triangle
+// then is its mean, the exact value is looked up by the world).
 struct AreaEmitter {
   struct Triangle {
     Vec3f p0, e1, e2;  // corner and edges
@@ -43,21 +44,25 @@ struct SpotEmitter {
   Rgb intensity_towards(Vec3f direction) const;
 };
 struct DirectionalEmitter {
-  Vec3f direction;  // in which the light travels
-  Rgb irradiance;   // on a surface facing it
+  Vec3f direction;           // in which the light travels
+  Rgb irradiance;            // on a surface facing it
   float cos_half_angle = 1;  // < 1: a sun disc of that half angle, irradiance spread evenly over it
 };
 // Radiance from all directions: a constant or a latitude-longitude image (an environment map or a sky model).
 struct EnvironmentEmitter {
-  int width = 0, height = 0;      // 1×1: constant
-  std::vector<Rgb> radiance;      // row 0 at the local +y pole
-  Frame to_world;                 // s, t, n: the local x, y, z axes in the world
-  Distribution1D rows;            // by luminance × sinθ
+  int width = 0, height = 0;  // 1×1: constant
+  std::vector<Rgb> radiance;  // row 0 at the local +y pole
+  Frame to_world;             // s, t, n: the local x, y, z axes in the world
+  Distribution1D rows;        // by luminance × sinθ
   std::vector<Distribution1D> columns;
 
   Rgb eval(Vec3f direction) const;  // radiance that arrives from `direction` (unit, away from the scene)
-  struct Sample { Vec3f direction; Rgb radiance; float pdf; };
-  Sample sample(Vec2f u) const;     // pdf in solid angle
+  struct Sample {
+    Vec3f direction;
+    Rgb radiance;
+    float pdf;
+  };
+  Sample sample(Vec2f u) const;  // pdf in solid angle
   float pdf(Vec3f direction) const;
 };
 
@@ -70,31 +75,34 @@ struct Emitter {
 // Emitted power in watts, given the sphere that bounds the scene (infinitely far emitters fill its disc).
 Rgb power(const Emitter& emitter, float scene_radius);
 
-// Direct illumination of a point, for a path tracer. `distance` is infinite for directional and environment light;
-// delta: no BSDF sample can hit it.
+// Direct illumination of a point, for a path tracer. `distance` is infinite for directional and environment
+// light; delta: no BSDF sample can hit it.
 struct DirectSample {
-  Vec3f direction;   // unit, from the point to the light
+  Vec3f direction;  // unit, from the point to the light
   float distance = 0;
-  Rgb radiance;      // Le, or for delta emitters the irradiance-like value I/d² or E
-  float pdf = 0;     // solid angle; 1 for delta emitters
+  Rgb radiance;   // Le, or for delta emitters the irradiance-like value I/d² or E
+  float pdf = 0;  // solid angle; 1 for delta emitters
   bool delta = false;
-  Vec3f normal;      // at the light (area)
+  Vec3f normal;                // at the light (area)
   std::uint32_t triangle = 0;  // area: index into AreaEmitter::triangles
   Vec2f barycentric;
 };
 // pdf 0: nothing can arrive. u1 chooses the triangle.
 DirectSample sample_direct(const Emitter& emitter, Vec3f point, float u1, Vec2f u2);
 // Density of sample_direct for an area emitter's triangle seen from `point` along `direction` at `distance`.
-float pdf_direct_area(const AreaEmitter& emitter, const AreaEmitter::Triangle& triangle, Vec3f direction, float distance);
+float pdf_direct_area(const AreaEmitter& emitter, const AreaEmitter::Triangle& triangle, Vec3f direction,
+                      float distance);
 
-// A particle leaving an emitter: weight is flux over density (W per path when divided by the number of paths).
+// A particle leaving an emitter: weight is flux over density (W per path when divided by the number of
+// paths).
 struct Emission {
   Vec3f origin, direction;
   Rgb weight;
-  Vec3f normal;            // at the emitter (area)
+  Vec3f normal;  // at the emitter (area)
   std::uint32_t triangle = 0;
   Vec2f barycentric;
 };
-Emission sample_emission(const Emitter& emitter, const Bounds3f& scene, float u1, Vec2f u_position, Vec2f u_direction);
+Emission sample_emission(const Emitter& emitter, const Bounds3f& scene, float u1, Vec2f u_position,
+                         Vec2f u_direction);
 
 }  // namespace lumirank::emitters

@@ -1,0 +1,81 @@
+// Film coordinates grow to the right and down, while the camera's local +x points left and +y up (Mitsuba's
+// convention), so both are mirrored here: the left edge of the film looks towards +x.
+#include "world/camera.h"
+
+#include "base/error.h"
+#include "base/warp.h"
+
+namespace lumirank::world {
+
+namespace {
+constexpr double kPiD = 3.14159265358979323846;
+
+void check(const scenedesc::SensorDesc& s) {
+  const auto bad = [&](const std::string& message, const std::string& remedy) {
+    throw InputError(s.where, message, remedy);
+  };
+  const auto& film = s.film;
+  if (film.width < 1 || film.height < 1)
+    bad("the film is " + std::to_string(film.width) + " × " + std::to_string(film.height) + " pixels",
+        "width and height must be at least 1");
+  if (static_cast<long long>(film.width) * film.height > (1ll << 28))
+    bad("the film has more than 268 million pixels",
+        "render a smaller one, or parts of it with a crop window");
+  if (film.crop_width < 0 || film.crop_height < 0 || film.crop_x < 0 || film.crop_y < 0 ||
+      static_cast<long long>(film.crop_x) + film.crop_width > film.width ||
+      static_cast<long long>(film.crop_y) + film.crop_height > film.height)
+    bad("the crop window does not lie within the film", "give a window inside the film");
+  if (!s.to_world.is_finite() || !s.to_world.inverse())
+    bad("the camera's to_world is singular or not finite", "give an invertible transform");
+  if (s.kind != scenedesc::SensorKind::orthographic && !(s.fov_x > 0 && s.fov_x < 180))
+    bad("the field of view is not between 0 and 180 degrees", "give an angle in between");
+  if (s.kind == scenedesc::SensorKind::thinlens && !(s.aperture_radius >= 0))
+    bad("the aperture radius is negative", "give 0 or more");
+  if (s.kind == scenedesc::SensorKind::thinlens && !(s.focus_distance > 0))
+    bad("the focus distance is not positive", "give a positive distance");
+}
+}  // namespace
+
+Camera::Camera(const scenedesc::SensorDesc& sensor)
+    : sensor_(sensor), width_(sensor.film.width), height_(sensor.film.height) {
+  check(sensor);
+  const double aspect = static_cast<double>(width_) / height_;
+  tan_x_ =
+      sensor.kind == scenedesc::SensorKind::orthographic ? 1.0 : std::tan(0.5 * sensor.fov_x * kPiD / 180.0);
+  tan_y_ = tan_x_ / aspect;
+}
+
+geometry::Ray Camera::ray(Vec2f film, Vec2f lens) const {
+  // From -1 at the left and lower edges to +1 at the right and upper ones. The offset is added to the film
+  // position, as in Mitsuba 3: a positive offset moves what lies on the axis to the left and up.
+  const double right = 2.0 * (film.x / static_cast<double>(width_) + sensor_.principal_point_offset.x) - 1.0;
+  const double up = 1.0 - 2.0 * (film.y / static_cast<double>(height_) + sensor_.principal_point_offset.y);
+  const double x = -right * tan_x_, y = up * tan_y_;
+  geometry::Ray ray;
+  if (sensor_.kind == scenedesc::SensorKind::orthographic) {
+    ray.origin = sensor_.to_world.point({static_cast<float>(x), static_cast<float>(y), 0});
+    ray.direction = normalize(sensor_.to_world.vector({0, 0, 1}));
+    // The clipping planes are measured along the local axis; a scaled transform stretches them.
+    const float stretch = length(sensor_.to_world.vector({0, 0, 1}));
+    ray.origin += ray.direction * (sensor_.near_clip * stretch);
+    ray.t_max = (sensor_.far_clip - sensor_.near_clip) * stretch;
+    return ray;
+  }
+  Vec3f from{0, 0, 0};
+  Vec3f towards{static_cast<float>(x), static_cast<float>(y), 1};  // on the plane z = 1
+  if (sensor_.kind == scenedesc::SensorKind::thinlens && sensor_.aperture_radius > 0) {
+    const Vec2f disc = warp_disk(lens) * sensor_.aperture_radius;
+    from = {disc.x, disc.y, 0};
+    towards = towards * sensor_.focus_distance - from;
+    towards = towards / towards.z;
+  }
+  ray.origin = sensor_.to_world.point(from);
+  const Vec3f direction = sensor_.to_world.vector(towards);
+  const float stretch = length(direction);  // of one unit along the local axis
+  ray.direction = direction / stretch;
+  ray.t_min = sensor_.near_clip * stretch;
+  ray.t_max = sensor_.far_clip * stretch;
+  return ray;
+}
+
+}  // namespace lumirank::world

@@ -1,0 +1,137 @@
+#include "world/environment_builder.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "emitters/daylight.h"
+#include "emitters/environment.h"
+#include "film/image_io.h"
+
+namespace lumirank::world {
+
+namespace sd = scenedesc;
+namespace em = emitters;
+
+namespace {
+
+// Rotation and mirroring of a transform; a uniform scale means nothing at infinity, anything else is refused.
+Frame orientation(const Transform& to_world, const SourceLocation& where) {
+  const auto refuse = [&](const char* what) {
+    throw InputError(where, std::string("the environment's to_world ") + what,
+                     "use rotations and mirrorings only");
+  };
+  if (!to_world.is_finite()) refuse("is not finite");
+  Frame f{to_world.vector({1, 0, 0}), to_world.vector({0, 1, 0}), to_world.vector({0, 0, 1})};
+  const float size = length(f.s);
+  if (!(size > 0)) refuse("is singular");
+  for (Vec3f* axis : {&f.s, &f.t, &f.n}) {
+    if (std::abs(length(*axis) / size - 1) > 1e-3f) refuse("scales the axes differently");
+    *axis = normalize(*axis);
+  }
+  if (std::abs(dot(f.s, f.t)) + std::abs(dot(f.t, f.n)) + std::abs(dot(f.n, f.s)) > 1e-3f) refuse("shears");
+  return f;
+}
+
+}  // namespace
+
+void EnvironmentBuilder::add(em::EnvironmentEmitter part, const sd::EmitterDesc& from) {
+  if (!first_) first_ = &from;
+  parts_.push_back(std::move(part));
+}
+
+void EnvironmentBuilder::add_constant(Rgb radiance, const sd::EmitterDesc& from) {
+  add(em::make_environment(1, 1, {radiance}, Frame{}), from);
+}
+
+void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::EmitterDesc& from) {
+  if (!std::isfinite(map.scale) || map.scale < 0)
+    throw InputError(from.where, "the environment map's scale is negative or not finite", "give 0 or more");
+  const Frame frame = orientation(map.to_world, from.where);
+  film::Image image;
+  try {
+    image = film::read_image(map.filename).color;
+  } catch (const InputError& e) {
+    throw InputError(from.where, e.what());
+  }
+  std::size_t mended = 0;
+  for (Rgb& c : image.pixels)
+    for (int k = 0; k < 3; ++k) {
+      c[k] *= map.scale;
+      if (!(std::isfinite(c[k]) && c[k] >= 0)) c[k] = 0, ++mended;
+    }
+  if (mended > 0)
+    notes_.warn(from.where,
+                std::to_string(mended) + " values of " + map.filename + " are negative or not finite",
+                "0 in their place");
+  add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
+}
+
+std::optional<em::DirectionalEmitter> EnvironmentBuilder::add_sun_sky(const sd::SunSkyDesc& d,
+                                                                      const sd::EmitterDesc& from) {
+  const auto bad = [&](const char* message, const char* remedy) {
+    throw InputError(from.where, message, remedy);
+  };
+  if (!(d.turbidity >= 1 && d.turbidity <= em::PreethamSky::kGreatestTurbidity))
+    bad("the turbidity is not between 1 and 10", "give a number in between");
+  if (!(d.sun_scale >= 0 && d.sky_scale >= 0 && std::isfinite(d.sun_scale) && std::isfinite(d.sky_scale)))
+    bad("a scale of the sun or the sky is negative or not finite", "give 0 or more");
+  if (!(d.sun_radius_scale >= 0 && d.sun_radius_scale <= 100))
+    bad("the sun's radius is scaled by less than 0 or more than 100", "give a number in between");
+  const float len = length(d.sun_direction);
+  if (!(len > 0) || !std::isfinite(len)) bad("the sun's direction is zero or not finite", "give a direction");
+  const Vec3f to_sun = d.sun_direction / len;
+  if (!(to_sun.y > 0))
+    bad("the sun is below the horizon", "give a direction above it (+y is up before to_world)");
+  const Frame frame = orientation(d.to_world, from.where);
+
+  if (d.sky) {
+    float turbidity = d.turbidity;
+    if (turbidity < em::PreethamSky::kLeastTurbidity) {
+      turbidity = em::PreethamSky::kLeastTurbidity;
+      notes_.warn(from.where, "a sky of turbidity below 1.7", "a sky of turbidity 1.7");
+    }
+    constexpr int kWidth = 512, kHeight = 256;
+    const em::PreethamSky sky(turbidity, to_sun);
+    std::vector<Rgb> radiance(static_cast<std::size_t>(kWidth) * kHeight);
+    parallel_for(kHeight, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y)
+        for (std::size_t x = 0; x < kWidth; ++x) {
+          const Vec2f at{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+          radiance[y * kWidth + x] = sky.radiance(em::map_direction(at, kWidth, kHeight)) * d.sky_scale;
+        }
+    });
+    add(em::make_environment(kWidth, kHeight, std::move(radiance), frame), from);
+  }
+
+  if (!d.sun || d.sun_scale == 0) return std::nullopt;
+  em::DirectionalEmitter sun;
+  sun.direction = -frame.to_world(to_sun);
+  // The power does not change with the radius: a larger disc is dimmer.
+  const float s = std::sin(em::kSunHalfAngle);
+  sun.irradiance =
+      em::sun_radiance(d.turbidity, std::acos(std::min(to_sun.y, 1.0f))) * (kPi * s * s * d.sun_scale);
+  sun.cos_half_angle = std::cos(em::kSunHalfAngle * d.sun_radius_scale);
+  return sun;
+}
+
+em::EnvironmentEmitter EnvironmentBuilder::build() {
+  if (parts_.size() == 1) return std::move(parts_.front());
+  std::size_t finest = 0;
+  for (std::size_t i = 1; i < parts_.size(); ++i)
+    if (parts_[i].radiance.size() > parts_[finest].radiance.size()) finest = i;
+  const em::EnvironmentEmitter& grid = parts_[finest];
+  std::vector<Rgb> sum(grid.radiance.size());
+  parallel_for(static_cast<std::size_t>(grid.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (int x = 0; x < grid.width; ++x) {
+        const Vec2f at{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+        const Vec3f direction = grid.to_world.to_world(em::map_direction(at, grid.width, grid.height));
+        for (const auto& part : parts_)
+          sum[y * static_cast<std::size_t>(grid.width) + x] += part.eval(direction);
+      }
+  });
+  return em::make_environment(grid.width, grid.height, std::move(sum), grid.to_world);
+}
+
+}  // namespace lumirank::world

@@ -1,0 +1,33 @@
+// What a World holds.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "world/world.h"
+
+namespace lumirank::world {
+
+struct World::Impl {
+  struct PlacementData {
+    bool identity = true;
+    bool flip = false;  // the outside is against the order of the corners in the mesh's own frame
+    Transform to_world, inverse;
+  };
+
+  std::optional<geometry::RayScene> rays;
+  scatter::MaterialSet materials;
+  std::vector<PlacementData> placements;
+  std::vector<emitters::Emitter> emitters;
+  std::vector<scatter::ColorInput> radiance;  // of area emitters; unused for the others
+  int environment = -1;
+  Bounds3f bounds;
+  WorldInfo info;
+
+  // Everything at a point of a triangle; normals towards the outside.
+  SurfaceHit surface(const geometry::Hit& hit) const;
+  scatter::SurfaceUv uv(const geometry::Hit& hit) const;
+  Rgb emitted_at(int emitter, std::uint32_t triangle, Vec2f barycentric) const;
+};
+
+}  // namespace lumirank::world

@@ -1,0 +1,133 @@
+#include "world/lights.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "emitters/area.h"
+#include "world/environment_builder.h"
+#include "world/surface.h"
+
+namespace lumirank::world {
+
+namespace sd = scenedesc;
+namespace em = emitters;
+
+void EmitterNames::name(em::Emitter& emitter, const std::string& wanted, const SourceLocation& where) {
+  if (++count_ > 0xffff)
+    throw InputError(where, "the scene has more than 65,535 emitters", "join small lamps into fewer meshes");
+  const std::string base = wanted.empty() ? std::string("emitter_").append(std::to_string(count_)) : wanted;
+  emitter.group = groups_.try_emplace(base, static_cast<std::uint16_t>(groups_.size())).first->second;
+  int& asked = asked_[base];
+  do {
+    ++asked;
+    emitter.name = asked == 1 ? base : base + std::string("_").append(std::to_string(asked));
+  } while (!taken_.insert(emitter.name).second);  // a made name may itself be an id of the scene
+}
+
+em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint32_t placement,
+                                  const scatter::ColorInput& radiance, const scatter::TextureSet& textures) {
+  constexpr int kParts = 4;  // a triangle's mean is taken over the centroids of kParts² equal parts
+  em::AreaEmitter emitter;
+  emitter.placement = placement;
+  emitter.triangles.resize(mesh.triangle_count());
+  parallel_for(emitter.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      auto& out = emitter.triangles[t];
+      const Vec3f p0 = mesh.positions[mesh.indices[3 * t]];
+      out.p0 = p0;
+      out.e1 = mesh.positions[mesh.indices[3 * t + 1]] - p0;
+      out.e2 = mesh.positions[mesh.indices[3 * t + 2]] - p0;
+      out.area = 0.5f * length(mesh.area_vector(t));
+      out.normal = outside_normal(mesh, t);
+      if (out.normal == Vec3f{}) out.area = 0;
+      out.mesh_triangle = static_cast<std::uint32_t>(t);
+      out.mean_radiance = radiance.value;
+      if (radiance.texture < 0) continue;
+      Rgb sum;
+      for (int i = 0; i < kParts; ++i)
+        for (int j = 0; i + j < kParts; ++j) {
+          const auto add = [&](float du, float dv) {
+            const Vec2f b{(static_cast<float>(i) + du) / kParts, (static_cast<float>(j) + dv) / kParts};
+            sum += textures.lookup(radiance.texture, interpolate_uv(mesh, static_cast<std::uint32_t>(t), b));
+          };
+          add(1.0f / 3, 1.0f / 3);
+          if (i + j < kParts - 1) add(2.0f / 3, 2.0f / 3);
+        }
+      out.mean_radiance = sum / static_cast<float>(kParts * kParts);
+    }
+  });
+  em::finish(emitter);
+  return emitter;
+}
+
+namespace {
+
+void check_color(Rgb c, const char* what, const SourceLocation& where) {
+  if (!is_finite(c)) throw InputError(where, std::string(what) + " is not finite", "give finite numbers");
+  if (c.r < 0 || c.g < 0 || c.b < 0)
+    throw InputError(where, std::string(what) + " has a negative component", "give numbers of 0 or more");
+}
+
+Vec3f checked_direction(Vec3f v, const SourceLocation& where) {
+  const float len = length(v);
+  if (!(len > 0) || !std::isfinite(len))
+    throw InputError(where, "a direction is zero or not finite", "give a direction that is neither");
+  return v / len;
+}
+
+em::SpotEmitter make_spot(const sd::SpotLightDesc& d, const SourceLocation& where) {
+  if (!d.to_world.is_finite()) throw InputError(where, "to_world is not finite", "give finite numbers");
+  if (!(d.cutoff_angle > 0 && d.cutoff_angle < 180))
+    throw InputError(where, "the cut-off angle is not between 0 and 180 degrees", "give an angle in between");
+  if (!(d.beam_width >= 0 && d.beam_width <= d.cutoff_angle))
+    throw InputError(where, "the beam is wider than the cut-off angle, or negative",
+                     "give a beam width between 0 and the cut-off angle");
+  em::SpotEmitter spot;
+  spot.position = d.to_world.point({0, 0, 0});
+  spot.frame = Frame::from_normal(checked_direction(d.to_world.vector({0, 0, 1}), where));
+  spot.intensity = d.intensity;
+  spot.cutoff = d.cutoff_angle * (kPi / 180), spot.beam = d.beam_width * (kPi / 180);
+  spot.cos_cutoff = std::cos(spot.cutoff), spot.cos_beam = std::cos(spot.beam);
+  return spot;
+}
+
+}  // namespace
+
+int add_lights(const sd::SceneDesc& desc, EmitterNames& names, Notes& notes, std::vector<em::Emitter>& out) {
+  EnvironmentBuilder environment(notes);
+  const auto push = [&](auto kind, const sd::EmitterDesc& from) {
+    em::Emitter emitter;
+    emitter.kind = std::move(kind);
+    names.name(emitter, from.id, from.where);
+    out.push_back(std::move(emitter));
+  };
+  for (const sd::EmitterDesc& e : desc.emitters) {
+    if (const auto* point = std::get_if<sd::PointLightDesc>(&e.kind)) {
+      check_color(point->intensity, "the intensity", e.where);
+      if (!is_finite(point->position)) throw InputError(e.where, "the position is not finite", "mend it");
+      push(em::PointEmitter{point->position, point->intensity}, e);
+    } else if (const auto* spot = std::get_if<sd::SpotLightDesc>(&e.kind)) {
+      check_color(spot->intensity, "the intensity", e.where);
+      push(make_spot(*spot, e.where), e);
+    } else if (const auto* sun = std::get_if<sd::DirectionalLightDesc>(&e.kind)) {
+      check_color(sun->irradiance, "the irradiance", e.where);
+      push(em::DirectionalEmitter{checked_direction(sun->direction, e.where), sun->irradiance, 1}, e);
+    } else if (const auto* constant = std::get_if<sd::ConstantEnvironmentDesc>(&e.kind)) {
+      check_color(constant->radiance, "the radiance", e.where);
+      environment.add_constant(constant->radiance, e);
+    } else if (const auto* map = std::get_if<sd::EnvironmentMapDesc>(&e.kind)) {
+      environment.add_map(*map, e);
+    } else if (const auto* day = std::get_if<sd::SunSkyDesc>(&e.kind)) {
+      if (auto disc = environment.add_sun_sky(*day, e)) push(*disc, e);
+    }
+  }
+  if (environment.empty()) return -1;
+  em::Emitter emitter;
+  emitter.kind = environment.build();
+  names.name(emitter, environment.first().id, environment.first().where);
+  out.push_back(std::move(emitter));
+  return static_cast<int>(out.size()) - 1;
+}
+
+}  // namespace lumirank::world

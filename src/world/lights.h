@@ -1,0 +1,43 @@
+// Descriptions of emitters → prepared emitters with unique names.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "emitters/emitter.h"
+#include "geometry/mesh.h"
+#include "scatter/material.h"
+#include "scatter/texture.h"
+#include "scenedesc/scene_desc.h"
+#include "world/notes.h"
+
+namespace lumirank::world {
+
+// Gives emitters unique names; those that ask for the same name share a group.
+class EmitterNames {
+ public:
+  void name(emitters::Emitter& emitter, const std::string& wanted, const SourceLocation& where);
+
+ private:
+  std::map<std::string, std::uint16_t> groups_;
+  std::map<std::string, int> asked_;  // how often a name was asked for
+  std::set<std::string> taken_;
+  std::size_t count_ = 0;
+};
+
+// The triangles of a mesh as a light. The outside of triangle t is outside_normal(mesh, t) (so placements
+// that shine are baked into world space); triangle t of the emitter is triangle t of the mesh, degenerate
+// ones included.
+emitters::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint32_t placement,
+                                        const scatter::ColorInput& radiance,
+                                        const scatter::TextureSet& textures);
+
+// Point, spot, directional light and everything infinitely far; environments are summed into one emitter,
+// which comes last. Returns its index, or -1 if there is none.
+int add_lights(const scenedesc::SceneDesc& desc, EmitterNames& names, Notes& notes,
+               std::vector<emitters::Emitter>& out);
+
+}  // namespace lumirank::world

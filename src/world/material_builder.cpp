@@ -1,0 +1,208 @@
+#include "world/material_builder.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace lumirank::world {
+
+namespace sd = scenedesc;
+namespace sc = scatter;
+
+namespace {
+
+constexpr int kNotBuilt = -1, kInProgress = -2;
+
+sc::NormalDistribution convert(sd::Distribution d) {
+  return d == sd::Distribution::ggx ? sc::NormalDistribution::ggx : sc::NormalDistribution::beckmann;
+}
+
+bool is_zero(const sd::FloatInput& f) { return f.texture == sd::kNone && f.value == 0; }
+
+float checked_eta(float eta, const SourceLocation& where) {
+  if (!(eta > 0) || !std::isfinite(eta))
+    throw InputError(where, "a relative index of refraction is not a positive number",
+                     "give positive interior and exterior indices");
+  return eta;
+}
+
+void check_index(Rgb value, const SourceLocation& where) {
+  if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0)
+    throw InputError(where, "a conductor's index of refraction is negative or not finite",
+                     "give numbers ≥ 0");
+}
+
+}  // namespace
+
+MaterialBuilder::MaterialBuilder(const sd::SceneDesc& desc, TextureBuilder& textures, Notes& notes)
+    : desc_(desc), textures_(textures), notes_(notes), index_(desc.bsdfs.size(), kNotBuilt) {}
+
+int MaterialBuilder::add(sc::Material material) {
+  materials_.push_back(std::move(material));
+  return static_cast<int>(materials_.size()) - 1;
+}
+
+int MaterialBuilder::use(int bsdf, const SourceLocation& user) {
+  if (bsdf == sd::kNone) {
+    if (default_ < 0) default_ = add(sc::DiffuseMaterial{sc::ColorInput{Rgb(0.5f), -1}});
+    return default_;
+  }
+  if (bsdf < 0 || static_cast<std::size_t>(bsdf) >= desc_.bsdfs.size())
+    throw InputError(user, "a BSDF is referred to that the scene does not have", "define it");
+  const auto slot = static_cast<std::size_t>(bsdf);
+  const auto& b = desc_.bsdfs[slot];
+  if (index_[slot] >= 0) return index_[slot];
+  if (index_[slot] == kInProgress)
+    throw InputError(b.where, "the BSDF '" + b.id + "' is, through others, nested in itself",
+                     "break the cycle");
+  index_[slot] = kInProgress;
+  int built = -1;
+  if (const auto* two = std::get_if<sd::TwoSidedDesc>(&b.kind)) built = instead_of_two_sided(*two, b.where);
+  if (built < 0) {
+    sc::Material material = convert(b);
+    built = add(std::move(material));
+  }
+  return index_[slot] = built;
+}
+
+bool MaterialBuilder::transmits(int material) const {
+  struct Ask {
+    const MaterialBuilder& all;
+    bool operator()(const sc::NullMaterial&) const { return true; }
+    bool operator()(const sc::DielectricMaterial&) const { return true; }
+    bool operator()(const sc::ThinDielectricMaterial&) const { return true; }
+    bool operator()(const sc::MaskMaterial&) const { return true; }
+    bool operator()(const sc::PrincipledMaterial& m) const {
+      return m.spec_trans.texture >= 0 || m.spec_trans.value > 0;
+    }
+    bool operator()(const sc::BumpMaterial& m) const { return all.transmits(m.nested); }
+    bool operator()(const sc::NormalMapMaterial& m) const { return all.transmits(m.nested); }
+    bool operator()(const sc::MixtureMaterial& m) const {
+      for (const auto& part : m.parts)
+        if (all.transmits(part.nested)) return true;
+      return false;
+    }
+    bool operator()(const sc::DiffuseMaterial&) const { return false; }
+    bool operator()(const sc::RoughDiffuseMaterial&) const { return false; }
+    bool operator()(const sc::ConductorMaterial&) const { return false; }
+    bool operator()(const sc::PlasticMaterial&) const { return false; }
+    bool operator()(const sc::PhongMaterial&) const { return false; }
+    bool operator()(const sc::WardMaterial&) const { return false; }
+    bool operator()(const sc::TwoSidedMaterial&) const { return false; }
+  };
+  return std::visit(Ask{*this}, materials_[static_cast<std::size_t>(material)]);
+}
+
+int MaterialBuilder::instead_of_two_sided(const sd::TwoSidedDesc& d, const SourceLocation& where) {
+  const int front = use(d.front, where);
+  const int back = d.back == d.front ? front : use(d.back, where);
+  if (!transmits(front) && !transmits(back)) return -1;
+  notes_.warn(where, "a twosided BSDF around one that transmits light",
+              front == back ? "the nested BSDF without twosided" : "the first nested BSDF without twosided");
+  return front;
+}
+
+sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
+  struct Convert {
+    MaterialBuilder& self;
+    const SourceLocation& where;
+
+    sc::ColorInput color(const sd::ColorInput& c) const { return self.textures_.color(c, where); }
+    sc::FloatInput number(const sd::FloatInput& f) const { return self.textures_.number(f, where); }
+    int nested(int bsdf) const {
+      if (bsdf == sd::kNone) throw InputError(where, "a BSDF lacks the one nested in it", "nest a BSDF");
+      return self.use(bsdf, where);
+    }
+    int texture(int t) const {
+      if (t == sd::kNone) throw InputError(where, "a BSDF lacks its texture", "nest a texture");
+      return self.textures_.use(t, where);
+    }
+
+    sc::Material operator()(const sd::NullBsdfDesc&) const { return sc::NullMaterial{}; }
+    sc::Material operator()(const sd::DiffuseDesc& d) const {
+      return sc::DiffuseMaterial{color(d.reflectance)};
+    }
+    sc::Material operator()(const sd::RoughDiffuseDesc& d) const {
+      return sc::RoughDiffuseMaterial{color(d.reflectance), number(d.alpha)};
+    }
+    sc::Material operator()(const sd::ConductorDesc& d) const {
+      check_index(d.eta, where);
+      check_index(d.k, where);
+      sc::ConductorMaterial m;
+      m.eta = d.eta, m.k = d.k;
+      m.specular_reflectance = color(d.specular_reflectance);
+      m.distribution = world::convert(d.distribution);
+      m.alpha_u = number(d.alpha_u), m.alpha_v = number(d.alpha_v);
+      m.smooth = is_zero(d.alpha_u) && is_zero(d.alpha_v);
+      return m;
+    }
+    sc::Material operator()(const sd::DielectricDesc& d) const {
+      sc::DielectricMaterial m;
+      m.eta = checked_eta(d.eta, where);
+      m.specular_reflectance = color(d.specular_reflectance);
+      m.specular_transmittance = color(d.specular_transmittance);
+      m.distribution = world::convert(d.distribution);
+      m.alpha_u = number(d.alpha_u), m.alpha_v = number(d.alpha_v);
+      m.smooth = is_zero(d.alpha_u) && is_zero(d.alpha_v);
+      return m;
+    }
+    sc::Material operator()(const sd::ThinDielectricDesc& d) const {
+      return sc::ThinDielectricMaterial{checked_eta(d.eta, where), color(d.specular_reflectance),
+                                        color(d.specular_transmittance)};
+    }
+    sc::Material operator()(const sd::PlasticDesc& d) const {
+      sc::PlasticMaterial m;
+      m.eta = checked_eta(d.eta, where);
+      m.diffuse_reflectance = color(d.diffuse_reflectance);
+      m.specular_reflectance = color(d.specular_reflectance);
+      m.nonlinear = d.nonlinear;
+      m.distribution = world::convert(d.distribution);
+      m.alpha = number(d.alpha);
+      m.smooth = is_zero(d.alpha);
+      return m;
+    }
+    sc::Material operator()(const sd::PhongDesc& d) const {
+      return sc::PhongMaterial{color(d.diffuse_reflectance), color(d.specular_reflectance),
+                               number(d.exponent)};
+    }
+    sc::Material operator()(const sd::WardDesc& d) const {
+      return sc::WardMaterial{static_cast<int>(d.variant), color(d.diffuse_reflectance),
+                              color(d.specular_reflectance), number(d.alpha_u), number(d.alpha_v)};
+    }
+    sc::Material operator()(const sd::PrincipledDesc& d) const {
+      sc::PrincipledMaterial m;
+      m.base_color = color(d.base_color);
+      m.roughness = number(d.roughness), m.anisotropic = number(d.anisotropic);
+      m.metallic = number(d.metallic), m.spec_trans = number(d.spec_trans);
+      m.spec_tint = number(d.spec_tint), m.sheen = number(d.sheen), m.sheen_tint = number(d.sheen_tint);
+      m.clearcoat = number(d.clearcoat), m.clearcoat_gloss = number(d.clearcoat_gloss);
+      m.flatness = number(d.flatness);
+      m.eta = checked_eta(d.eta, where);
+      return m;
+    }
+    sc::Material operator()(const sd::MaskDesc& d) const {
+      return sc::MaskMaterial{number(d.opacity), nested(d.nested)};
+    }
+    sc::Material operator()(const sd::TwoSidedDesc& d) const {
+      const int front = nested(d.front);
+      return sc::TwoSidedMaterial{front, nested(d.back)};
+    }
+    sc::Material operator()(const sd::BumpMapDesc& d) const {
+      if (!std::isfinite(d.scale))
+        throw InputError(where, "the bump map's scale is not finite", "give a number");
+      return sc::BumpMaterial{texture(d.texture), d.scale, nested(d.nested)};
+    }
+    sc::Material operator()(const sd::NormalMapDesc& d) const {
+      return sc::NormalMapMaterial{texture(d.texture), nested(d.nested)};
+    }
+    sc::Material operator()(const sd::MixtureDesc& d) const {
+      sc::MixtureMaterial m;
+      for (const auto& part : d.parts)
+        m.parts.push_back({number(part.weight), part.complement, nested(part.bsdf)});
+      return m;
+    }
+  };
+  return std::visit(Convert{*this, b.where}, b.kind);
+}
+
+}  // namespace lumirank::world

@@ -1,0 +1,124 @@
+#include "world/mesh_store.h"
+
+#include <cmath>
+#include <exception>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "geometry/tessellate.h"
+#include "scenedesc/readers.h"
+
+namespace lumirank::world {
+
+namespace sd = scenedesc;
+
+namespace {
+
+// All shining spheres together get about this many triangles: each of their triangles is kept in world space.
+constexpr double kShiningSphereTriangles = 1 << 20;
+
+geometry::TriangleMesh from_file(const sd::MeshFileDesc& file, std::vector<std::string>& notes) {
+  sd::MeshData data = sd::read_mesh(file);
+  notes = std::move(data.notes);
+  geometry::TriangleMesh mesh;
+  mesh.positions = std::move(data.positions);
+  mesh.normals = std::move(data.normals);
+  mesh.uvs = std::move(data.uvs);
+  mesh.colors = std::move(data.colors);
+  mesh.indices = std::move(data.indices);
+  for (Vec3f& n : mesh.normals) {
+    const float len = length(n);
+    n = len > 0 && std::isfinite(len) ? n / len : Vec3f{};
+  }
+  return mesh;
+}
+
+void check_numbers(const sd::ShapeDesc& shape, const std::vector<float>& numbers) {
+  for (float v : numbers)
+    if (!std::isfinite(v))
+      throw InputError(shape.where, "the shape has a number that is not finite", "mend it");
+}
+
+void check_radius(const sd::ShapeDesc& shape, float radius) {
+  if (!(radius > 0))
+    throw InputError(shape.where, "the shape's radius is not positive", "give a positive radius");
+}
+
+// A sphere from flat triangles has less area than the round one; the vertices are moved out until the areas
+// agree, so that the light of the emitter is right.
+void restore_area(geometry::TriangleMesh& mesh, Vec3f center, float radius) {
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) area += 0.5 * length(mesh.area_vector(t));
+  if (!(area > 0)) return;
+  const double want = 4 * 3.14159265358979323846 * radius * static_cast<double>(radius);
+  const float factor = static_cast<float>(std::sqrt(want / area));
+  for (Vec3f& p : mesh.positions) p = center + (p - center) * factor;
+}
+
+}  // namespace
+
+int MeshStore::use(const sd::ShapeDesc& shape) {
+  Key key{shape.kind.index(), {}, {}, false};
+  auto& [kind, name, numbers, shines] = key;
+  if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind)) {
+    name = file->filename;
+    numbers = {static_cast<float>(file->format), static_cast<float>(file->shape_index),
+               file->face_normals ? 1.0f : 0.0f, file->flip_tex_coords ? 1.0f : 0.0f,
+               file->max_smooth_angle.value_or(-1.0f)};
+  } else if (const auto* sphere = std::get_if<sd::SphereDesc>(&shape.kind)) {
+    numbers = {sphere->center.x, sphere->center.y, sphere->center.z, sphere->radius};
+    shines = shape.emitter.has_value();
+    check_radius(shape, sphere->radius);
+  } else if (const auto* tube = std::get_if<sd::CylinderDesc>(&shape.kind)) {
+    numbers = {tube->p0.x, tube->p0.y, tube->p0.z, tube->p1.x, tube->p1.y, tube->p1.z, tube->radius};
+    check_radius(shape, tube->radius);
+    if (tube->p0 == tube->p1)
+      throw InputError(shape.where, "the cylinder's ends coincide", "give two different points");
+  }
+  check_numbers(shape, numbers);
+  shining_spheres_ += shines ? 1 : 0;
+  const auto [it, fresh] = index_.try_emplace(key, static_cast<int>(sources_.size()));
+  if (fresh) sources_.push_back({&shape, shines, {}});
+  return it->second;
+}
+
+geometry::TriangleMesh MeshStore::make(Source& source) const {
+  const sd::ShapeDesc& shape = *source.shape;
+  if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind)) return from_file(*file, source.notes);
+  if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
+  if (std::holds_alternative<sd::CubeDesc>(shape.kind)) return geometry::make_cube();
+  if (std::holds_alternative<sd::DiskDesc>(shape.kind)) return geometry::make_disk();
+  if (const auto* tube = std::get_if<sd::CylinderDesc>(&shape.kind))
+    return geometry::make_cylinder(tube->p0, tube->p1, tube->radius);
+  if (const auto* sphere = std::get_if<sd::SphereDesc>(&shape.kind)) {
+    if (!source.shines) return geometry::make_sphere(sphere->center, sphere->radius);
+    // A sphere of r rings has about 4r² triangles.
+    const double each = kShiningSphereTriangles / static_cast<double>(shining_spheres_);
+    const int rings = std::clamp(static_cast<int>(std::sqrt(each / 4)), 8, 64);
+    geometry::TriangleMesh mesh = geometry::make_sphere(sphere->center, sphere->radius, rings);
+    restore_area(mesh, sphere->center, sphere->radius);
+    return mesh;
+  }
+  throw InternalError("MeshStore: a shape without a mesh of its own");
+}
+
+void MeshStore::load(Notes& notes) {
+  meshes_.resize(sources_.size());
+  std::vector<std::exception_ptr> failures(sources_.size());
+  parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) try {
+        meshes_[i] = make(sources_[i]);
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+  });
+  for (const auto& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  for (const auto& source : sources_)
+    for (const std::string& note : source.notes) {
+      const auto& file = std::get<sd::MeshFileDesc>(source.shape->kind);
+      notes.warn(source.shape->where, file.filename + ": " + note, "the mesh without them");
+    }
+}
+
+}  // namespace lumirank::world

@@ -1,0 +1,45 @@
+// Triangle meshes for shapes: every file is read once, however many shapes name it, and analytic shapes are
+// tessellated.
+#pragma once
+
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "scenedesc/scene_desc.h"
+#include "world/notes.h"
+
+namespace lumirank::world {
+
+class MeshStore {
+ public:
+  // Names the mesh of a shape that has one of its own (not a group or an instance). Equal meshes get equal
+  // numbers.
+  int use(const scenedesc::ShapeDesc& shape);
+  // Reads and tessellates everything named so far, in parallel; the first failure in order of use is thrown.
+  // Spheres that shine get fewer triangles the more of them there are, and their area is kept.
+  void load(Notes& notes);
+
+  std::size_t size() const { return sources_.size(); }
+  const geometry::TriangleMesh& mesh(int index) const { return meshes_[static_cast<std::size_t>(index)]; }
+  geometry::TriangleMesh take(int index) { return std::move(meshes_[static_cast<std::size_t>(index)]); }
+
+ private:
+  // Kind of shape, its file and options, its numbers, whether it shines: equal keys are the same mesh.
+  using Key = std::tuple<std::size_t, std::string, std::vector<float>, bool>;
+  struct Source {
+    const scenedesc::ShapeDesc* shape;
+    bool shines;
+    std::vector<std::string> notes;
+  };
+  geometry::TriangleMesh make(Source& source) const;
+
+  std::map<Key, int> index_;
+  std::vector<Source> sources_;
+  std::vector<geometry::TriangleMesh> meshes_;
+  std::size_t shining_spheres_ = 0;
+};
+
+}  // namespace lumirank::world

@@ -1,0 +1,38 @@
+// Shapes, groups and instances → placements of meshes in the world.
+#pragma once
+
+#include <vector>
+
+#include "base/transform.h"
+#include "geometry/ray_scene.h"
+#include "scenedesc/scene_desc.h"
+#include "world/mesh_store.h"
+#include "world/notes.h"
+
+namespace lumirank::world {
+
+// A shape at a place.
+struct Placed {
+  int source = 0;  // mesh of the store
+  Transform to_world;
+  bool flip_normals = false;
+  const scenedesc::ShapeDesc* shape = nullptr;
+  bool shines = false;  // its emitter counts
+};
+
+// One per shape and per member of an instance's group, in the order of the scene.
+std::vector<Placed> place_shapes(const scenedesc::SceneDesc& desc, MeshStore& store, Notes& notes);
+
+// What the ray scene is made of. Meshes that are placed once, are small or shine are moved into world space
+// for good: rays then need no change of coordinates and the tree over the whole scene is better; large meshes
+// placed several times are shared.
+struct Geometry {
+  std::vector<geometry::TriangleMesh> meshes;
+  std::vector<geometry::Placement> placements;  // as `placed`, without its materials and emitters
+  std::vector<Placed> placed;  // what is left of them: those without any area are warned about
+  std::vector<bool> flip;      // per placement: the outside is against the corners' order
+  std::size_t unique_triangles = 0, triangles = 0;
+};
+Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes);
+
+}  // namespace lumirank::world

@@ -1,0 +1,141 @@
+#include "world/texture_builder.h"
+
+#include <exception>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "film/image_io.h"
+
+namespace lumirank::world {
+
+namespace {
+
+constexpr int kNotBuilt = -1, kInProgress = -2;
+
+scatter::TexWrap convert(scenedesc::WrapMode mode) {
+  switch (mode) {
+    case scenedesc::WrapMode::mirror:
+      return scatter::TexWrap::mirror;
+    case scenedesc::WrapMode::clamp:
+      return scatter::TexWrap::clamp;
+    case scenedesc::WrapMode::repeat:
+      break;
+  }
+  return scatter::TexWrap::repeat;
+}
+
+void copy(const scenedesc::UvTransform& from, float to[6]) {
+  for (int i = 0; i < 6; ++i) to[i] = from.m[i];
+}
+
+void check_uv(const scenedesc::UvTransform& to_uv, const SourceLocation& where) {
+  for (float v : to_uv.m)
+    if (!std::isfinite(v))
+      throw InputError(where, "the texture's uv transform is not finite", "give finite numbers");
+}
+
+}  // namespace
+
+TextureBuilder::TextureBuilder(const scenedesc::SceneDesc& desc)
+    : desc_(desc), index_(desc.textures.size(), kNotBuilt) {}
+
+int TextureBuilder::add(scatter::Texture texture) {
+  set_.textures.push_back(std::move(texture));
+  return static_cast<int>(set_.textures.size()) - 1;
+}
+
+int TextureBuilder::operand(const scenedesc::ColorInput& input, const SourceLocation& user) {
+  const scatter::ColorInput c = color(input, user);
+  return c.texture >= 0 ? c.texture : add(scatter::ConstantTexture{c.value});
+}
+
+int TextureBuilder::use(int texture, const SourceLocation& user) {
+  if (texture < 0 || static_cast<std::size_t>(texture) >= desc_.textures.size())
+    throw InputError(user, "a texture is referred to that the scene does not have", "define it");
+  const auto slot = static_cast<std::size_t>(texture);
+  const auto& t = desc_.textures[slot];
+  if (index_[slot] >= 0) return index_[slot];
+  if (index_[slot] == kInProgress)
+    throw InputError(t.where, "the texture '" + t.id + "' is, through others, its own input",
+                     "break the cycle");
+  index_[slot] = kInProgress;
+  int built = 0;
+  if (const auto* bitmap = std::get_if<scenedesc::BitmapTextureDesc>(&t.kind)) {
+    check_uv(bitmap->to_uv, t.where);
+    File& file = files_[{bitmap->filename, bitmap->raw}];
+    if (!file.pixels) file = {t.where, std::make_shared<scatter::TexturePixels>()};
+    scatter::BitmapTexture out;
+    out.pixels = file.pixels;
+    out.filter = bitmap->filter == scenedesc::FilterMode::nearest ? scatter::TexFilter::nearest
+                                                                  : scatter::TexFilter::bilinear;
+    out.wrap_u = convert(bitmap->wrap_u), out.wrap_v = convert(bitmap->wrap_v);
+    copy(bitmap->to_uv, out.to_uv);
+    built = add(std::move(out));
+  } else if (const auto* board = std::get_if<scenedesc::CheckerboardTextureDesc>(&t.kind)) {
+    check_uv(board->to_uv, t.where);
+    scatter::CheckerboardTexture out;
+    out.color0 = operand(board->color0, t.where);
+    out.color1 = operand(board->color1, t.where);
+    copy(board->to_uv, out.to_uv);
+    built = add(out);
+  } else if (const auto* scale = std::get_if<scenedesc::ScaleTextureDesc>(&t.kind)) {
+    if (!is_finite(scale->scale))
+      throw InputError(t.where, "the texture's scale is not finite", "give a number");
+    const int input = operand(scale->input, t.where);
+    built = add(scatter::ScaleTexture{input, scale->scale});
+  } else {
+    built = add(scatter::VertexColorTexture{});
+  }
+  return index_[slot] = built;
+}
+
+scatter::ColorInput TextureBuilder::color(const scenedesc::ColorInput& input, const SourceLocation& user) {
+  if (input.texture != scenedesc::kNone) return {input.value, use(input.texture, user)};
+  if (!is_finite(input.value)) throw InputError(user, "a colour is not finite", "give finite numbers");
+  if (input.value.r < 0 || input.value.g < 0 || input.value.b < 0)
+    throw InputError(user, "a colour has a negative component", "give numbers of 0 or more");
+  return {input.value, -1};
+}
+
+scatter::FloatInput TextureBuilder::number(const scenedesc::FloatInput& input, const SourceLocation& user) {
+  if (input.texture != scenedesc::kNone) return {input.value, use(input.texture, user)};
+  if (!std::isfinite(input.value))
+    throw InputError(user, "a parameter is not finite", "give a finite number");
+  if (input.value < 0) throw InputError(user, "a parameter is negative", "give 0 or more");
+  return {input.value, -1};
+}
+
+scatter::TextureSet TextureBuilder::finish() {
+  std::vector<std::pair<const std::pair<std::string, bool>, File>*> files;
+  for (auto& f : files_) files.push_back(&f);
+  std::vector<std::exception_ptr> failures(files.size());
+  parallel_for(files.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) try {
+        film::LoadedImage image = film::read_image(files[i]->first.first, files[i]->first.second);
+        auto& pixels = *files[i]->second.pixels;
+        pixels.width = image.color.width, pixels.height = image.color.height;
+        pixels.rgb = std::move(image.color.pixels);
+        pixels.alpha = std::move(image.alpha);
+        for (Rgb& c : pixels.rgb)
+          for (int k = 0; k < 3; ++k)
+            if (!std::isfinite(c[k]))
+              throw InputError(files[i]->first.first, "has pixels that are not finite");
+      } catch (const InputError& e) {
+        failures[i] = std::make_exception_ptr(InputError(files[i]->second.where, e.what()));
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+  });
+  for (const auto& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  return std::move(set_);
+}
+
+std::size_t TextureBuilder::memory_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [key, file] : files_)
+    bytes += file.pixels->rgb.size() * sizeof(Rgb) + file.pixels->alpha.size() * sizeof(float);
+  return bytes;
+}
+
+}  // namespace lumirank::world

@@ -1,0 +1,200 @@
+#include "world/world.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "world/impl.h"
+#include "world/lights.h"
+#include "world/material_builder.h"
+#include "world/mesh_store.h"
+#include "world/notes.h"
+#include "world/placer.h"
+#include "world/surface.h"
+#include "world/texture_builder.h"
+
+namespace lumirank::world {
+
+namespace sd = scenedesc;
+
+namespace {
+
+geometry::Blocking blocking(scatter::MaterialSet::Passage passage) {
+  switch (passage) {
+    case scatter::MaterialSet::Passage::smooth:
+      return geometry::Blocking::smooth;
+    case scatter::MaterialSet::Passage::cutout:
+      return geometry::Blocking::cutout;
+    case scatter::MaterialSet::Passage::opaque:
+      break;
+  }
+  return geometry::Blocking::opaque;
+}
+
+std::size_t bytes_of(const geometry::TriangleMesh& m) {
+  return m.positions.size() * sizeof(Vec3f) + m.normals.size() * sizeof(Vec3f) +
+         m.uvs.size() * sizeof(Vec2f) + m.colors.size() * sizeof(Rgb) +
+         m.indices.size() * sizeof(std::uint32_t);
+}
+
+void step(const Sinks& sinks, double fraction) {
+  if (sinks.cancelled()) throw Cancelled();
+  sinks.report("scene", fraction);
+}
+
+}  // namespace
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+World::World(World&&) noexcept = default;
+World::~World() = default;
+
+World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::vector<sd::Warning>& warnings,
+                   const Sinks& sinks) {
+  Notes notes(warnings, options.strict);
+  if (desc.sensors.empty())
+    throw InputError(SourceLocation{desc.source_file, 0}, "the scene has no sensor", "add a camera");
+  for (const auto& sensor : desc.sensors) Camera{sensor};  // throws where one makes no sense
+
+  step(sinks, 0);
+  MeshStore store;
+  std::vector<Placed> placed = place_shapes(desc, store, notes);
+  if (placed.empty())
+    throw InputError(SourceLocation{desc.source_file, 0}, "the scene has no geometry", "add a shape");
+  TextureBuilder textures(desc);
+  MaterialBuilder materials(desc, textures, notes);
+  for (const Placed& p : placed) {
+    materials.use(p.shape->bsdf, p.shape->where);
+    if (p.shines) textures.color(p.shape->emitter->radiance, p.shape->emitter->where);
+  }
+  store.load(notes);
+  step(sinks, 0.4);
+  auto impl = std::make_unique<Impl>();
+  Impl& w = *impl;
+
+  const std::size_t meshes = store.size();
+  Geometry geometry = assemble(std::move(placed), store, notes);
+  if (geometry.placements.empty())
+    throw InputError(SourceLocation{desc.source_file, 0}, "no shape of the scene has any area",
+                     "add a shape that has");
+  step(sinks, 0.5);
+
+  // Indices are settled: the builders answer from memory from here on.
+  std::vector<int> material_of;
+  std::vector<scatter::ColorInput> radiance_of;
+  for (const Placed& p : geometry.placed) {
+    material_of.push_back(materials.use(p.shape->bsdf, p.shape->where));
+    radiance_of.push_back(p.shines ? textures.color(p.shape->emitter->radiance, p.shape->emitter->where)
+                                   : scatter::ColorInput{});
+  }
+  w.materials.materials = materials.take();
+  w.materials.textures = textures.finish();
+  step(sinks, 0.6);
+
+  EmitterNames names;
+  for (std::size_t i = 0; i < geometry.placed.size(); ++i) {
+    const Placed& p = geometry.placed[i];
+    auto& placement = geometry.placements[i];
+    placement.material = static_cast<std::uint32_t>(material_of[i]);
+    placement.blocking = blocking(w.materials.passage(material_of[i]));
+    w.placements.push_back({placement.to_world.is_identity(), geometry.flip[i], placement.to_world,
+                            placement.to_world.inverse().value_or(Transform{})});
+    if (!p.shines) continue;
+    emitters::AreaEmitter area = make_area_emitter(
+        geometry.meshes[placement.mesh], static_cast<std::uint32_t>(i), radiance_of[i], w.materials.textures);
+    if (!(area.by_power.total() > 0)) continue;  // black
+    placement.emitter = static_cast<std::uint32_t>(w.emitters.size());
+    emitters::Emitter emitter;
+    emitter.kind = std::move(area);
+    names.name(emitter, p.shape->emitter->id.empty() ? p.shape->id : p.shape->emitter->id,
+               p.shape->emitter->where);
+    w.emitters.push_back(std::move(emitter));
+    w.radiance.push_back(radiance_of[i]);
+  }
+  w.environment = add_lights(desc, names, notes, w.emitters);
+  w.radiance.resize(w.emitters.size());
+  if (w.emitters.empty())
+    notes.warn(SourceLocation{desc.source_file, 0}, "the scene has no light", "a black picture");
+
+  w.info.meshes = meshes;
+  w.info.instances = geometry.placements.size();
+  w.info.triangles = geometry.triangles;
+  w.info.unique_triangles = geometry.unique_triangles;
+  w.info.textures = w.materials.textures.textures.size();
+  w.info.materials = w.materials.materials.size();
+  w.info.emitters = w.emitters.size();
+  w.info.memory_bytes = textures.memory_bytes();
+  for (const auto& mesh : geometry.meshes) w.info.memory_bytes += bytes_of(mesh);
+  step(sinks, 0.7);
+
+  geometry::RayScene::PassageCallbacks callbacks;
+  callbacks.opacity = [&w](const geometry::Hit& hit) {
+    return w.materials.opacity(static_cast<int>(w.rays->placements()[hit.instance].material), w.uv(hit));
+  };
+  callbacks.transmittance = [&w](const geometry::Hit& hit, Vec3f direction) {
+    const SurfaceHit at = w.surface(hit);
+    return w.materials.transmittance(at.material, at.point, normalize(direction));
+  };
+  w.rays.emplace(std::move(geometry.meshes), std::move(geometry.placements), std::move(callbacks));
+  w.bounds = w.rays->bounds();
+  w.info.memory_bytes += w.rays->memory_bytes();
+  step(sinks, 1);
+  return World(std::move(impl));
+}
+
+const geometry::RayScene& World::rays() const { return *impl_->rays; }
+const scatter::MaterialSet& World::materials() const { return impl_->materials; }
+const std::vector<emitters::Emitter>& World::emitters() const { return impl_->emitters; }
+int World::environment() const { return impl_->environment; }
+const Bounds3f& World::bounds() const { return impl_->bounds; }
+const WorldInfo& World::info() const { return impl_->info; }
+
+std::optional<SurfaceHit> World::intersect(const geometry::Ray& ray) const {
+  const std::optional<geometry::Hit> hit = impl_->rays->intersect(ray);
+  if (!hit) return std::nullopt;
+  return impl_->surface(*hit);
+}
+
+SurfaceHit World::surface(const geometry::Hit& hit, Vec3f) const { return impl_->surface(hit); }
+
+Rgb World::emitted(const SurfaceHit& at, Vec3f wo) const {
+  if (at.emitter < 0 || !(dot(wo, at.point.ng) > 0)) return Rgb{};
+  return impl_->emitted_at(at.emitter, at.hit.triangle, at.hit.barycentric);
+}
+
+Rgb World::background(Vec3f direction) const {
+  if (impl_->environment < 0) return Rgb{};
+  const auto& kind = impl_->emitters[static_cast<std::size_t>(impl_->environment)].kind;
+  return std::get<emitters::EnvironmentEmitter>(kind).eval(direction);
+}
+
+emitters::DirectSample World::sample_direct(int emitter, Vec3f point, float u1, Vec2f u2) const {
+  const auto& e = impl_->emitters[static_cast<std::size_t>(emitter)];
+  emitters::DirectSample s = emitters::sample_direct(e, point, u1, u2);
+  if (s.pdf > 0 && std::holds_alternative<emitters::AreaEmitter>(e.kind))
+    s.radiance = impl_->emitted_at(emitter, s.triangle, s.barycentric);
+  return s;
+}
+
+emitters::Emission World::sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const {
+  const auto& e = impl_->emitters[static_cast<std::size_t>(emitter)];
+  emitters::Emission s = emitters::sample_emission(e, impl_->bounds, u1, u_position, u_direction);
+  const auto* area = std::get_if<emitters::AreaEmitter>(&e.kind);
+  if (area && impl_->radiance[static_cast<std::size_t>(emitter)].texture >= 0 && !(s.normal == Vec3f{})) {
+    const auto& t = area->triangles[s.triangle];
+    const float pdf = area->by_power.pmf(s.triangle) / t.area;
+    s.weight = impl_->emitted_at(emitter, s.triangle, s.barycentric) * (kPi / pdf);
+  }
+  return s;
+}
+
+Vec3f World::offset_origin(Vec3f p, Vec3f ng, Vec3f direction) {
+  // Positions and intersection distances are rounded in proportion to the coordinates they are computed from
+  // (2⁻²⁴ of them, several times over), so the step is 5·10⁻⁵ of the point's largest coordinate: a few
+  // hundred roundings. Near the origin of the world, where the triangles' corners are larger than the point,
+  // the step stays at that of a coordinate of 0.02.
+  const float size = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 0.02f});
+  const float step = 5e-5f * size;
+  return p + ng * (dot(direction, ng) < 0 ? -step : step);
+}
+
+}  // namespace lumirank::world
