@@ -13,6 +13,20 @@ DenseMatrix::DenseMatrix(std::size_t rows, std::size_t columns, std::vector<Rgb>
     throw InternalError("dense matrix: wrong number of visibilities");
 }
 
+DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
+    : pixel(std::move(other.pixel)),
+      row_position(std::move(other.row_position)),
+      row_normal(std::move(other.row_normal)),
+      column_position(std::move(other.column_position)),
+      column_normal(std::move(other.column_normal)),
+      power(std::move(other.power)),
+      group(std::move(other.group)),
+      indirect(std::move(other.indirect)),
+      rows_(other.rows_),
+      columns_(other.columns_),
+      unoccluded_(std::move(other.unoccluded_)),
+      visibility_(std::move(other.visibility_)) {}
+
 Rgb DenseMatrix::at(std::size_t i, std::size_t j, Part part) const {
   const Rgb e = unoccluded_[i * columns_ + j];
   const float v = visibility_.empty() ? 1.0f : static_cast<float>(visibility_[i * columns_ + j]);

@@ -14,6 +14,8 @@ class DenseMatrix : public LightingMatrix {
   // unoccluded: rows × columns, row-major. visibility: the same number of 0s and 1s, or empty (all visible).
   DenseMatrix(std::size_t rows, std::size_t columns, std::vector<Rgb> unoccluded,
               std::vector<std::uint8_t> visibility = {});
+  // Takes the numbers along; what was paid is not (counters start at 0).
+  DenseMatrix(DenseMatrix&& other) noexcept;
 
   std::size_t rows() const override { return rows_; }
   std::size_t columns() const override { return columns_; }

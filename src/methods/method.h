@@ -17,15 +17,16 @@ namespace lumirank::methods {
 
 // One parameter of a method, for --set, JSON, `lumirank methods` and the documentation alike.
 struct Parameter {
-  std::string key;          // "rows"
-  std::string type;         // "integer", "number", "choice"
-  std::string default_text; // "300"
-  std::string range;        // "1 …", "cost|random"
-  std::string unit;         // "" or "rows"
-  std::string help;         // what it does and what it costs
+  std::string key;           // "rows"
+  std::string type;          // "integer", "number", "choice"
+  std::string default_text;  // "300"
+  std::string range;         // "1 …", "cost|random"
+  std::string unit;          // "" or "rows"
+  std::string help;          // what it does and what it costs
 };
 
-// What a run did, beside its numbers: seconds and counts by stable keys ("seconds.rows", "rows", "columns", …).
+// What a run did, beside its numbers: seconds and counts by stable keys ("seconds.rows", "rows", "columns",
+// …).
 struct Trace {
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> notes;
@@ -33,17 +34,18 @@ struct Trace {
 
 struct RunOptions {
   std::uint64_t seed = 1;
-  double time_seconds = 0;   // > 0: stop when this much time has passed since the call
-  double target_error = 0;   // > 0: stop when the estimated relative error falls below
+  double time_seconds = 0;  // > 0: stop when this much time has passed since the call
+  double target_error = 0;  // > 0: stop when the estimated relative error falls below
   Sinks sinks;
-  // Called with a complete estimate of all row sums whenever a better one exists (progressive display). May be empty.
+  // Called with a complete estimate of all row sums whenever a better one exists (progressive display). May
+  // be empty.
   std::function<void(std::span<const Rgb> sums)> on_estimate;
 };
 
 struct Estimate {
   std::vector<Rgb> sums;  // one per row
-  // The same estimate as a linear combination of columns, sums = Σ scale_k · A(·, column_k), for methods whose estimate is one
-  // (all global ones): it splits the image by light and relights it. Empty for others.
+  // The same estimate as a linear combination of columns, sums = Σ scale_k · A(·, column_k), for methods
+  // whose estimate is one (all global ones): it splits the image by light and relights it. Empty for others.
   std::vector<matrix::ScaledColumn> combination;
   Trace trace;
   bool interrupted = false;  // cancelled: `sums` is the best complete estimate so far
@@ -62,11 +64,13 @@ struct MethodInfo {
   std::vector<Parameter> parameters;
   // Settings as JSON text; unknown keys and wrong values throw InputError that lists the valid ones.
   std::function<std::unique_ptr<Method>(const std::map<std::string, std::string>& settings)> make;
-  // instant-radiosity wants fewer lights rather than all of them: how many of the generated columns it uses (0: all).
+  // instant-radiosity wants fewer lights rather than all of them: how many of the generated columns it uses
+  // (0: all).
   std::function<std::size_t(const std::map<std::string, std::string>& settings)> lights_wanted;
 };
 
-// The list: adding a method here enrols it in the command line, the documentation and the tests that all methods must pass.
+// The list: adding a method here enrols it in the command line, the documentation and the tests that all
+// methods must pass.
 const std::vector<MethodInfo>& all_methods();
 // Throws InputError naming the valid methods.
 const MethodInfo& find_method(const std::string& name);

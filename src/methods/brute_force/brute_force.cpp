@@ -1,0 +1,76 @@
+#include "methods/brute_force/brute_force.h"
+
+#include <algorithm>
+
+#include "base/timer.h"
+#include "methods/column_pass.h"
+#include "methods/parameters.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+struct NoSettings {};
+const Fields<NoSettings> kFields{};
+
+class BruteForce final : public Method {
+ public:
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    return sum_all_columns(matrix, options);
+  }
+};
+
+// Columns 0, s, 2s, …, 1, s+1, …: lights of one kind lie together, so strides spread every prefix over all
+// kinds.
+std::vector<matrix::ScaledColumn> strided(std::size_t n) {
+  const std::size_t stride = std::max<std::size_t>(1, n / 64);
+  std::vector<matrix::ScaledColumn> columns;
+  columns.reserve(n);
+  for (std::size_t first = 0; first < stride; ++first)
+    for (std::size_t j = first; j < n; j += stride)
+      columns.push_back({static_cast<matrix::Index>(j), Rgb(1)});
+  return columns;
+}
+
+}  // namespace
+
+Estimate sum_all_columns(const matrix::LightingMatrix& matrix, const RunOptions& options) {
+  const Timer timer;
+  const std::size_t n = matrix.columns();
+  const auto columns = strided(n);
+  Estimate estimate;
+  estimate.sums.assign(matrix.rows(), Rgb(0));
+  PassControl control{options, timer, options.time_seconds, {}};
+  if (options.on_estimate)
+    control.on_block = [&](std::span<const Rgb> sums, std::size_t done) {
+      options.on_estimate(scaled_sums(sums, static_cast<float>(n) / static_cast<float>(done)));
+    };
+  const PassResult pass = render_columns(matrix, columns, control, estimate.sums);
+  if (pass.done < n) {
+    const double scale = pass.done > 0 ? static_cast<double>(n) / static_cast<double>(pass.done) : 0.0;
+    estimate.sums = scaled_sums(estimate.sums, static_cast<float>(scale));
+    estimate.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
+  }
+  estimate.interrupted = pass.cancelled;
+  estimate.trace.numbers["seconds.columns"] = pass.seconds;
+  estimate.trace.numbers["rows"] = 0;
+  estimate.trace.numbers["columns"] = static_cast<double>(pass.done);
+  estimate.trace.numbers["sampling_rate"] =
+      n > 0 ? static_cast<double>(pass.done) / static_cast<double>(n) : 1.0;
+  if (options.on_estimate) options.on_estimate(estimate.sums);
+  return estimate;
+}
+
+MethodInfo brute_force_info() {
+  return {"brute-force",
+          "Renders every column: exact for the given lights, and slow.",
+          "",
+          parameters_of(kFields),
+          [](const SettingsMap& settings) -> std::unique_ptr<Method> {
+            read_settings("brute-force", kFields, settings);
+            return std::make_unique<BruteForce>();
+          },
+          [](const SettingsMap&) -> std::size_t { return 0; }};
+}
+
+}  // namespace lumirank::methods

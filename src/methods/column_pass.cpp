@@ -1,0 +1,86 @@
+#include "methods/column_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+constexpr std::size_t kBlock = 32;
+// A single-precision sum of very many small terms stops growing; long lists are summed in two levels.
+constexpr std::size_t kTwoLevels = 8192, kLevel = 1024;
+constexpr std::size_t kGrain = 16384;
+
+void add_and_clear(std::span<Rgb> sums, std::span<Rgb> part) {
+  parallel_for(sums.size(), kGrain, [&](std::size_t b, std::size_t e) {
+    for (std::size_t i = b; i < e; ++i) {
+      sums[i] += part[i];
+      part[i] = Rgb(0);
+    }
+  });
+}
+
+}  // namespace
+
+PassResult render_columns(const matrix::LightingMatrix& matrix, std::span<const matrix::ScaledColumn> columns,
+                          const PassControl& control, std::span<Rgb> sums) {
+  PassResult result;
+  const double start = control.timer.seconds();
+  const bool two_levels = columns.size() > kTwoLevels;
+  std::vector<Rgb> part(two_levels ? sums.size() : 0);
+  const std::span<Rgb> target = two_levels ? std::span<Rgb>(part) : sums;
+  std::size_t next_preview = kBlock;
+  while (result.done < columns.size()) {
+    const double now = control.timer.seconds();
+    const double per_column = result.done > 0 ? (now - start) / static_cast<double>(result.done) : 0;
+    const std::size_t count = std::min(kBlock, columns.size() - result.done);
+    result.cancelled = control.options.sinks.cancelled();
+    result.out_of_time = control.deadline > 0 &&
+                         now + per_column * static_cast<double>(count) > control.deadline && result.done > 0;
+    if (result.cancelled || result.out_of_time) break;
+    matrix.accumulate(columns.subspan(result.done, count), target);
+    result.done += count;
+    control.options.sinks.report("columns",
+                                 static_cast<double>(result.done) / static_cast<double>(columns.size()));
+    const bool preview = control.on_block && result.done >= next_preview && result.done < columns.size();
+    if (two_levels && (preview || result.done % kLevel < kBlock)) add_and_clear(sums, part);
+    if (preview) {
+      control.on_block(sums, result.done);
+      next_preview = std::max(result.done + kBlock, result.done * 5 / 4);
+    }
+  }
+  if (two_levels) add_and_clear(sums, part);
+  result.seconds = control.timer.seconds() - start;
+  return result;
+}
+
+std::vector<Rgb> scaled_sums(std::span<const Rgb> sums, float a) {
+  std::vector<Rgb> out(sums.size());
+  parallel_for(sums.size(), kGrain, [&](std::size_t b, std::size_t e) {
+    for (std::size_t i = b; i < e; ++i) out[i] = sums[i] * a;
+  });
+  return out;
+}
+
+double relative_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
+  struct Pair {
+    double difference = 0, size = 0;
+    Pair operator+(const Pair& o) const { return {difference + o.difference, size + o.size}; }
+  };
+  const Pair p = parallel_sum(a.size(), kGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
+    Pair s;
+    for (std::size_t i = begin; i < end; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double x = static_cast<double>(a[i][c]), y = static_cast<double>(b[i][c]);
+        s.difference += (x - y) * (x - y);
+        s.size += y * y;
+      }
+    return s;
+  });
+  return p.difference == 0 ? 0 : std::sqrt(p.difference / p.size);
+}
+
+}  // namespace lumirank::methods

@@ -1,0 +1,41 @@
+#include "methods/instant_radiosity/instant_radiosity.h"
+
+#include "methods/brute_force/brute_force.h"
+#include "methods/parameters.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+struct InstantRadiositySettings {
+  std::size_t lights = 1000;
+};
+
+const Fields<InstantRadiositySettings> kFields{count_field<InstantRadiositySettings>(
+    {"lights", "columns", "Virtual lights to generate; every one is rendered, so time is in proportion."},
+    &InstantRadiositySettings::lights, 1)};
+
+// The matrix already has only the lights that lights_wanted asked for.
+class InstantRadiosity final : public Method {
+ public:
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    return sum_all_columns(matrix, options);
+  }
+};
+
+}  // namespace
+
+MethodInfo instant_radiosity_info() {
+  const std::string name = "instant-radiosity";
+  return {name,
+          "Generates few virtual lights and renders all of them.",
+          "Keller 1997, Instant Radiosity",
+          parameters_of(kFields),
+          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
+            read_settings(name, kFields, settings);
+            return std::make_unique<InstantRadiosity>();
+          },
+          [=](const SettingsMap& settings) { return read_settings(name, kFields, settings).lights; }};
+}
+
+}  // namespace lumirank::methods

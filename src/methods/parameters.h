@@ -1,0 +1,94 @@
+// A method's settings struct described field by field, so that the command line, JSON and the documentation
+// share one truth.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "methods/method.h"
+
+namespace lumirank::methods {
+
+using SettingsMap = std::map<std::string, std::string>;
+
+template <typename S>
+struct Field {
+  Parameter info;
+  std::function<bool(S&, const std::string&)> set;  // false: not a value of this field
+};
+template <typename S>
+using Fields = std::vector<Field<S>>;
+
+struct FieldText {
+  std::string key, unit, help;
+};
+
+// Text → number, whole text or nothing.
+bool parse_count(const std::string& text, std::size_t lowest, std::size_t& value);
+bool parse_number(const std::string& text, double lowest, double highest, double& value);
+std::string number_text(double value);
+
+template <typename S>
+Field<S> count_field(FieldText text, std::size_t S::*member, std::size_t lowest) {
+  return {
+      {text.key, "integer", std::to_string(S{}.*member), std::to_string(lowest) + " …", text.unit, text.help},
+      [=](S& s, const std::string& v) { return parse_count(v, lowest, s.*member); }};
+}
+
+template <typename S>
+Field<S> number_field(FieldText text, double S::*member, double lowest, double highest) {
+  return {{text.key, "number", number_text(S{}.*member), number_text(lowest) + " … " + number_text(highest),
+           text.unit, text.help},
+          [=](S& s, const std::string& v) { return parse_number(v, lowest, highest, s.*member); }};
+}
+
+// choices: name of every value of the enumeration, in its order from 0.
+template <typename S, typename E>
+Field<S> choice_field(FieldText text, E S::*member, std::vector<std::string> choices) {
+  std::string range;
+  for (const auto& c : choices) range += (range.empty() ? "" : "|") + c;
+  return {{text.key, "choice", choices[static_cast<std::size_t>(S{}.*member)], range, text.unit, text.help},
+          [=](S& s, const std::string& v) {
+            for (std::size_t k = 0; k < choices.size(); ++k)
+              if (choices[k] == v) {
+                s.*member = static_cast<E>(k);
+                return true;
+              }
+            return false;
+          }};
+}
+
+template <typename S>
+std::vector<Parameter> parameters_of(const Fields<S>& fields) {
+  std::vector<Parameter> p;
+  for (const auto& f : fields) p.push_back(f.info);
+  return p;
+}
+
+[[noreturn]] void throw_unknown_key(const std::string& method, const std::string& key,
+                                    const std::vector<Parameter>& valid);
+[[noreturn]] void throw_wrong_value(const std::string& method, const Parameter& parameter,
+                                    const std::string& value);
+
+// Defaults overwritten by `settings`. Unknown keys and values out of range throw InputError.
+template <typename S>
+S read_settings(const std::string& method, const Fields<S>& fields, const SettingsMap& settings) {
+  S s;
+  for (const auto& [key, value] : settings) {
+    const Field<S>* found = nullptr;
+    for (const auto& f : fields)
+      if (f.info.key == key) found = &f;
+    if (!found) throw_unknown_key(method, key, parameters_of(fields));
+    if (!found->set(s, value)) throw_wrong_value(method, found->info, value);
+  }
+  return s;
+}
+
+// Every parameter of the method with the value that a run with these settings uses: what a report records.
+// Throws InputError as `make` does.
+SettingsMap effective_settings(const MethodInfo& method, const SettingsMap& settings);
+
+}  // namespace lumirank::methods

@@ -1,0 +1,127 @@
+#include "methods/power_sampling/power_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "methods/column_pass.h"
+#include "methods/parameters.h"
+#include "methods/power_draws.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+enum class Drawing { stratified, independent };
+
+struct PowerSamplingSettings {
+  std::size_t columns = 1000;
+  Drawing drawing = Drawing::stratified;
+};
+
+const Fields<PowerSamplingSettings> kFields{
+    count_field<PowerSamplingSettings>({"columns", "columns",
+                                        "Draws with replacement; time is in proportion. With a time or error "
+                                        "target it is not used: rounds are added until "
+                                        "the target is met."},
+                                       &PowerSamplingSettings::columns, 1),
+    choice_field<PowerSamplingSettings>(
+        {"drawing", "",
+         "stratified: one draw in each equal part of the running sum of powers; independent: plain draws."},
+        &PowerSamplingSettings::drawing, {"stratified", "independent"})};
+
+// Sums of several rounds, weighted by their numbers of draws: every round is unbiased, so their mean is too.
+class PowerSampling final : public Method {
+ public:
+  explicit PowerSampling(const PowerSamplingSettings& settings) : settings_(settings) {}
+
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    const Timer timer;
+    const bool open_ended = options.time_seconds > 0 || options.target_error > 0;
+    std::vector<matrix::Index> all(matrix.columns());
+    std::iota(all.begin(), all.end(), 0u);
+    const auto power = matrix.column_features().power;
+
+    Estimate estimate;
+    estimate.sums.assign(matrix.rows(), Rgb(0));
+    auto& numbers = estimate.trace.numbers;
+    std::set<matrix::Index> distinct;
+    std::size_t draws = 0, rendered = 0;
+    double seconds = 0;
+    for (std::size_t round = 0;; ++round) {
+      std::size_t count = !open_ended ? settings_.columns : std::max<std::size_t>(draws, 32);
+      if (options.time_seconds > 0 && draws > 0) {
+        const double left = options.time_seconds - timer.seconds();
+        const auto affordable =
+            static_cast<std::size_t>(std::max(0.0, left * static_cast<double>(rendered) / seconds));
+        if (affordable == 0) break;
+        // A last round that would be cut short is better made to fit.
+        if (affordable < 2 * count || options.target_error <= 0) count = affordable;
+      }
+      const auto drawn = draw_columns(
+          all, power, {count, settings_.drawing == Drawing::stratified, options.seed, Stage::method, round});
+      std::vector<Rgb> sums(matrix.rows(), Rgb(0));
+      PassControl control{options, timer, options.time_seconds, {}};
+      if (options.on_estimate && draws == 0)
+        control.on_block = [&](std::span<const Rgb> part, std::size_t done) {
+          options.on_estimate(scaled_sums(part, static_cast<float>(drawn.size()) / static_cast<float>(done)));
+        };
+      const PassResult pass = render_columns(matrix, drawn, control, sums);
+      seconds += pass.seconds;
+      rendered += pass.done;
+      for (std::size_t k = 0; k < pass.done; ++k) distinct.insert(drawn[k].column);
+      if (pass.done < drawn.size()) {
+        estimate.interrupted = pass.cancelled;
+        estimate.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
+        if (pass.done == 0) break;
+        // What was done of the round is a fair sample of it.
+        sums = scaled_sums(sums, static_cast<float>(drawn.size()) / static_cast<float>(pass.done));
+        count = std::max<std::size_t>(1, count * pass.done / drawn.size());
+      }
+      if (draws == count) numbers["predicted_error"] = 0.5 * relative_difference(sums, estimate.sums);
+      add_round(estimate.sums, draws, sums, count);
+      draws += count;
+      if (options.on_estimate) options.on_estimate(estimate.sums);
+      if (estimate.interrupted || pass.out_of_time || !open_ended) break;
+      const auto error = numbers.find("predicted_error");
+      if (options.target_error > 0 && error != numbers.end() && error->second < options.target_error) break;
+    }
+    numbers["seconds.columns"] = seconds;
+    numbers["rows"] = 0;
+    numbers["draws"] = static_cast<double>(draws);
+    numbers["columns"] = static_cast<double>(distinct.size());
+    numbers["sampling_rate"] =
+        matrix.columns() > 0 ? static_cast<double>(rendered) / static_cast<double>(matrix.columns()) : 1.0;
+    return estimate;
+  }
+
+ private:
+  static void add_round(std::span<Rgb> mean, std::size_t old_draws, std::span<const Rgb> sums,
+                        std::size_t draws) {
+    const float share = static_cast<float>(draws) / static_cast<float>(draws + old_draws);
+    parallel_for(mean.size(), 16384, [&](std::size_t b, std::size_t e) {
+      for (std::size_t i = b; i < e; ++i) mean[i] = old_draws == 0 ? sums[i] : lerp(mean[i], sums[i], share);
+    });
+  }
+
+  PowerSamplingSettings settings_;
+};
+
+}  // namespace
+
+MethodInfo power_sampling_info() {
+  const std::string name = "power-sampling";
+  return {name,
+          "Draws columns in proportion to their lights' power.",
+          "",
+          parameters_of(kFields),
+          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
+            return std::make_unique<PowerSampling>(read_settings(name, kFields, settings));
+          },
+          [](const SettingsMap&) -> std::size_t { return 0; }};
+}
+
+}  // namespace lumirank::methods

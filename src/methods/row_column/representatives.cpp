@@ -1,0 +1,87 @@
+#include "methods/row_column/representatives.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "methods/power_draws.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+constexpr double kNoColour = 1e-3;  // of the scalar norm: less than that is no colour to scale
+constexpr double kLargestGain = 4;  // of a channel over the scalar factor
+
+Rgb averaged_scale(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members,
+                   std::uint32_t j, double scalar) {
+  Rgb scale;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double total = 0;
+    for (std::uint32_t k : members) total += static_cast<double>(sketch.channel_norm(k, c));
+    const double own = static_cast<double>(sketch.channel_norm(j, c));
+    const bool has_colour = own > kNoColour * static_cast<double>(sketch.norm(j));
+    const double factor = has_colour ? std::min(total / own, kLargestGain * scalar) : scalar;
+    scale[static_cast<int>(c)] = static_cast<float>(factor);
+  }
+  return scale;
+}
+
+template <typename T>
+void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+  std::vector<T> next;
+  next.reserve(values.size());
+  for (std::uint32_t k : order) next.push_back(values[k]);
+  values = std::move(next);
+}
+
+}  // namespace
+
+Representatives choose_representatives(const linalg::Partition& clusters, const linalg::ColumnSketch& sketch,
+                                       const RepresentativeSettings& settings) {
+  Representatives r;
+  r.columns.resize(clusters.clusters());
+  r.energy.resize(clusters.clusters());
+  parallel_for(clusters.clusters(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto members = clusters.members(k);
+      double s = 0;
+      for (std::uint32_t j : members) s += static_cast<double>(sketch.norm(j));
+      Rng rng(settings.seed, Stage::representatives, settings.round, k);
+      const double target = rng.next_double() * s;
+      double running = 0;
+      std::uint32_t chosen = members.back();
+      for (std::uint32_t j : members) {
+        running += static_cast<double>(sketch.norm(j));
+        if (running > target) {
+          chosen = j;
+          break;
+        }
+      }
+      const double scalar = s / static_cast<double>(sketch.norm(chosen));
+      r.energy[k] = s;
+      r.columns[k] = {chosen, settings.colour == ColourMode::scalar
+                                  ? Rgb(static_cast<float>(scalar))
+                                  : averaged_scale(sketch, members, chosen, scalar)};
+    }
+  });
+  std::vector<std::uint32_t> order(r.columns.size());
+  std::iota(order.begin(), order.end(), 0u);
+  Rng rng(settings.seed, Stage::representatives, settings.round, ~std::uint64_t{0});
+  for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[rng.next_below(k)]);
+  permute(r.columns, order);
+  permute(r.energy, order);
+  return r;
+}
+
+void add_zero_columns(std::span<const matrix::Index> zero, std::span<const float> power, std::size_t count,
+                      const RepresentativeSettings& settings, Representatives& representatives) {
+  const auto drawn = draw_columns(
+      zero, power, {std::min(count, zero.size()), true, settings.seed, Stage::zero_columns, settings.round});
+  representatives.columns.insert(representatives.columns.end(), drawn.begin(), drawn.end());
+  representatives.energy.resize(representatives.columns.size(), 0.0);
+  representatives.zero_columns += drawn.size();
+}
+
+}  // namespace lumirank::methods

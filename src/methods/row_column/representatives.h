@@ -1,0 +1,39 @@
+// From clusters to columns to render (2007, sections 3.3 and 4, "Representative selection and color
+// averaging").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "linalg/column_sketch.h"
+#include "linalg/partition.h"
+#include "matrix/lighting_matrix.h"
+#include "methods/row_column/settings.h"
+
+namespace lumirank::methods {
+
+struct Representatives {
+  std::vector<matrix::ScaledColumn> columns;  // in random order, so that every prefix is a fair sample
+  std::vector<double> energy;                 // s of the cluster that the column stands for; zero columns: 0
+  std::size_t zero_columns = 0;               // of these, drawn from the columns that were zero on all rows
+};
+
+struct RepresentativeSettings {
+  ColourMode colour = ColourMode::averaged;
+  std::uint64_t seed = 1;
+  std::uint64_t round = 0;  // rounds are independent of each other
+};
+
+// One member of each cluster, with probability ‖ρ_j‖/s, s = Σ‖ρ‖ over the cluster. scalar: scaled by s/‖ρ_j‖,
+// unbiased. averaged: channel c is scaled by Σ‖ρᶜ‖/‖ρᶜ_j‖. Where the representative has (next to) none of
+// that channel the scalar factor is taken, and no channel's factor exceeds 4 scalar factors.
+Representatives choose_representatives(const linalg::Partition& clusters, const linalg::ColumnSketch& sketch,
+                                       const RepresentativeSettings& settings);
+
+// Adds `count` draws, by power, from the columns `zero`, which vanish on all rows that were read. That set is
+// a function of the rows alone, so with every choice of rows the estimate of its sum is unbiased; ignoring
+// the set is not.
+void add_zero_columns(std::span<const matrix::Index> zero, std::span<const float> power, std::size_t count,
+                      const RepresentativeSettings& settings, Representatives& representatives);
+
+}  // namespace lumirank::methods

@@ -1,0 +1,103 @@
+#include "methods/row_column/row_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/random.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+constexpr std::uint32_t kSide = 256;  // cells of the curve per side of the image
+
+// Position of a cell along the Hilbert curve that fills a kSide × kSide square.
+std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t index = 0;
+  for (std::uint32_t s = kSide / 2; s > 0; s /= 2) {
+    const std::uint32_t right = (x & s) != 0, up = (y & s) != 0;
+    index += s * s * ((3 * right) ^ up);
+    if (!up) {
+      if (right) {
+        x = kSide - 1 - x;
+        y = kSide - 1 - y;
+      }
+      std::swap(x, y);
+    }
+  }
+  return index;
+}
+
+std::vector<matrix::Index> order_along_curve(std::size_t rows, std::span<const Vec2f> pixel) {
+  std::vector<matrix::Index> order(rows);
+  std::iota(order.begin(), order.end(), 0u);
+  if (pixel.size() != rows || rows == 0) return order;
+  Vec2f low = pixel[0], high = pixel[0];
+  for (Vec2f p : pixel) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  const float extent = std::max({high.x - low.x, high.y - low.y, 1e-6f});
+  const float scale = static_cast<float>(kSide) * 0.9999f / extent;
+  std::vector<std::uint32_t> cell(rows), start(kSide * kSide + 1, 0);
+  for (std::size_t i = 0; i < rows; ++i) {
+    cell[i] = hilbert_index(static_cast<std::uint32_t>((pixel[i].x - low.x) * scale),
+                            static_cast<std::uint32_t>((pixel[i].y - low.y) * scale));
+    ++start[cell[i] + 1];
+  }
+  for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+  for (std::size_t i = 0; i < rows; ++i) order[start[cell[i]]++] = static_cast<matrix::Index>(i);
+  return order;
+}
+
+// The t-th point of the van der Corput sequence with every bit flipped by a coin that depends on the bits
+// above it.
+std::uint32_t scrambled_radical_inverse(std::uint32_t t, std::uint64_t seed) {
+  std::uint32_t value = 0, prefix = 1;  // the leading 1 makes prefixes of different lengths differ
+  for (int bit = 0; bit < 32; ++bit) {
+    const auto coin = static_cast<std::uint32_t>(hash_ids(seed, Stage::rows, 1, prefix) >> 63);
+    const std::uint32_t digit = (t >> bit) & 1u;
+    value = (value << 1) | (digit ^ coin);
+    prefix = bit < 31 ? (prefix << 1) | digit : prefix;
+  }
+  return value;
+}
+
+}  // namespace
+
+RowSampler::RowSampler(const matrix::LightingMatrix& matrix, std::uint64_t seed)
+    : seed_(seed),
+      order_(order_along_curve(matrix.rows(), matrix.row_features().pixel)),
+      given_(matrix.rows(), false) {}
+
+std::vector<SampledRow> RowSampler::stratified(std::size_t count, std::uint64_t round) const {
+  const std::size_t rows = order_.size();
+  count = std::min(count, rows);
+  std::vector<SampledRow> sampled(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t begin = rows * k / count, end = rows * (k + 1) / count;
+    Rng rng(seed_, Stage::rows, 2 + round, k);
+    const double share =
+        static_cast<double>(end - begin) * static_cast<double>(count) / static_cast<double>(rows);
+    sampled[k] = {order_[begin + rng.next_below(end - begin)], static_cast<float>(std::sqrt(share))};
+  }
+  return sampled;
+}
+
+std::vector<SampledRow> RowSampler::next(std::size_t count) {
+  std::vector<SampledRow> sampled;
+  const std::size_t rows = order_.size();
+  while (sampled.size() < count && given_count_ < rows) {
+    const std::uint64_t u = scrambled_radical_inverse(sequence_++, seed_);
+    std::size_t at = static_cast<std::size_t>((u * rows) >> 32);
+    // Once rows run short the sequence meets given ones: the next free one along the curve takes their place.
+    while (given_[at]) at = at + 1 < rows ? at + 1 : 0;
+    given_[at] = true;
+    ++given_count_;
+    sampled.push_back({order_[at], 1.0f});
+  }
+  return sampled;
+}
+
+}  // namespace lumirank::methods

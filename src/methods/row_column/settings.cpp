@@ -1,0 +1,41 @@
+#include "methods/row_column/settings.h"
+
+namespace lumirank::methods {
+
+const Fields<RowColumnSettings>& row_column_fields() {
+  using S = RowColumnSettings;
+  static const Fields<S> fields{
+      count_field<S>(
+          {"rows", "rows",
+           "Receivers whose whole row is evaluated; 0: as many as pay. Costs one entry per column each."},
+          &S::rows, 0),
+      count_field<S>({"columns", "columns",
+                      "Clusters, each rendered by one representative; 0: as many as the target needs. Costs "
+                      "one entry per "
+                      "receiver each; as many as there are columns: all are rendered, which is exact."},
+                     &S::columns, 0),
+      count_field<S>({"projection", "dimensions",
+                      "Dimensions to which reduced columns are projected for clustering; 0: none. Time and "
+                      "memory of the "
+                      "clustering are in proportion."},
+                     &S::projection, 0),
+      choice_field<S>({"clustering", "",
+                       "combined: two thirds by sampling, the rest by splitting; or one of them alone."},
+                      &S::clustering, {"combined", "sampling", "splitting"}),
+      choice_field<S>({"colour", "",
+                       "averaged: a representative gets its cluster's total colour (less colour noise, a "
+                       "little bias); scalar: "
+                       "one factor for all channels (unbiased)."},
+                      &S::colour, {"averaged", "scalar"}),
+      choice_field<S>({"zero-columns", "",
+                       "Columns that are zero on all sampled rows. sample: a few drawn by power, unbiased; "
+                       "ignore: taken as zero "
+                       "everywhere, as in the paper (biased, less noise)."},
+                      &S::zero_columns, {"sample", "ignore"}),
+      number_field<S>(
+          {"zero-share", "of columns", "How many of them are drawn, as a share of `columns`; at least one."},
+          &S::zero_share, 0, 1)};
+  return fields;
+}
+
+}  // namespace lumirank::methods
