@@ -1,0 +1,100 @@
+#include "transport/particle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "scatter/closure.h"
+#include "transport/sequence.h"
+
+namespace lumirank::transport {
+namespace {
+
+using scatter::Closure;
+using scatter::LobeKind;
+
+// From this depth on a particle survives with the probability below at most: a closed white box absorbs
+// nothing.
+constexpr int kDeep = 32;
+constexpr float kDeepSurvival = 0.9f;
+
+// Flux is measured through the geometric surface, f·cos with the shading normal: the quotient belongs to the
+// light (Veach 1997, section 5.3.2).
+float incident_correction(const Closure& closure, Vec3f incoming) {
+  return std::abs(dot(incoming, closure.frame.n) / dot(incoming, closure.ng));
+}
+float outgoing_correction(const Closure& closure, Vec3f outgoing) {
+  return std::abs(dot(outgoing, closure.ng) / dot(outgoing, closure.frame.n));
+}
+
+LightRecord surface_light(const Vec3f& position, const Closure& closure, Vec3f incoming, ClosurePool& pool) {
+  LightRecord light;
+  light.kind = LightKind::surface;
+  light.position = position;
+  light.incoming = incoming;
+  const float side = dot(closure.frame.n, incoming) < 0 ? -1.0f : 1.0f;
+  light.normal = closure.frame.n * side;
+  light.ng = closure.ng * side;
+  if (closure.is_lambertian()) {
+    for (int k = 0; k < closure.count; ++k)
+      if (closure.lobes[k].kind == LobeKind::diffuse) light.albedo = closure.lobes[k].color;
+  } else {
+    light.closure = pool.add(closure, light.normal);
+  }
+  return light;
+}
+
+}  // namespace
+
+void ParticleTracer::trace(std::size_t path, LightBatch& batch, PathTally* tally) const {
+  Rng rng(settings_.seed, settings_.stage, path);
+  const auto paths = static_cast<double>(settings_.paths);
+  const auto start = choice_.draw((static_cast<double>(path) + rng.next_double()) / paths);
+  const Sequence4 sequence(settings_.seed, settings_.stage, ~static_cast<std::uint64_t>(start.emitter));
+  const auto emission =
+      world_.sample_emission(start.emitter, start.remapped, sequence.first(path), sequence.second(path));
+  Rgb flux = emission.weight * static_cast<float>(1 / (start.probability * paths));
+  const float level = max_component(flux);
+  if (!(level > 0)) return;
+
+  geometry::Ray ray{emission.origin, emission.direction};
+  if (std::holds_alternative<emitters::AreaEmitter>(
+          world_.emitters()[static_cast<std::size_t>(start.emitter)].kind))
+    ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
+  bool first = true;
+  for (int depth = 1; depth < 0xffff;) {
+    const auto hit = world_.intersect(ray);
+    if (!hit) return;
+    if (tally && first) tally->first_flux += mean(flux);
+    first = false;
+    const Vec3f incoming = -ray.direction;
+    const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
+    const bool sides_agree = dot(incoming, closure.frame.n) * dot(incoming, closure.ng) > 0;
+    if (closure.has_smooth() && sides_agree) {
+      LightRecord light = surface_light(hit->point.position, closure, incoming, batch.closures);
+      light.power = flux * incident_correction(closure, incoming);
+      light.emitter = static_cast<std::uint16_t>(start.emitter);
+      light.depth = static_cast<std::uint16_t>(depth);
+      batch.lights.push_back(light);
+      if (tally) tally->scattered_flux += mean(flux * scatter::albedo(closure, incoming));
+    }
+    const float u_lobe = rng.next_float();
+    const auto next = scatter::sample(closure, incoming, u_lobe, rng.next_2d(), scatter::Lobes::all, true);
+    if (!next) return;
+    flux *= next->weight;
+    if (!next->delta) flux *= incident_correction(closure, incoming) * outgoing_correction(closure, next->wi);
+    const bool passes = next->delta && next->kind == LobeKind::delta_pass;
+    if (!passes) ++depth;
+    if (settings_.deepest >= 0 && depth > settings_.deepest) return;
+    // Whatever is left above or below the starting level is paid back in the chance to survive, so that all
+    // lights of an emitter have about the same power.
+    float survival = std::min(1.0f, max_component(flux) / level);
+    if (depth > kDeep) survival = std::min(survival, kDeepSurvival);
+    if (!(survival > 0) || (survival < 1 && rng.next_float() >= survival)) return;
+    flux *= 1 / survival;
+    if (!is_finite(flux)) return;
+    ray = {world::World::offset_origin(hit->point.position, hit->point.ng, next->wi), next->wi};
+  }
+}
+
+}  // namespace lumirank::transport
