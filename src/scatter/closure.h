@@ -1,10 +1,11 @@
 // How a surface scatters light at one point: a short sum of lobes with all textures already looked up.
 //
-// Every BSDF of a scene (scatter/material.h) becomes such a closure at a hit. The path tracer samples closures; the
-// lighting matrix evaluates them in bulk. Because a closure is plain data, one evaluation code serves both.
+// Every BSDF of a scene (scatter/material.h) becomes such a closure at a hit. The path tracer samples
+// closures; the lighting matrix evaluates them in bulk. Because a closure is plain data, one evaluation code
+// serves both.
 //
-// Directions are in world space and point away from the surface. `wo` is the side that is known first (towards the
-// eye at a receiver, towards the previous vertex at a virtual light), `wi` the other one.
+// Directions are in world space and point away from the surface. `wo` is the side that is known first
+// (towards the eye at a receiver, towards the previous vertex at a virtual light), `wi` the other one.
 #pragma once
 
 #include <cstdint>
@@ -16,38 +17,51 @@
 
 namespace lumirank::scatter {
 
+// A lobe acts alike on both sides of the surface: a one-sided material makes no lobes where wo is on its
+// back. Formulas give f (without the cosine of wi); cos_o, cos_i > 0 are the cosines of wo and wi with
+// frame.n, m = normalize(wo + wi).
 enum class LobeKind : std::uint8_t {
   // Smooth in direction:
-  diffuse,               // color/π on the side of wo
-  oren_nayar,            // color, alpha_u = σ (radians)
-  interfaced_diffuse,    // plastic's base: color/π · T(wi)·T(wo)/(eta²·(1 - color·Fdr_int)) (see material.cpp)
-  microfacet_reflect,    // color · F · D · G / (4 cos cos); Fresnel mode below
-  microfacet_transmit,   // rough dielectric's refraction
-  phong,                 // color · (n+2)/(2π) · cosⁿ(angle to the mirror direction), alpha_u = exponent
-  ward,                  // color, alpha_u, alpha_v; ward_variant
-  sheen,                 // Disney's sheen
-  disney_diffuse,        // Disney's diffuse with retro-reflection and flatness
-  // Delta lobes ("specular"): eval and pdf are 0, only sample() meets them:
-  delta_reflect,
-  delta_transmit,        // refracts by eta
-  delta_pass,            // goes straight on: null surfaces, thin dielectrics, cut-outs
+  diffuse,     // color/π
+  oren_nayar,  // alpha_u = σ (radians); color = ρ, conductor_eta = ρ² (interreflection); see oren_nayar.cpp
+  interfaced_diffuse,  // plastic's base: color/π · T(cos_i) · T(cos_o), T = interface_transmittance() in
+                       // interface.h: six
+  // coefficients in conductor_eta and conductor_k, and eta. color has ρ/(eta²·(1 - internal
+  // reflectance[·ρ])) multiplied in; alpha_v = 2∫T(μ)μ dμ (for the albedo only)
+  microfacet_reflect,   // color · F(wo·m) · D(m) · G1(wo) · G1(wi) / (4 cos_o cos_i), D and G1 as in
+                        // microfacet.h with
+                        // alpha_u, alpha_v; F by `fresnel`
+  microfacet_transmit,  // rough dielectric's refraction (radiance from wi to wo), see microfacet_lobes.cpp
+  phong,                // color · (n+2)/(2π) · cosⁿ(angle to the mirror direction), alpha_u = exponent
+  ward,                 // color, alpha_u, alpha_v; variant 0 ward, 1 ward-duer, 2 balanced; see ward.cpp
+  sheen,                // Disney's: color · (1 - wi·m)⁵
+  disney_diffuse,       // Disney's with retro-reflection; alpha_u = roughness, extra = flatness; see
+                        // disney_lobes.cpp
+  clearcoat,            // Disney's: color · F · D · G with GTR1 of width alpha_u; see disney_lobes.cpp
+  // Delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations() meet them:
+  delta_reflect,   // color · F by `fresnel`; variant kThinSlab: 2F/(1 + F)
+  delta_transmit,  // color · (1 - F), refracts by eta
+  delta_pass,  // goes straight on: null surfaces, cut-outs: color; variant kThinSlab: color · (1 - 2F/(1 +
+               // F))
 };
 inline bool is_delta(LobeKind kind) { return kind >= LobeKind::delta_reflect; }
 
 enum class FresnelKind : std::uint8_t { none, dielectric, conductor, schlick };
 enum class NormalDistribution : std::uint8_t { beckmann, ggx };
 
+inline constexpr std::uint8_t kThinSlab = 1;
+
 // Plain data; which fields mean something depends on `kind`. 72 bytes.
 struct Lobe {
   LobeKind kind = LobeKind::diffuse;
   FresnelKind fresnel = FresnelKind::none;
   NormalDistribution distribution = NormalDistribution::ggx;
-  std::uint8_t variant = 0;  // ward's variant; bit 0 of interfaced_diffuse: nonlinear
+  std::uint8_t variant = 0;  // ward's variant; kThinSlab for delta lobes of a thin dielectric
   Rgb color{0};              // reflectance or scale, mixture weights multiplied in
   float alpha_u = 0, alpha_v = 0;
-  float eta = 1;             // inside over outside, for wo on the outside
+  float eta = 1;                         // inside over outside, for wo on the outside
   Rgb conductor_eta{0}, conductor_k{0};  // conductor; schlick: conductor_eta is F0
-  float extra = 0;           // interfaced_diffuse: internal diffuse Fresnel reflectance; sheen/disney: roughness, flatness
+  float extra = 0;                       // disney_diffuse: flatness
 };
 
 inline constexpr int kMaxLobes = 8;
@@ -64,30 +78,33 @@ struct Closure {
   bool has_delta() const;
   // The only smooth lobe is `diffuse` (delta lobes may stand beside it).
   bool is_lambertian() const;
-  // Least roughness alpha of a smooth glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0 if none is smooth.
+  // Least roughness alpha of a smooth glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0
+  // if none is smooth.
   float roughness() const;
 };
 
 // Which half of the closure a caller wants.
 enum class Lobes : std::uint8_t { smooth, delta, all };
 
-// Σ f(wo, wi)·|cos(wi, n)| of the smooth lobes, per steradian. 0 where wi and wo lie on sides that disagree between the
-// shading and the geometric normal (no light leaks).
-Rgb eval(const Closure& closure, Vec3f wo, Vec3f wi);
+// Σ f(wo, wi)·|cos(wi, n)| of the smooth lobes, per steradian. 0 where wi and wo lie on sides that disagree
+// between the shading and the geometric normal (no light leaks). Radiance flows from wi to wo; with
+// `adjoint`, from wo to wi, as at a virtual light (it matters to refraction only, where the two differ by
+// eta²).
+Rgb eval(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint = false);
 // The same without the cosine: f alone.
-Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi);
-// Solid-angle density with which sample(…, Lobes::smooth or all) draws wi among the smooth lobes. With Lobes::all the
-// probability of choosing the smooth lobes at all is included.
+Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint = false);
+// Solid-angle density with which sample(…, Lobes::smooth or all) draws wi among the smooth lobes. With
+// Lobes::all the probability of choosing the smooth lobes at all is included.
 float pdf(const Closure& closure, Vec3f wo, Vec3f wi, Lobes which);
 
 struct BsdfSample {
   Vec3f wi;
-  Rgb weight;        // f·|cos|/pdf, or the delta lobe's coefficient over its probability
-  float pdf = 0;     // solid-angle density; for a delta lobe its discrete probability
+  Rgb weight;     // f·|cos|/pdf, or the delta lobe's coefficient over its probability
+  float pdf = 0;  // solid-angle density; for a delta lobe its discrete probability
   bool delta = false;
   bool transmitted = false;
   LobeKind kind = LobeKind::diffuse;
-  float eta = 1;     // relative index crossed (1 unless refracted); for radiance scaling in Russian roulette
+  float eta = 1;  // relative index crossed (1 unless refracted); for radiance scaling in Russian roulette
 };
 // u1 chooses the lobe, u2 the direction. Empty if nothing is left to sample (absorbed).
 // Radiance transport: refraction scales by 1/eta² when `adjoint` is false; particles pass adjoint = true.
@@ -102,9 +119,16 @@ struct DeltaContinuation {
   float eta = 1;
 };
 // All delta continuations at wo (at most kMaxLobes, total internal reflection resolved); returns how many.
-int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[kMaxLobes + 1], bool adjoint = false);
+int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[kMaxLobes + 1],
+                        bool adjoint = false);
 
-// Directional albedo at wo: exact for diffuse, closely approximated otherwise (for Russian roulette, AOVs, sampling weights).
+// Directional albedo at wo, delta lobes included: exact for diffuse, smooth plastic and delta lobes, a rule
+// of 32 fixed draws (a few per cent) otherwise. For Russian roulette and AOVs.
 Rgb albedo(const Closure& closure, Vec3f wo);
+
+// Factor by which a particle's throughput must be multiplied beside sample(…, adjoint)'s weight where the
+// shading normal is not the geometric one: |wo·ns||wi·ng| / (|wo·ng||wi·ns|) (Veach 1997, section 5.3). wo:
+// where the particle came from; wi: where it goes.
+float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi);
 
 }  // namespace lumirank::scatter

@@ -1,5 +1,5 @@
-// The BSDFs of a scene, prepared: textures and nested BSDFs are indices, indices of refraction are resolved. A material
-// becomes a Closure at a surface point.
+// The BSDFs of a scene, prepared: textures and nested BSDFs are indices, indices of refraction are resolved.
+// A material becomes a Closure at a surface point.
 #pragma once
 
 #include <variant>
@@ -25,15 +25,20 @@ struct FloatInput {
 // What a material needs to know of a point.
 struct SurfacePoint {
   Vec3f position;
-  Vec3f ng;             // unit geometric normal, on the outside
-  Frame shading;        // shading.n in the hemisphere of ng; shading.s along dp/du where uv exist
-  Vec3f dpdu, dpdv;     // for bump maps; zero if the mesh has no uv
+  Vec3f ng;          // unit geometric normal, on the outside
+  Frame shading;     // shading.n in the hemisphere of ng; shading.s along dp/du where uv exist
+  Vec3f dpdu, dpdv;  // for bump maps; zero if the mesh has no uv
   SurfaceUv uv;
 };
 
 struct NullMaterial {};
-struct DiffuseMaterial { ColorInput reflectance; };
-struct RoughDiffuseMaterial { ColorInput reflectance; FloatInput alpha; };
+struct DiffuseMaterial {
+  ColorInput reflectance;
+};
+struct RoughDiffuseMaterial {
+  ColorInput reflectance;
+  FloatInput alpha;
+};
 struct ConductorMaterial {
   Rgb eta, k;
   ColorInput specular_reflectance;
@@ -48,7 +53,10 @@ struct DielectricMaterial {
   FloatInput alpha_u, alpha_v;
   bool smooth = true;
 };
-struct ThinDielectricMaterial { float eta; ColorInput specular_reflectance, specular_transmittance; };
+struct ThinDielectricMaterial {
+  float eta;
+  ColorInput specular_reflectance, specular_transmittance;
+};
 struct PlasticMaterial {
   float eta;
   ColorInput diffuse_reflectance, specular_reflectance;
@@ -57,7 +65,10 @@ struct PlasticMaterial {
   FloatInput alpha;
   bool smooth = true;
 };
-struct PhongMaterial { ColorInput diffuse_reflectance, specular_reflectance; FloatInput exponent; };
+struct PhongMaterial {
+  ColorInput diffuse_reflectance, specular_reflectance;
+  FloatInput exponent;
+};
 struct WardMaterial {
   int variant = 2;  // 0 ward, 1 ward-duer, 2 balanced
   ColorInput diffuse_reflectance, specular_reflectance;
@@ -65,16 +76,32 @@ struct WardMaterial {
 };
 struct PrincipledMaterial {
   ColorInput base_color;
-  FloatInput roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, clearcoat, clearcoat_gloss,
-      flatness;
+  FloatInput roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, clearcoat,
+      clearcoat_gloss, flatness;
   float eta = 1.5f;
 };
-struct MaskMaterial { FloatInput opacity; int nested; };
-struct TwoSidedMaterial { int front, back; };
-struct BumpMaterial { int texture; float scale; int nested; };
-struct NormalMapMaterial { int texture; int nested; };
+struct MaskMaterial {
+  FloatInput opacity;
+  int nested;
+};
+struct TwoSidedMaterial {
+  int front, back;
+};
+struct BumpMaterial {
+  int texture;
+  float scale;
+  int nested;
+};
+struct NormalMapMaterial {
+  int texture;
+  int nested;
+};
 struct MixtureMaterial {
-  struct Part { FloatInput weight; bool complement; int nested; };
+  struct Part {
+    FloatInput weight;
+    bool complement;
+    int nested;
+  };
   std::vector<Part> parts;
 };
 
@@ -88,16 +115,23 @@ struct MaterialSet {
   std::vector<Material> materials;
   TextureSet textures;
 
-  // The closure at a point, for a known direction wo (which decides the side of two-sided and dielectric BSDFs).
-  // A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
+  // The closure at a point, for a known direction wo (which decides the side of two-sided and dielectric
+  // BSDFs). A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
   Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
 
-  // Whether shadow rays may pass straight through somewhere (null, thin dielectric, mask): such geometry gets a filter.
-  enum class Passage { opaque, smooth, cutout };  // smooth: coloured transmittance (goes into E); cutout: binary (into V)
+  // Whether shadow rays may pass straight through somewhere (null, thin dielectric, mask): such geometry gets
+  // a filter.
+  enum class Passage {
+    opaque,
+    smooth,
+    cutout
+  };  // smooth: coloured transmittance (goes into E); cutout: binary (into V)
   Passage passage(int material) const;
-  // Straight-through transmittance along w (either sense): thin dielectrics and null surfaces.
+  // Straight-through transmittance along w (pointing away from the surface, to the side that decides for
+  // two-sided materials): the coefficients of all delta_pass lobes, so thin dielectrics, null surfaces and 1
+  // - opacity of masks.
   Rgb transmittance(int material, const SurfacePoint& at, Vec3f w) const;
-  // Probability that a cut-out lets nothing through; 1 for anything without a mask.
+  // Probability that a cut-out lets nothing through; 1 for whatever passage() does not call a cutout.
   float opacity(int material, const SurfaceUv& uv) const;
 };
 

@@ -1,4 +1,9 @@
 // Prepared textures: pixels in memory, looked up at a uv.
+//
+// Orientation: v = 0 is the bottom edge of the picture, v = 1 its top; TexturePixels keeps the top row first.
+// So texel (column, row) has its centre at u = (column + ½)/width, v = 1 - (row + ½)/height. Readers of file
+// formats that count otherwise flip the uv or the transform; nothing here knows of it. Coordinates that are
+// not finite read as 0.
 #pragma once
 
 #include <memory>
@@ -13,7 +18,7 @@ namespace lumirank::scatter {
 enum class TexFilter { nearest, bilinear };
 enum class TexWrap { repeat, mirror, clamp };
 
-// Linear RGB plus alpha; row 0 is the top of the picture (v = 0 at the bottom unless a reader flips it: see the decisions).
+// Linear RGB plus alpha; row 0 is the top of the picture.
 struct TexturePixels {
   int width = 0, height = 0;
   std::vector<Rgb> rgb;
@@ -44,7 +49,8 @@ struct ScaleTexture {
 };
 struct VertexColorTexture {};
 
-using Texture = std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture, ScaleTexture, VertexColorTexture>;
+using Texture =
+    std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture, ScaleTexture, VertexColorTexture>;
 
 // All textures of a world; a texture refers only to textures before it.
 struct TextureSet {

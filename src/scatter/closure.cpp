@@ -1,0 +1,261 @@
+#include "scatter/closure.h"
+
+#include "base/error.h"
+#include "scatter/lobe.h"
+
+namespace lumirank::scatter {
+namespace {
+
+// Cosines below this are grazing: nothing is evaluated there.
+constexpr float kGrazing = 1e-6f;
+
+// wo in the local frame, mirrored so that z > 0.
+struct Incident {
+  Vec3f wo;
+  float side;  // of wo: +1 outside, -1 inside
+  bool valid;  // shading and geometric normal agree about the side
+};
+
+Incident incident(const Closure& c, Vec3f wo) {
+  Vec3f local = c.frame.to_local(wo);
+  const float side = local.z > 0 ? 1.0f : -1.0f;
+  local.z *= side;
+  return {local, side, local.z > kGrazing && dot(wo, c.ng) * side > 0};
+}
+
+// Does wi (world) lie on the side which its shading cosine says? `local_z` unmirrored.
+bool sides_agree(const Closure& c, Vec3f wi, float local_z) { return dot(wi, c.ng) * local_z > 0; }
+
+bool wanted(LobeKind kind, Lobes which) {
+  return which == Lobes::all || (which == Lobes::delta) == is_delta(kind);
+}
+
+struct DeltaLobe {
+  Vec3f wi;         // world
+  Rgb coefficient;  // without radiance scaling
+  float eta = 1;    // relative index crossed
+};
+bool follow_delta(const Closure& c, const Incident& in, const Lobe& lobe, Vec3f wo, DeltaLobe& out) {
+  const LobeView view = view_from(lobe, in.side > 0);
+  if (lobe.kind == LobeKind::delta_pass) {
+    // Straight on whatever the shading normal says; only thin slabs need its cosine.
+    Vec3f local;
+    const Vec3f from{in.wo.x, in.wo.y, std::max(in.wo.z, 0.0f)};
+    if (!delta_direction(view, from, local, out.coefficient)) return false;
+    out.wi = -wo, out.eta = 1;
+    return true;
+  }
+  Vec3f local;
+  if (!in.valid || !delta_direction(view, in.wo, local, out.coefficient)) return false;
+  local.z *= in.side;
+  out.wi = c.frame.to_world(local);
+  out.eta = lobe.kind == LobeKind::delta_transmit ? view.eta : 1.0f;
+  return sides_agree(c, out.wi, local.z);
+}
+
+// Probabilities (not normalised) of the lobes for one wo, and the delta directions on the way.
+struct Selection {
+  float weight[kMaxLobes];
+  float total = 0;
+  DeltaLobe delta[kMaxLobes];
+};
+Selection select(const Closure& c, const Incident& in, Vec3f wo, Lobes which) {
+  Selection s;
+  for (int k = 0; k < c.count; ++k) {
+    const Lobe& lobe = c.lobes[k];
+    s.weight[k] = 0;
+    if (!wanted(lobe.kind, which)) continue;
+    if (is_delta(lobe.kind)) {
+      if (follow_delta(c, in, lobe, wo, s.delta[k])) s.weight[k] = mean(s.delta[k].coefficient);
+    } else if (in.valid) {
+      s.weight[k] = lobe_importance(view_from(lobe, in.side > 0), in.wo.z);
+    }
+    s.total += s.weight[k];
+  }
+  return s;
+}
+
+// Value and density of all smooth lobes at one pair; wi local and mirrored as wo is.
+Rgb value_of_all(const Closure& c, const Incident& in, Vec3f wi) {
+  Rgb sum(0);
+  for (int k = 0; k < c.count; ++k) {
+    const Lobe& lobe = c.lobes[k];
+    if (is_delta(lobe.kind) || transmits(lobe.kind) != (wi.z < 0)) continue;
+    sum += lobe_value(view_from(lobe, in.side > 0), in.wo, wi);
+  }
+  return sum;
+}
+float density_of_all(const Closure& c, const Incident& in, Vec3f wi, const Selection& s) {
+  float sum = 0;
+  for (int k = 0; k < c.count; ++k) {
+    const Lobe& lobe = c.lobes[k];
+    if (is_delta(lobe.kind) || !(s.weight[k] > 0) || transmits(lobe.kind) != (wi.z < 0)) continue;
+    sum += s.weight[k] * lobe_pdf(view_from(lobe, in.side > 0), in.wo, wi);
+  }
+  return sum / s.total;
+}
+
+float crossed_eta(const Closure& c, const Incident& in, Vec3f wi) {
+  if (wi.z > 0) return 1;
+  for (int k = 0; k < c.count; ++k)
+    if (c.lobes[k].kind == LobeKind::microfacet_transmit) return view_from(c.lobes[k], in.side > 0).eta;
+  return 1;
+}
+
+}  // namespace
+
+void Closure::add(const Lobe& lobe) {
+  if (is_black(lobe.color) && !(lobe.kind == LobeKind::oren_nayar && !is_black(lobe.conductor_eta))) return;
+  if (count == kMaxLobes) throw InternalError("a closure has more lobes than kMaxLobes");
+  lobes[count++] = lobe;
+}
+
+bool Closure::has_smooth() const {
+  for (int k = 0; k < count; ++k)
+    if (!is_delta(lobes[k].kind)) return true;
+  return false;
+}
+
+bool Closure::has_delta() const {
+  for (int k = 0; k < count; ++k)
+    if (is_delta(lobes[k].kind)) return true;
+  return false;
+}
+
+bool Closure::is_lambertian() const {
+  int smooth = 0;
+  for (int k = 0; k < count; ++k) {
+    if (is_delta(lobes[k].kind)) continue;
+    if (lobes[k].kind != LobeKind::diffuse) return false;
+    ++smooth;
+  }
+  return smooth == 1;
+}
+
+float Closure::roughness() const {
+  if (!has_smooth()) return 0;
+  float least = 1;
+  for (int k = 0; k < count; ++k) {
+    const Lobe& lobe = lobes[k];
+    switch (lobe.kind) {
+      case LobeKind::microfacet_reflect:
+      case LobeKind::microfacet_transmit:
+      case LobeKind::ward:
+        least = std::min({least, lobe.alpha_u, lobe.alpha_v});
+        break;
+      case LobeKind::clearcoat:
+        least = std::min(least, lobe.alpha_u);
+        break;
+      case LobeKind::phong:
+        least = std::min(least, std::sqrt(2 / (lobe.alpha_u + 2)));
+        break;
+      default:
+        break;
+    }
+  }
+  return least;
+}
+
+Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint) {
+  if (adjoint) std::swap(wo, wi);
+  const Incident in = incident(closure, wo);
+  if (!in.valid) return Rgb(0);
+  Vec3f local = closure.frame.to_local(wi);
+  if (!(std::abs(local.z) > kGrazing) || !sides_agree(closure, wi, local.z)) return Rgb(0);
+  local.z *= in.side;
+  return value_of_all(closure, in, local);
+}
+
+Rgb eval(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint) {
+  return eval_f(closure, wo, wi, adjoint) * std::abs(dot(wi, closure.frame.n));
+}
+
+float pdf(const Closure& closure, Vec3f wo, Vec3f wi, Lobes which) {
+  if (which == Lobes::delta) return 0;
+  const Incident in = incident(closure, wo);
+  if (!in.valid) return 0;
+  Vec3f local = closure.frame.to_local(wi);
+  if (!(std::abs(local.z) > kGrazing) || !sides_agree(closure, wi, local.z)) return 0;
+  local.z *= in.side;
+  const Selection s = select(closure, in, wo, which);
+  return s.total > 0 ? density_of_all(closure, in, local, s) : 0.0f;
+}
+
+std::optional<BsdfSample> sample(const Closure& closure, Vec3f wo, float u1, Vec2f u2, Lobes which,
+                                 bool adjoint) {
+  const Incident in = incident(closure, wo);
+  const Selection s = select(closure, in, wo, which);
+  if (!(s.total > 0)) return std::nullopt;
+  int chosen = -1;
+  float left = u1 * s.total;
+  for (int k = 0; k < closure.count; ++k) {
+    if (!(s.weight[k] > 0)) continue;
+    chosen = k;
+    if (left < s.weight[k]) break;
+    left -= s.weight[k];
+  }
+  const Lobe& lobe = closure.lobes[chosen];
+  BsdfSample out;
+  out.kind = lobe.kind;
+  if (is_delta(lobe.kind)) {
+    const DeltaLobe& delta = s.delta[chosen];
+    out.wi = delta.wi;
+    out.delta = true;
+    out.transmitted = transmits(lobe.kind);
+    out.eta = delta.eta;
+    out.pdf = s.weight[chosen] / s.total;
+    out.weight = delta.coefficient / out.pdf;
+    if (!adjoint) out.weight *= 1 / (delta.eta * delta.eta);
+    return out;
+  }
+  Vec3f local;
+  if (!lobe_sample(view_from(lobe, in.side > 0), in.wo, u2, local)) return std::nullopt;
+  if (!(std::abs(local.z) > kGrazing)) return std::nullopt;
+  out.wi = closure.frame.to_world({local.x, local.y, local.z * in.side});
+  if (!sides_agree(closure, out.wi, local.z * in.side)) return std::nullopt;
+  out.pdf = density_of_all(closure, in, local, s);
+  if (!(out.pdf > 0) || !std::isfinite(out.pdf)) return std::nullopt;
+  out.transmitted = local.z < 0;
+  out.eta = crossed_eta(closure, in, local);
+  out.weight = value_of_all(closure, in, local) * (std::abs(local.z) / out.pdf);
+  // Radiance scales by the squared index when it crosses; the value above is that of radiance.
+  if (adjoint) out.weight *= out.eta * out.eta;
+  return out;
+}
+
+int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[kMaxLobes + 1],
+                        bool adjoint) {
+  const Incident in = incident(closure, wo);
+  int n = 0;
+  for (int k = 0; k < closure.count; ++k) {
+    if (!is_delta(closure.lobes[k].kind)) continue;
+    DeltaLobe delta;
+    if (!follow_delta(closure, in, closure.lobes[k], wo, delta)) continue;
+    const float scale = adjoint ? 1.0f : 1 / (delta.eta * delta.eta);
+    out[n++] = {delta.wi, delta.coefficient * scale, closure.lobes[k].kind, delta.eta};
+  }
+  return n;
+}
+
+Rgb albedo(const Closure& closure, Vec3f wo) {
+  const Incident in = incident(closure, wo);
+  Rgb sum(0);
+  for (int k = 0; k < closure.count; ++k) {
+    const Lobe& lobe = closure.lobes[k];
+    DeltaLobe delta;
+    if (is_delta(lobe.kind)) {
+      if (follow_delta(closure, in, lobe, wo, delta)) sum += delta.coefficient;
+    } else if (in.valid) {
+      sum += lobe_albedo(view_from(lobe, in.side > 0), in.wo);
+    }
+  }
+  return sum;
+}
+
+float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi) {
+  const float numerator = std::abs(dot(wo, closure.frame.n) * dot(wi, closure.ng));
+  const float denominator = std::abs(dot(wo, closure.ng) * dot(wi, closure.frame.n));
+  return denominator > 0 ? numerator / denominator : 0.0f;
+}
+
+}  // namespace lumirank::scatter

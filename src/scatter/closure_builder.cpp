@@ -1,0 +1,199 @@
+#include "scatter/closure_builder.h"
+
+#include "base/error.h"
+#include "scatter/interface.h"
+#include "scatter/microfacet.h"
+
+namespace lumirank::scatter {
+namespace {
+
+// Whether the lobe's index is read from wo's side, so that turning the frame inverts it.
+bool index_has_a_side(const Lobe& lobe) {
+  const bool reflects = lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::delta_reflect;
+  if (reflects) return lobe.fresnel == FresnelKind::dielectric && lobe.variant != kThinSlab;
+  return lobe.kind == LobeKind::microfacet_transmit || lobe.kind == LobeKind::delta_transmit;
+}
+
+Lobe lobe_of(LobeKind kind, Rgb color) {
+  Lobe lobe;
+  lobe.kind = kind;
+  lobe.color = color;
+  return lobe;
+}
+
+}  // namespace
+
+void ClosureBuilder::add(int material, const SurfacePoint& at, float weight) {
+  if (!(weight > 0)) return;
+  if (material < 0 || static_cast<std::size_t>(material) >= set_.materials.size())
+    throw InternalError("material index " + std::to_string(material) + " of " +
+                        std::to_string(set_.materials.size()));
+  std::visit([&](const auto& m) { leaf(m, at, weight); }, set_.materials[static_cast<std::size_t>(material)]);
+}
+
+Closure ClosureBuilder::finish(const SurfacePoint& at) {
+  if (frame_weight_ == 0) out_.frame = at.shading, out_.ng = at.ng;
+  // Turned frames are left-handed until here.
+  out_.frame.t = cross(out_.frame.n, out_.frame.s);
+  return out_;
+}
+
+void ClosureBuilder::use_frame(const SurfacePoint& at, float weight) {
+  if (weight <= frame_weight_ || (frame_weight_ > 0 && dot(at.ng, out_.ng) < 0)) return;
+  frame_weight_ = weight;
+  out_.frame = at.shading;
+  out_.ng = at.ng;
+}
+
+void ClosureBuilder::push(Lobe lobe, const SurfacePoint& at, float weight) {
+  if (lobe.kind != LobeKind::delta_pass || lobe.variant == kThinSlab) use_frame(at, weight);
+  lobe.color *= weight;
+  if (lobe.kind == LobeKind::oren_nayar) lobe.conductor_eta *= weight;
+  if (index_has_a_side(lobe) && dot(at.ng, out_.ng) < 0) lobe.eta = 1 / lobe.eta;
+  if (absorb(out_, lobe)) return;
+  if (out_.count == kMaxLobes)
+    merge_lobes(out_, lobe);
+  else
+    out_.add(lobe);
+}
+
+void ClosureBuilder::leaf(const NullMaterial&, const SurfacePoint& at, float weight) {
+  push(lobe_of(LobeKind::delta_pass, Rgb(1)), at, weight);
+}
+
+void ClosureBuilder::leaf(const DiffuseMaterial& m, const SurfacePoint& at, float weight) {
+  if (front(at))
+    push(lobe_of(LobeKind::diffuse, reflectance(set_.textures, m.reflectance, at.uv)), at, weight);
+}
+
+void ClosureBuilder::leaf(const RoughDiffuseMaterial& m, const SurfacePoint& at, float weight) {
+  if (!front(at)) return;
+  const Rgb rho = reflectance(set_.textures, m.reflectance, at.uv);
+  Lobe lobe = lobe_of(LobeKind::oren_nayar, rho);
+  lobe.conductor_eta = rho * rho;
+  // The Gaussian slope width α of a Beckmann surface is √2 times the standard deviation of its slopes.
+  lobe.alpha_u = lobe.alpha_v = std::max(0.0f, number(set_.textures, m.alpha, at.uv)) * 0.70710678f;
+  push(lobe, at, weight);
+}
+
+void ClosureBuilder::leaf(const ConductorMaterial& m, const SurfacePoint& at, float weight) {
+  if (!front(at)) return;
+  Lobe lobe = lobe_of(m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect,
+                      reflectance(set_.textures, m.specular_reflectance, at.uv));
+  lobe.fresnel = FresnelKind::conductor;
+  lobe.conductor_eta = m.eta, lobe.conductor_k = m.k;
+  if (!m.smooth) {
+    lobe.distribution = m.distribution;
+    lobe.alpha_u = rough_alpha(set_.textures, m.alpha_u, at.uv);
+    lobe.alpha_v = rough_alpha(set_.textures, m.alpha_v, at.uv);
+  }
+  push(lobe, at, weight);
+}
+
+void ClosureBuilder::leaf(const DielectricMaterial& m, const SurfacePoint& at, float weight) {
+  const Rgb reflected = reflectance(set_.textures, m.specular_reflectance, at.uv);
+  const Rgb transmitted = reflectance(set_.textures, m.specular_transmittance, at.uv);
+  Lobe lobe = lobe_of(m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect, reflected);
+  lobe.fresnel = FresnelKind::dielectric;
+  lobe.eta = m.eta;
+  if (!m.smooth) {
+    // A rough interface between equal indices bends nothing, and the microfacet formula has no limit there.
+    if (std::abs(m.eta - 1) < 1e-3f) return push(lobe_of(LobeKind::delta_pass, transmitted), at, weight);
+    lobe.distribution = m.distribution;
+    lobe.alpha_u = rough_alpha(set_.textures, m.alpha_u, at.uv);
+    lobe.alpha_v = rough_alpha(set_.textures, m.alpha_v, at.uv);
+  }
+  push(lobe, at, weight);
+  lobe.kind = m.smooth ? LobeKind::delta_transmit : LobeKind::microfacet_transmit;
+  lobe.color = transmitted;
+  push(lobe, at, weight);
+}
+
+void ClosureBuilder::leaf(const ThinDielectricMaterial& m, const SurfacePoint& at, float weight) {
+  Lobe lobe = lobe_of(LobeKind::delta_reflect, reflectance(set_.textures, m.specular_reflectance, at.uv));
+  lobe.fresnel = FresnelKind::dielectric;
+  lobe.variant = kThinSlab;
+  lobe.eta = m.eta;
+  push(lobe, at, weight);
+  lobe.kind = LobeKind::delta_pass;
+  lobe.color = reflectance(set_.textures, m.specular_transmittance, at.uv);
+  push(lobe, at, weight);
+}
+
+void ClosureBuilder::leaf(const PlasticMaterial& m, const SurfacePoint& at, float weight) {
+  if (!front(at)) return;
+  const float alpha = m.smooth ? 0.0f : rough_alpha(set_.textures, m.alpha, at.uv);
+  Lobe coat = lobe_of(m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect,
+                      reflectance(set_.textures, m.specular_reflectance, at.uv));
+  coat.fresnel = FresnelKind::dielectric;
+  coat.distribution = m.distribution;
+  coat.alpha_u = coat.alpha_v = alpha;
+  coat.eta = m.eta;
+  push(coat, at, weight);
+  push(interfaced_diffuse_lobe(reflectance(set_.textures, m.diffuse_reflectance, at.uv), m.eta,
+                               m.distribution, alpha, m.nonlinear),
+       at, weight);
+}
+
+namespace {
+
+// Diffuse and specular reflectance that together exceed 1 in some channel are scaled down alike, as Mitsuba
+// 0.6 does.
+void conserve(Rgb& diffuse, Rgb& specular) {
+  const float most = max_component(diffuse + specular);
+  if (most > 1) diffuse *= 1 / most, specular *= 1 / most;
+}
+
+}  // namespace
+
+void ClosureBuilder::leaf(const PhongMaterial& m, const SurfacePoint& at, float weight) {
+  if (!front(at)) return;
+  Rgb diffuse = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
+  Rgb specular = reflectance(set_.textures, m.specular_reflectance, at.uv);
+  conserve(diffuse, specular);
+  push(lobe_of(LobeKind::diffuse, diffuse), at, weight);
+  Lobe lobe = lobe_of(LobeKind::phong, specular);
+  lobe.alpha_u = std::clamp(number(set_.textures, m.exponent, at.uv), 0.0f, 1e6f);
+  push(lobe, at, weight);
+}
+
+void ClosureBuilder::leaf(const WardMaterial& m, const SurfacePoint& at, float weight) {
+  if (!front(at)) return;
+  Rgb diffuse = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
+  Rgb specular = reflectance(set_.textures, m.specular_reflectance, at.uv);
+  conserve(diffuse, specular);
+  push(lobe_of(LobeKind::diffuse, diffuse), at, weight);
+  Lobe lobe = lobe_of(LobeKind::ward, specular);
+  lobe.variant = static_cast<std::uint8_t>(m.variant);
+  lobe.alpha_u = rough_alpha(set_.textures, m.alpha_u, at.uv);
+  lobe.alpha_v = rough_alpha(set_.textures, m.alpha_v, at.uv);
+  push(lobe, at, weight);
+}
+
+void ClosureBuilder::leaf(const MaskMaterial& m, const SurfacePoint& at, float weight) {
+  const float opacity = fraction(set_.textures, m.opacity, at.uv);
+  add(m.nested, at, weight * opacity);
+  if (opacity < 1) push(lobe_of(LobeKind::delta_pass, Rgb(1)), at, weight * (1 - opacity));
+}
+
+void ClosureBuilder::leaf(const TwoSidedMaterial& m, const SurfacePoint& at, float weight) {
+  if (front(at))
+    add(m.front, at, weight);
+  else
+    add(m.back, turned(at), weight);
+}
+
+void ClosureBuilder::leaf(const BumpMaterial& m, const SurfacePoint& at, float weight) {
+  add(m.nested, bumped(set_.textures, m, at), weight);
+}
+
+void ClosureBuilder::leaf(const NormalMapMaterial& m, const SurfacePoint& at, float weight) {
+  add(m.nested, normal_mapped(set_.textures, m, at), weight);
+}
+
+void ClosureBuilder::leaf(const MixtureMaterial& m, const SurfacePoint& at, float weight) {
+  const std::vector<float> weights = mixture_weights(set_.textures, m, at.uv);
+  for (std::size_t k = 0; k < weights.size(); ++k) add(m.parts[k].nested, at, weight * weights[k]);
+}
+
+}  // namespace lumirank::scatter

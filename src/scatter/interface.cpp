@@ -1,0 +1,31 @@
+#include "scatter/interface.h"
+
+#include "scatter/interface_table.h"
+
+namespace lumirank::scatter {
+
+InterfaceCoefficients interface_coefficients(NormalDistribution distribution, float alpha, float eta) {
+  if (alpha > 0) return interface_table(distribution).lookup(alpha, eta);
+  InterfaceCoefficients smooth;
+  smooth.diffuse_transmittance = 1 - fresnel_diffuse_reflectance(eta);
+  smooth.internal_reflectance = fresnel_diffuse_reflectance(1 / eta);
+  return smooth;
+}
+
+Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
+                             bool nonlinear) {
+  const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
+  Lobe lobe;
+  lobe.kind = LobeKind::interfaced_diffuse;
+  lobe.distribution = distribution;
+  lobe.alpha_u = alpha;
+  lobe.alpha_v = k.diffuse_transmittance;
+  lobe.eta = eta;
+  lobe.conductor_eta = {k.c[0], k.c[1], k.c[2]};
+  lobe.conductor_k = {k.c[3], k.c[4], k.c[5]};
+  const Rgb trapped = nonlinear ? color * k.internal_reflectance : Rgb(k.internal_reflectance);
+  lobe.color = color / ((Rgb(1) - trapped) * (eta * eta));
+  return lobe;
+}
+
+}  // namespace lumirank::scatter

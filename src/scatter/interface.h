@@ -1,0 +1,36 @@
+// The coating of plastic: how much light a (smooth or rough) dielectric interface lets through, prepared so
+// that the evaluation at a pair of directions needs nothing but their cosines.
+#pragma once
+
+#include "scatter/closure.h"
+#include "scatter/fresnel.h"
+
+namespace lumirank::scatter {
+
+// T(μ) of LobeKind::interfaced_diffuse: c0 + c1·s + c2·s² + c3·s³ + c4·μ + c5·μ², s = 1 - F(μ, eta) being the
+// smooth interface's transmittance, held within [0, 1]. A smooth coating has c1 = 1 and all others 0. The
+// coefficients lie in conductor_eta (c0, c1, c2) and conductor_k (c3, c4, c5).
+inline float interface_transmittance(const Lobe& lobe, float cos_theta) {
+  const float s = 1 - fresnel_dielectric(cos_theta, lobe.eta);
+  const Rgb a = lobe.conductor_eta, b = lobe.conductor_k;
+  const float p = a.r + s * (a.g + s * (a.b + s * b.r)) + cos_theta * (b.g + cos_theta * b.b);
+  return std::clamp(p, 0.0f, 1.0f);
+}
+
+// The numbers of one interface. Rough ones: integrals of single scattering by the microfacet distribution
+// (masked light is lost, as in Mitsuba), tabulated once per distribution over roughness and index and
+// interpolated.
+struct InterfaceCoefficients {
+  float c[6] = {0, 1, 0, 0, 0, 0};
+  float diffuse_transmittance = 1;  // 2∫T(μ)μ dμ, from outside
+  float internal_reflectance = 0;   // 2∫R(μ)μ dμ, from inside
+};
+// alpha = 0: smooth. Thread-safe; the same numbers whoever asks first.
+InterfaceCoefficients interface_coefficients(NormalDistribution distribution, float alpha, float eta);
+
+// Plastic's base: color/π·T(wi)·T(wo)/(eta²·(1 - r)), r the internal reflectance, times the colour if
+// nonlinear. All that does not depend on directions is folded into the lobe's colour.
+Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
+                             bool nonlinear);
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,177 @@
+#include "scatter/interface_table.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "scatter/microfacet.h"
+
+namespace lumirank::scatter {
+namespace {
+
+constexpr int kTerms = 6;
+constexpr int kCosines = 24;
+
+// Gauss-Legendre nodes and weights on [0, 1].
+struct Rule {
+  std::array<double, kCosines> x, w;
+};
+Rule gauss_legendre() {
+  Rule rule;
+  for (int i = 0; i < kCosines; ++i) {
+    double z = std::cos(3.14159265358979324 * (i + 0.75) / (kCosines + 0.5)), slope = 1;
+    for (int step = 0; step < 50; ++step) {
+      double p = 1, before = 0;
+      for (int k = 1; k <= kCosines; ++k) {
+        const double next = ((2 * k - 1) * z * p - (k - 1) * before) / k;
+        before = std::exchange(p, next);
+      }
+      slope = kCosines * (z * p - before) / (z * z - 1);
+      z -= p / slope;
+    }
+    rule.x[i] = 0.5 * (1 - z);
+    rule.w[i] = 1 / ((1 - z * z) * slope * slope);
+  }
+  return rule;
+}
+
+std::vector<Vec3f> visible_normals(NormalDistribution distribution, float alpha, Vec3f w, int side) {
+  std::vector<Vec3f> normals;
+  normals.reserve(static_cast<std::size_t>(side) * side);
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      normals.push_back(
+          sample_visible_normal(distribution, w, {(i + 0.5f) / side, (j + 0.5f) / side}, alpha, alpha));
+  return normals;
+}
+
+Vec3f direction(float cos_theta) {
+  return {std::sqrt(std::max(0.0f, 1 - cos_theta * cos_theta)), 0, cos_theta};
+}
+
+InterfaceMeans means_over(NormalDistribution distribution, float alpha, float eta, Vec3f w,
+                          const std::vector<Vec3f>& normals) {
+  InterfaceMeans sum;
+  for (const Vec3f m : normals) {
+    const float c = dot(w, m);
+    if (c <= 0) continue;
+    float cos_t;
+    const float f = fresnel_dielectric(c, eta, &cos_t);
+    const Vec3f reflected = reflect(w, m);
+    if (reflected.z > 0) sum.reflectance += f * microfacet_g1(distribution, reflected, alpha, alpha);
+    const Vec3f refracted = m * (c / eta - cos_t) - w / eta;
+    if (f < 1 && refracted.z < 0)
+      sum.transmittance += (1 - f) * microfacet_g1(distribution, refracted, alpha, alpha);
+  }
+  const double n = static_cast<double>(normals.size());
+  return {sum.transmittance / n, sum.reflectance / n};
+}
+
+// Least squares by normal equations and Gaussian elimination with pivoting.
+using Matrix = std::array<std::array<double, kTerms + 1>, kTerms>;
+std::array<double, kTerms> solve(Matrix m) {
+  for (int col = 0; col < kTerms; ++col) {
+    int pivot = col;
+    for (int r = col + 1; r < kTerms; ++r)
+      if (std::abs(m[r][col]) > std::abs(m[pivot][col])) pivot = r;
+    std::swap(m[col], m[pivot]);
+    for (int r = 0; r < kTerms; ++r) {
+      if (r == col) continue;
+      const double factor = m[r][col] / m[col][col];
+      for (int k = col; k <= kTerms; ++k) m[r][k] -= factor * m[col][k];
+    }
+  }
+  std::array<double, kTerms> x;
+  for (int i = 0; i < kTerms; ++i) x[i] = m[i][kTerms] / m[i][i];
+  return x;
+}
+
+// Fits T at the rule's cosines by the terms of interface_transmittance(), starting from the smooth interface.
+InterfaceCoefficients fit(const Rule& rule, float eta, const std::array<double, kCosines>& t) {
+  Matrix m{};
+  for (int k = 0; k < kCosines; ++k) {
+    const double s = 1 - fresnel_dielectric(static_cast<float>(rule.x[k]), eta);
+    const std::array<double, kTerms> power{1, s, s * s, s * s * s, rule.x[k], rule.x[k] * rule.x[k]};
+    for (int i = 0; i < kTerms; ++i) {
+      for (int j = 0; j < kTerms; ++j) m[i][j] += rule.w[k] * power[i] * power[j];
+      m[i][kTerms] += rule.w[k] * power[i] * (t[k] - s);
+    }
+  }
+  // A whiff of regularisation: near eta = 1 all s are 1 and the powers cannot be told apart.
+  for (int i = 0; i < kTerms; ++i) m[i][i] += 1e-9;
+  const std::array<double, kTerms> x = solve(m);
+  InterfaceCoefficients out;
+  for (int i = 0; i < kTerms; ++i) out.c[i] = static_cast<float>(x[i] + (i == 1 ? 1.0 : 0.0));
+  return out;
+}
+
+}  // namespace
+
+InterfaceMeans interface_means(NormalDistribution distribution, float alpha, float eta, float cos_theta,
+                               int side) {
+  const Vec3f w = direction(cos_theta);
+  return means_over(distribution, alpha, eta, w, visible_normals(distribution, alpha, w, side));
+}
+
+InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas * kEtas) {
+  constexpr int side = 16;
+  const Rule rule = gauss_legendre();
+  for (int a = 0; a < kAlphas; ++a) {
+    const float root = static_cast<float>(a) / (kAlphas - 1);
+    const float alpha = std::max(root * root, kMinAlpha);
+    std::array<std::array<InterfaceMeans, kCosines>, kEtas> means;
+    for (int k = 0; k < kCosines; ++k) {
+      const Vec3f w = direction(static_cast<float>(rule.x[k]));
+      const std::vector<Vec3f> normals = visible_normals(distribution, alpha, w, side);
+      for (int e = 0; e < kEtas; ++e) {
+        const auto eta = static_cast<float>(std::exp(kLogRange * (2.0 * e / (kEtas - 1) - 1)));
+        means[e][k] = means_over(distribution, alpha, eta, w, normals);
+      }
+    }
+    for (int e = 0; e < kEtas; ++e) {
+      const auto eta = static_cast<float>(std::exp(kLogRange * (2.0 * e / (kEtas - 1) - 1)));
+      std::array<double, kCosines> t;
+      for (int k = 0; k < kCosines; ++k) t[k] = means[e][k].transmittance;
+      InterfaceCoefficients cell = fit(rule, eta, t);
+      // From inside, the relative index is the inverse one, whose means stand in the mirrored column.
+      // Reflectance jumps at the critical angle, which the rule cannot integrate; what is lost does not.
+      double outside = 0, lost_inside = 0;
+      for (int k = 0; k < kCosines; ++k) {
+        const InterfaceMeans& inside = means[kEtas - 1 - e][k];
+        outside += 2 * rule.w[k] * rule.x[k] * t[k];
+        lost_inside += 2 * rule.w[k] * rule.x[k] * (1 - inside.transmittance - inside.reflectance);
+      }
+      cell.diffuse_transmittance = static_cast<float>(outside);
+      cell.internal_reflectance = static_cast<float>(1 - outside / (eta * eta) - lost_inside);
+      cells_[static_cast<std::size_t>(a) * kEtas + e] = cell;
+    }
+  }
+}
+
+InterfaceCoefficients InterfaceTable::lookup(float alpha, float eta) const {
+  const float a = std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) * (kAlphas - 1);
+  const float e =
+      std::clamp(static_cast<float>(0.5 + 0.5 * std::log(eta) / kLogRange), 0.0f, 1.0f) * (kEtas - 1);
+  const int a0 = std::min(static_cast<int>(a), kAlphas - 2), e0 = std::min(static_cast<int>(e), kEtas - 2);
+  const float fa = a - static_cast<float>(a0), fe = e - static_cast<float>(e0);
+  InterfaceCoefficients out;
+  out.c[1] = out.diffuse_transmittance = 0;
+  for (int da = 0; da < 2; ++da) {
+    for (int de = 0; de < 2; ++de) {
+      const float w = (da ? fa : 1 - fa) * (de ? fe : 1 - fe);
+      const InterfaceCoefficients& cell = cells_[static_cast<std::size_t>(a0 + da) * kEtas + (e0 + de)];
+      for (int i = 0; i < kTerms; ++i) out.c[i] += w * cell.c[i];
+      out.diffuse_transmittance += w * cell.diffuse_transmittance;
+      out.internal_reflectance += w * cell.internal_reflectance;
+    }
+  }
+  return out;
+}
+
+const InterfaceTable& interface_table(NormalDistribution distribution) {
+  static const InterfaceTable beckmann(NormalDistribution::beckmann);
+  static const InterfaceTable ggx(NormalDistribution::ggx);
+  return distribution == NormalDistribution::ggx ? ggx : beckmann;
+}
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,152 @@
+// Dispatch over the families.
+#include "scatter/lobe.h"
+
+#include "base/warp.h"
+#include "scatter/fresnel.h"
+#include "scatter/interface.h"
+
+namespace lumirank::scatter {
+namespace {
+
+Rgb interfaced_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+  return lobe.color * (kInvPi * interface_transmittance(lobe, wo.z) * interface_transmittance(lobe, wi.z));
+}
+
+Rgb quadrature_albedo(LobeView view, Vec3f wo) {
+  // An additive sequence with the plastic number's powers: well spread for any count.
+  constexpr int count = 32;
+  Rgb sum(0);
+  for (int k = 0; k < count; ++k) {
+    const float u = 0.5f + 0.75487766f * static_cast<float>(k),
+                v = 0.5f + 0.56984029f * static_cast<float>(k);
+    Vec3f wi;
+    if (!lobe_sample(view, wo, {u - std::floor(u), v - std::floor(v)}, wi)) continue;
+    const float pdf = lobe_pdf(view, wo, wi);
+    if (pdf > 0) sum += lobe_value(view, wo, wi) * (std::abs(wi.z) / pdf);
+  }
+  return sum / static_cast<float>(count);
+}
+
+}  // namespace
+
+Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi) {
+  const Lobe& lobe = view.lobe;
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+      return lobe.color * kInvPi;
+    case LobeKind::oren_nayar:
+      return oren_nayar_value(lobe, wo, wi);
+    case LobeKind::interfaced_diffuse:
+      return interfaced_value(lobe, wo, wi);
+    case LobeKind::microfacet_reflect:
+      return microfacet_reflect_value(view, wo, wi);
+    case LobeKind::microfacet_transmit:
+      return microfacet_transmit_value(view, wo, wi);
+    case LobeKind::phong:
+      return phong_value(lobe, wo, wi);
+    case LobeKind::ward:
+      return ward_value(lobe, wo, wi);
+    case LobeKind::sheen:
+      return sheen_value(lobe, wo, wi);
+    case LobeKind::disney_diffuse:
+      return disney_diffuse_value(lobe, wo, wi);
+    case LobeKind::clearcoat:
+      return clearcoat_value(lobe, wo, wi);
+    case LobeKind::delta_reflect:
+    case LobeKind::delta_transmit:
+    case LobeKind::delta_pass:
+      break;
+  }
+  return Rgb(0);
+}
+
+float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi) {
+  const Lobe& lobe = view.lobe;
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+    case LobeKind::oren_nayar:
+    case LobeKind::interfaced_diffuse:
+    case LobeKind::sheen:
+    case LobeKind::disney_diffuse:
+      return pdf_cosine_hemisphere(wi.z);
+    case LobeKind::microfacet_reflect:
+      return microfacet_reflect_pdf(view, wo, wi);
+    case LobeKind::microfacet_transmit:
+      return microfacet_transmit_pdf(view, wo, wi);
+    case LobeKind::phong:
+      return phong_pdf(lobe, wo, wi);
+    case LobeKind::ward:
+      return ward_pdf(lobe, wo, wi);
+    case LobeKind::clearcoat:
+      return clearcoat_pdf(lobe, wo, wi);
+    case LobeKind::delta_reflect:
+    case LobeKind::delta_transmit:
+    case LobeKind::delta_pass:
+      break;
+  }
+  return 0;
+}
+
+bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
+  const Lobe& lobe = view.lobe;
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+    case LobeKind::oren_nayar:
+    case LobeKind::interfaced_diffuse:
+    case LobeKind::sheen:
+    case LobeKind::disney_diffuse:
+      wi = warp_cosine_hemisphere(u);
+      return wi.z > 0;
+    case LobeKind::microfacet_reflect:
+      return microfacet_reflect_sample(view, wo, u, wi);
+    case LobeKind::microfacet_transmit:
+      return microfacet_transmit_sample(view, wo, u, wi);
+    case LobeKind::phong:
+      return phong_sample(lobe, wo, u, wi);
+    case LobeKind::ward:
+      return ward_sample(lobe, wo, u, wi);
+    case LobeKind::clearcoat:
+      return clearcoat_sample(lobe, wo, u, wi);
+    case LobeKind::delta_reflect:
+    case LobeKind::delta_transmit:
+    case LobeKind::delta_pass:
+      break;
+  }
+  return false;
+}
+
+Rgb lobe_albedo(LobeView view, Vec3f wo) {
+  const Lobe& lobe = view.lobe;
+  if (lobe.kind == LobeKind::diffuse) return lobe.color;
+  if (lobe.kind == LobeKind::interfaced_diffuse)
+    return lobe.color * (interface_transmittance(lobe, wo.z) * lobe.alpha_v);
+  if (is_delta(lobe.kind)) {
+    Vec3f wi;
+    Rgb coefficient;
+    return delta_direction(view, wo, wi, coefficient) ? coefficient : Rgb(0);
+  }
+  return quadrature_albedo(view, wo);
+}
+
+float lobe_importance(LobeView view, float cos_o) {
+  const Lobe& lobe = view.lobe;
+  const float scale = mean(lobe.color);
+  // Microfacets may reflect or refract where the macroscopic surface does not: never below a twentieth.
+  constexpr float least = 0.05f;
+  switch (lobe.kind) {
+    case LobeKind::interfaced_diffuse:
+      return scale * std::max(least, interface_transmittance(lobe, cos_o)) * lobe.alpha_v;
+    case LobeKind::microfacet_reflect:
+      return std::max(least * scale, mean(lobe.color * lobe_fresnel(view, cos_o)));
+    case LobeKind::microfacet_transmit:
+      return scale * std::max(least, 1 - fresnel_dielectric(cos_o, view.eta));
+    case LobeKind::sheen:
+      return scale * std::max(least, schlick_weight(cos_o));
+    case LobeKind::clearcoat:
+      return scale * std::max(least, schlick_weight(cos_o));
+    default:
+      return scale;
+  }
+}
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,63 @@
+// The families of lobes, each as a value / density / draw triple in the local frame. Inside this room only.
+//
+// A lobe acts alike on both sides of the surface (one-sidedness is the material's business): the callers
+// mirror directions so that wo.z > 0. Then wi.z > 0 for reflection and wi.z < 0 for transmission. `eta` is
+// the relative index as seen from wo's side. Values are f alone, without the cosine; densities are per solid
+// angle of wi.
+#pragma once
+
+#include "scatter/closure.h"
+
+namespace lumirank::scatter {
+
+struct LobeView {
+  const Lobe& lobe;
+  float eta;  // index of the far side over that of wo's side
+};
+
+inline LobeView view_from(const Lobe& lobe, bool outside) {
+  return {lobe, outside ? lobe.eta : 1 / lobe.eta};
+}
+
+// Any smooth lobe. A draw that leads nowhere (below the horizon) returns false.
+Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi);
+float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi);
+bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
+// Albedo at cosine wo.z: exact for the diffuse kinds, else by a fixed rule of 32 draws.
+Rgb lobe_albedo(LobeView view, Vec3f wo);
+// Cheap estimate of the albedo's mean over channels, to choose among lobes; positive for every lobe not
+// black.
+float lobe_importance(LobeView view, float cos_o);
+inline bool transmits(LobeKind kind) {
+  return kind == LobeKind::microfacet_transmit || kind == LobeKind::delta_transmit ||
+         kind == LobeKind::delta_pass;
+}
+
+// A delta lobe's single direction (local) and coefficient without radiance scaling. False if there is none
+// (total internal reflection).
+bool delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient);
+
+// Fresnel factor of a reflecting lobe at the cosine with the (micro)facet, one of the four kinds.
+Rgb lobe_fresnel(LobeView view, float cos_m);
+
+// The families.
+Rgb oren_nayar_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+Rgb microfacet_reflect_value(LobeView view, Vec3f wo, Vec3f wi);
+float microfacet_reflect_pdf(LobeView view, Vec3f wo, Vec3f wi);
+bool microfacet_reflect_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb microfacet_transmit_value(LobeView view, Vec3f wo, Vec3f wi);
+float microfacet_transmit_pdf(LobeView view, Vec3f wo, Vec3f wi);
+bool microfacet_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb phong_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+float phong_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
+bool phong_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb ward_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+float ward_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
+bool ward_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+Rgb disney_diffuse_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+Rgb clearcoat_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+float clearcoat_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
+bool clearcoat_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
+
+}  // namespace lumirank::scatter

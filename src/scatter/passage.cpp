@@ -1,0 +1,107 @@
+// Whether and how much light passes straight through a material.
+#include "scatter/closure_builder.h"
+#include "scatter/fresnel.h"
+
+namespace lumirank::scatter {
+namespace {
+
+using Passage = MaterialSet::Passage;
+
+struct PassageVisitor {
+  const MaterialSet& set;
+
+  template <typename Leaf>
+  Passage operator()(const Leaf&) const {
+    return Passage::opaque;
+  }
+  Passage operator()(const NullMaterial&) const { return Passage::smooth; }
+  Passage operator()(const ThinDielectricMaterial&) const { return Passage::smooth; }
+  Passage operator()(const MaskMaterial& m) const {
+    const Passage inside = set.passage(m.nested);
+    if (inside != Passage::opaque) return inside;
+    return m.opacity.texture < 0 && m.opacity.value >= 1 ? Passage::opaque : Passage::cutout;
+  }
+  Passage operator()(const TwoSidedMaterial& m) const {
+    const Passage front = set.passage(m.front);
+    // Two different sides: what passes depends on the side, which a cut-out's binary test does not know.
+    return m.front == m.back || (front == Passage::opaque && set.passage(m.back) == Passage::opaque)
+               ? front
+               : Passage::smooth;
+  }
+  Passage operator()(const BumpMaterial& m) const { return set.passage(m.nested); }
+  Passage operator()(const NormalMapMaterial& m) const { return set.passage(m.nested); }
+  Passage operator()(const MixtureMaterial& m) const {
+    for (const MixtureMaterial::Part& part : m.parts)
+      if (set.passage(part.nested) != Passage::opaque) return Passage::smooth;
+    return Passage::opaque;
+  }
+};
+
+struct TransmittanceVisitor {
+  const MaterialSet& set;
+  const SurfacePoint& at;
+  Vec3f w;
+
+  template <typename Leaf>
+  Rgb operator()(const Leaf&) const {
+    return Rgb(0);
+  }
+  Rgb operator()(const NullMaterial&) const { return Rgb(1); }
+  Rgb operator()(const ThinDielectricMaterial& m) const {
+    const float r = fresnel_thin(fresnel_dielectric(std::abs(dot(w, at.shading.n)), m.eta));
+    return reflectance(set.textures, m.specular_transmittance, at.uv) * (1 - r);
+  }
+  Rgb operator()(const MaskMaterial& m) const {
+    const float opacity = fraction(set.textures, m.opacity, at.uv);
+    return Rgb(1 - opacity) + set.transmittance(m.nested, at, w) * opacity;
+  }
+  Rgb operator()(const TwoSidedMaterial& m) const {
+    return set.transmittance(dot(w, at.ng) > 0 ? m.front : m.back, at, w);
+  }
+  Rgb operator()(const BumpMaterial& m) const {
+    return set.transmittance(m.nested, bumped(set.textures, m, at), w);
+  }
+  Rgb operator()(const NormalMapMaterial& m) const {
+    return set.transmittance(m.nested, normal_mapped(set.textures, m, at), w);
+  }
+  Rgb operator()(const MixtureMaterial& m) const {
+    const std::vector<float> weights = mixture_weights(set.textures, m, at.uv);
+    Rgb sum(0);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      sum += set.transmittance(m.parts[k].nested, at, w) * weights[k];
+    return sum;
+  }
+};
+
+struct OpacityVisitor {
+  const MaterialSet& set;
+  const SurfaceUv& uv;
+
+  template <typename Leaf>
+  float operator()(const Leaf&) const {
+    return 1;
+  }
+  float operator()(const MaskMaterial& m) const {
+    return fraction(set.textures, m.opacity, uv) * set.opacity(m.nested, uv);
+  }
+  float operator()(const TwoSidedMaterial& m) const { return set.opacity(m.front, uv); }
+  float operator()(const BumpMaterial& m) const { return set.opacity(m.nested, uv); }
+  float operator()(const NormalMapMaterial& m) const { return set.opacity(m.nested, uv); }
+};
+
+}  // namespace
+
+MaterialSet::Passage MaterialSet::passage(int material) const {
+  return std::visit(PassageVisitor{*this}, materials[static_cast<std::size_t>(material)]);
+}
+
+Rgb MaterialSet::transmittance(int material, const SurfacePoint& at, Vec3f w) const {
+  return std::visit(TransmittanceVisitor{*this, at, w}, materials[static_cast<std::size_t>(material)]);
+}
+
+float MaterialSet::opacity(int material, const SurfaceUv& uv) const {
+  if (passage(material) != Passage::cutout) return 1;
+  return std::visit(OpacityVisitor{*this, uv}, materials[static_cast<std::size_t>(material)]);
+}
+
+}  // namespace lumirank::scatter

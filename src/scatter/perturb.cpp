@@ -1,0 +1,51 @@
+// Bump and normal maps: the shading frame that they make.
+#include "scatter/closure_builder.h"
+
+namespace lumirank::scatter {
+namespace {
+
+SurfacePoint with_normal(const SurfacePoint& at, Vec3f n, Vec3f tangent) {
+  SurfacePoint out = at;
+  const float toward = dot(n, at.ng);
+  // A closure's shading normal is never behind its surface: lift it to just above the horizon.
+  constexpr float least = 1e-3f;
+  if (!(toward >= least)) n = n + at.ng * (least - toward);
+  const float len = length(n);
+  if (!(len > 1e-12f) || !std::isfinite(len)) return at;
+  out.shading = Frame::from_normal_tangent(n / len, tangent);
+  return out;
+}
+
+}  // namespace
+
+SurfacePoint turned(const SurfacePoint& at) {
+  SurfacePoint out = at;
+  out.ng = -at.ng;
+  out.shading.n = -at.shading.n;
+  return out;
+}
+
+// Blinn 1978: the surface is displaced along the shading normal by the height, curvature neglected.
+SurfacePoint bumped(const TextureSet& textures, const BumpMaterial& m, const SurfacePoint& at) {
+  if (!(length_squared(at.dpdu) > 0 && length_squared(at.dpdv) > 0)) return at;
+  const Vec2f slope = textures.gradient(m.texture, at.uv) * m.scale;
+  const Vec3f n = at.shading.n;
+  const Vec3f du = at.dpdu - n * dot(n, at.dpdu) + n * slope.x;
+  const Vec3f dv = at.dpdv - n * dot(n, at.dpdv) + n * slope.y;
+  Vec3f bent = cross(du, dv);
+  const float len = length(bent);
+  if (!(len > 0) || !std::isfinite(len)) return at;
+  bent = bent / len;
+  if (dot(bent, n) < 0) bent = -bent;
+  return with_normal(at, bent, du);
+}
+
+SurfacePoint normal_mapped(const TextureSet& textures, const NormalMapMaterial& m, const SurfacePoint& at) {
+  const Rgb c = textures.lookup(m.texture, at.uv);
+  const Vec3f local{2 * c.r - 1, 2 * c.g - 1, 2 * c.b - 1};
+  const float len = length(local);
+  if (!(len > 1e-6f) || !std::isfinite(len)) return at;
+  return with_normal(at, at.shading.to_world(local / len), at.shading.s);
+}
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,158 @@
+#include "scatter/texture.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace lumirank::scatter {
+namespace {
+
+Vec2f transform(const float m[6], Vec2f uv) {
+  return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+}
+
+// Texture coordinates that are not numbers read the origin: a broken mesh must not poison the image.
+Vec2f finite(Vec2f uv) { return {std::isfinite(uv.x) ? uv.x : 0.0f, std::isfinite(uv.y) ? uv.y : 0.0f}; }
+
+// Into the first period (two of them for mirrored repetition), so that texel indices stay small.
+float reduce(float x, TexWrap wrap) {
+  switch (wrap) {
+    case TexWrap::repeat:
+      return x - std::floor(x);
+    case TexWrap::mirror:
+      return x - 2 * std::floor(0.5f * x);
+    case TexWrap::clamp:
+      break;
+  }
+  return std::clamp(x, 0.0f, 1.0f);
+}
+
+int wrap_index(int i, int n, TexWrap wrap) {
+  switch (wrap) {
+    case TexWrap::repeat:
+      return ((i % n) + n) % n;
+    case TexWrap::mirror: {
+      const int k = ((i % (2 * n)) + 2 * n) % (2 * n);
+      return k < n ? k : 2 * n - 1 - k;
+    }
+    case TexWrap::clamp:
+      break;
+  }
+  return std::clamp(i, 0, n - 1);
+}
+
+// `uv` already in texture space.
+Rgb bitmap_at(const BitmapTexture& t, Vec2f uv) {
+  const TexturePixels& p = *t.pixels;
+  uv = finite(uv);
+  const float x = reduce(uv.x, t.wrap_u) * static_cast<float>(p.width);
+  // Counted from the bottom, where v = 0 is; rows are stored from the top.
+  const float y = reduce(uv.y, t.wrap_v) * static_cast<float>(p.height);
+  const auto texel = [&](int column, int from_bottom) {
+    const int row = p.height - 1 - wrap_index(from_bottom, p.height, t.wrap_v);
+    return p.rgb[static_cast<std::size_t>(row) * static_cast<std::size_t>(p.width) +
+                 static_cast<std::size_t>(wrap_index(column, p.width, t.wrap_u))];
+  };
+  if (t.filter == TexFilter::nearest)
+    return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+  const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
+  const int x0 = static_cast<int>(fx), y0 = static_cast<int>(fy);
+  const float ax = x - 0.5f - fx, ay = y - 0.5f - fy;
+  return lerp(lerp(texel(x0, y0), texel(x0 + 1, y0), ax), lerp(texel(x0, y0 + 1), texel(x0 + 1, y0 + 1), ax),
+              ay);
+}
+
+// Mitsuba's: colour 0 where both halves agree, so on [0, ½)² of each unit square.
+bool checker_first(const CheckerboardTexture& t, Vec2f mesh_uv) {
+  const Vec2f uv = finite(transform(t.to_uv, finite(mesh_uv)));
+  return (uv.x - std::floor(uv.x) > 0.5f) == (uv.y - std::floor(uv.y) > 0.5f);
+}
+
+struct RgbGradient {
+  Rgb du{0}, dv{0};
+};
+
+RgbGradient rgb_gradient(const std::vector<Texture>& textures, int index, const SurfaceUv& at);
+
+struct GradientVisitor {
+  const std::vector<Texture>& textures;
+  const SurfaceUv& at;
+
+  RgbGradient operator()(const ConstantTexture&) const { return {}; }
+  RgbGradient operator()(const VertexColorTexture&) const { return {}; }
+  RgbGradient operator()(const CheckerboardTexture& t) const {
+    return rgb_gradient(textures, checker_first(t, at.uv) ? t.color0 : t.color1, at);
+  }
+  RgbGradient operator()(const ScaleTexture& t) const {
+    const RgbGradient g = rgb_gradient(textures, t.input, at);
+    return {g.du * t.scale, g.dv * t.scale};
+  }
+  RgbGradient operator()(const BitmapTexture& t) const {
+    const Vec2f uv = transform(t.to_uv, finite(at.uv));
+    const auto w = static_cast<float>(t.pixels->width), h = static_cast<float>(t.pixels->height);
+    const Vec2f right{1 / w, 0}, up{0, 1 / h};
+    const Rgb du = (bitmap_at(t, uv + right) - bitmap_at(t, uv - right)) * (0.5f * w);
+    const Rgb dv = (bitmap_at(t, uv + up) - bitmap_at(t, uv - up)) * (0.5f * h);
+    return {du * t.to_uv[0] + dv * t.to_uv[3], du * t.to_uv[1] + dv * t.to_uv[4]};
+  }
+};
+
+RgbGradient rgb_gradient(const std::vector<Texture>& textures, int index, const SurfaceUv& at) {
+  return std::visit(GradientVisitor{textures, at}, textures[static_cast<std::size_t>(index)]);
+}
+
+struct LookupVisitor {
+  const TextureSet& set;
+  const SurfaceUv& at;
+
+  Rgb operator()(const ConstantTexture& t) const { return t.value; }
+  Rgb operator()(const BitmapTexture& t) const { return bitmap_at(t, transform(t.to_uv, finite(at.uv))); }
+  Rgb operator()(const CheckerboardTexture& t) const {
+    return set.lookup(checker_first(t, at.uv) ? t.color0 : t.color1, at);
+  }
+  Rgb operator()(const ScaleTexture& t) const { return set.lookup(t.input, at) * t.scale; }
+  Rgb operator()(const VertexColorTexture&) const { return at.vertex_color; }
+};
+
+struct MeanVisitor {
+  const TextureSet& set;
+
+  Rgb operator()(const ConstantTexture& t) const { return t.value; }
+  Rgb operator()(const BitmapTexture& t) const {
+    double sum[3] = {0, 0, 0};
+    for (const Rgb& c : t.pixels->rgb) sum[0] += c.r, sum[1] += c.g, sum[2] += c.b;
+    const double n = static_cast<double>(std::max<std::size_t>(1, t.pixels->rgb.size()));
+    return {static_cast<float>(sum[0] / n), static_cast<float>(sum[1] / n), static_cast<float>(sum[2] / n)};
+  }
+  Rgb operator()(const CheckerboardTexture& t) const {
+    return (set.mean(t.color0) + set.mean(t.color1)) * 0.5f;
+  }
+  Rgb operator()(const ScaleTexture& t) const { return set.mean(t.input) * t.scale; }
+  Rgb operator()(const VertexColorTexture&) const { return Rgb(1); }
+};
+
+const Texture& checked(const std::vector<Texture>& textures, int index) {
+  if (index < 0 || static_cast<std::size_t>(index) >= textures.size())
+    throw InternalError("texture index " + std::to_string(index) + " of " + std::to_string(textures.size()));
+  return textures[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+Rgb TextureSet::lookup(int texture, const SurfaceUv& at) const {
+  return std::visit(LookupVisitor{*this, at}, checked(textures, texture));
+}
+
+float TextureSet::lookup_float(int texture, const SurfaceUv& at) const {
+  return luminance(lookup(texture, at));
+}
+
+Vec2f TextureSet::gradient(int texture, const SurfaceUv& at) const {
+  checked(textures, texture);
+  const RgbGradient g = rgb_gradient(textures, texture, at);
+  return {luminance(g.du), luminance(g.dv)};
+}
+
+Rgb TextureSet::mean(int texture) const { return std::visit(MeanVisitor{*this}, checked(textures, texture)); }
+
+}  // namespace lumirank::scatter
