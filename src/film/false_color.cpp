@@ -27,9 +27,10 @@ Rgb false_color(float t) {
   if (std::isnan(t)) return {1, 0, 1};
   t = std::clamp(t, 0.0f, 1.0f);
   const float lightness = 0.20f + 0.72f * t;
-  const float hue = (268 - 163 * t) * (kPi / 180);
-  // The gamut is narrowest around teal, in the middle of the map.
-  const float chroma = 0.105f - 0.02f * t * (1 - t) * 4 + 0.065f * t * t;
+  const float hue = (285 - 180 * t) * (kPi / 180);
+  // A parabola that stays under the largest chroma that sRGB has along this path; teal, in the middle, has
+  // least.
+  const float chroma = 0.08f * (1 - t) * (1 - t) + 0.12f * t * (1 - t) + 0.155f * t * t;
   const Rgb c = oklab_to_linear(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
   return {std::clamp(c.r, 0.0f, 1.0f), std::clamp(c.g, 0.0f, 1.0f), std::clamp(c.b, 0.0f, 1.0f)};
 }

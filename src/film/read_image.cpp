@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "film/file_end.h"
 #include "film/image_io.h"
-#include "film/jpeg_end.h"
 #include "film/pfm.h"
 #include "film/srgb.h"
 
@@ -171,7 +171,7 @@ LoadedImage read_image(const std::string& filename, bool raw, std::size_t max_pi
   if (!fs::is_regular_file(status))
     throw InputError(SourceLocation{filename, 0}, "this is not a file, let alone an image");
   if (starts_with_pfm_magic(filename)) return {read_pfm(filename, max_pixels), {}};
-  require_jpeg_end(filename);
+  require_file_end(filename);
   try {
     return Reader(filename, raw, max_pixels).read();
   } catch (const InputError&) {
