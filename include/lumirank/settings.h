@@ -25,9 +25,10 @@ struct RenderSettings {
   double clamp = 1;           // X of docs/conventions; 0: off
   std::string only = "all";   // all, direct, indirect
   std::uint64_t seed = 1;
-  int threads = 0;   // 0: all
-  double time = 0;   // seconds; 0: no limit
-  double error = 0;  // estimated relative error to stop at; 0: the method's default
+  std::uint64_t method_seed = 0;  // other choices of the method on the same lights and receivers; 0: the seed
+  int threads = 0;                // 0: all
+  double time = 0;                // seconds; 0: no limit
+  double error = 0;               // estimated relative error to stop at; 0: the method's default
   std::string backend = "cpu";
   std::string direct =
       "auto";  // matrix, traced, auto: traced where the receiver is glossier than a measured roughness

@@ -181,7 +181,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
 
     PreviewThrottle throttle(on_preview);
     methods::RunOptions run;
-    run.seed = settings.seed;
+    run.seed = settings.method_seed ? settings.method_seed : settings.seed;
     run.target_error = settings.error;
     if (settings.time > 0)
       run.time_seconds = std::max(1e-3, settings.time - timer.seconds() - 0.05 * settings.time);

@@ -182,6 +182,10 @@ const std::vector<Row>& table() {
                        {"all", "direct", "indirect"}));
     t.push_back(number<std::uint64_t>({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"},
                                       &S::seed, 0, 9.3e18));
+    t.push_back(number<std::uint64_t>(
+        {"method-seed", "", "0", "0 … 2^63", "",
+         "other random choices of the method on the same lights and receivers; 0: as --seed"},
+        &S::method_seed, 0, 9.3e18));
     t.push_back(
         number<int>({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
                     &S::threads, 0, 1024));

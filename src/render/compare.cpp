@@ -1,0 +1,283 @@
+// Runs the plan of a comparison on one prepared scene, and writes every result as soon as it exists.
+#include "lumirank/compare.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/timer.h"
+#include "film/image_io.h"
+#include "film/metrics.h"
+#include "linalg/svd.h"
+#include "render/aovs.h"
+#include "render/compare_page.h"
+#include "render/compare_plan.h"
+#include "render/pipeline.h"
+#include "render/reference.h"
+
+namespace lumirank {
+namespace {
+
+using namespace rendering;
+namespace fs = std::filesystem;
+
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const CompareSettings& settings, const std::string& folder,
+             const Sinks& sinks)
+      : settings_(settings),
+        folder_(folder),
+        sinks_(sinks),
+        plan_(plan_runs(settings)),
+        world_(world::World::build(scene.impl().desc, {scene.impl().options.strict}, warnings_, sinks)) {
+    setup_.world = &world_;
+    setup_.view = make_view(scene.impl().desc, settings.base);
+    results_.scene = fs::path(scene.impl().desc.source_file).filename().string();
+    results_.version = version();
+    results_.width = setup_.view.width, results_.height = setup_.view.height;
+  }
+
+  bool run() {
+    prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    try {
+      make_reference();
+      for (std::size_t k = 0; k < plan_.size(); ++k) {
+        sinks_.report("compare", static_cast<double>(k) / static_cast<double>(plan_.size()));
+        if (!run_one(plan_[k])) return finish(false);
+        write_results_json(folder_, results_);
+      }
+      if (settings_.singular_values) find_singular_values();
+    } catch (const Cancelled&) {
+      return finish(false);
+    }
+    return finish(true);
+  }
+
+ private:
+  std::string path(const std::string& name) const { return (fs::path(folder_) / name).string(); }
+
+  // Receivers and lights for a run; kept while the next run wants the same.
+  void prepare(std::size_t lights, int spp, std::uint64_t seed) {
+    RenderSettings s = settings_.base;
+    s.spp = spp;
+    s.seed = settings_.base.seed;
+    if (spp != spp_) {
+      make_receivers(setup_, s, sinks_);
+      spp_ = spp, lights_ = 0;
+    }
+    s.seed = seed;
+    if (lights != lights_ || seed != lights_seed_) {
+      make_matrix(setup_, s, lights, sinks_);
+      lights_ = lights, lights_seed_ = seed;
+    }
+  }
+
+  film::Image image_of(std::span<const Rgb> sums) const {
+    return develop(setup_, sample_values(setup_, sums, wanted_parts(settings_.base)));
+  }
+
+  void save(const std::string& name, const film::Image& image) const {
+    film::LayeredImage layers;
+    layers.color = image;
+    film::write_image(path(name), layers);
+  }
+
+  void make_reference() {
+    const Timer timer;
+    if (settings_.reference == "brute-force") {
+      std::vector<matrix::ScaledColumn> columns(setup_.matrix->columns());
+      for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
+      std::vector<Rgb> sums(setup_.matrix->rows());
+      setup_.matrix->accumulate(columns, sums, sinks_);
+      if (sinks_.cancelled()) throw Cancelled();
+      reference_ = image_of(sums);
+      results_.reference_kind = "all " + std::to_string(columns.size()) + " columns";
+    } else if (settings_.reference == "path") {
+      ReferenceSettings how;
+      how.paths = "columns";
+      how.time = settings_.reference_time;
+      const auto traced = path_trace(world_, setup_.view, settings_.base, how, sinks_);
+      if (traced.interrupted) throw Cancelled();
+      reference_ = traced.image;
+      results_.reference_error = traced.error;
+      results_.reference_kind =
+          "path tracing, " + std::to_string(traced.spp) + " paths per pixel, paths that columns carry";
+    } else {
+      reference_ = film::read_image(settings_.reference).color;
+      if (reference_.width != setup_.view.width || reference_.height != setup_.view.height)
+        throw InputError({settings_.reference, 0},
+                         "the reference has " + std::to_string(reference_.width) + "x" +
+                             std::to_string(reference_.height) + " pixels, the render " +
+                             std::to_string(setup_.view.width) + "x" + std::to_string(setup_.view.height),
+                         "give --size or another reference");
+      results_.reference_kind = fs::path(settings_.reference).filename().string();
+    }
+    results_.reference_seconds = timer.seconds();
+    results_.reference_image = "reference.png";
+    save("reference.png", reference_);
+    save("reference.exr", reference_);
+  }
+
+  // Methods without a clock of their own get as many columns as fit into the budget, by the pace of a few.
+  void fit_to_time(PlannedRun& run, std::map<std::string, std::string>& method_settings) {
+    const methods::MethodInfo& info = methods::find_method(run.method);
+    if (run.time <= 0 || (run.method != "instant-radiosity" && run.method != "power-sampling")) return;
+    if (columns_per_second_ <= 0) {
+      std::vector<matrix::ScaledColumn> few;
+      for (std::uint64_t k = 0; k < 48; ++k)
+        few.push_back(
+            {static_cast<matrix::Index>(
+                 Rng(settings_.base.seed, Stage::benchmark, k).next_below(setup_.matrix->columns())),
+             Rgb(1)});
+      std::vector<Rgb> sums(setup_.matrix->rows());
+      const Timer timer;
+      setup_.matrix->accumulate(few, sums, sinks_);
+      columns_per_second_ = 48 / timer.seconds();
+    }
+    const auto fitting = static_cast<std::size_t>(std::max(1.0, columns_per_second_ * run.time));
+    method_settings[info.lights_wanted ? "lights" : "columns"] = std::to_string(fitting);
+  }
+
+  bool run_one(PlannedRun run) {
+    const methods::MethodInfo& info = methods::find_method(run.method);
+    const bool new_lights =
+        settings_.reference != "brute-force";  // else all runs sample the reference's own matrix
+    prepare(run.lights, run.spp, new_lights ? run.seed : settings_.base.seed);
+    auto method_settings = run.method_settings;
+    fit_to_time(run, method_settings);
+    if (info.lights_wanted)
+      if (const std::size_t wanted = info.lights_wanted(method_settings); wanted > 0)
+        prepare(wanted, run.spp, run.seed);
+
+    auto& counters = setup_.matrix->counters();
+    counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;
+    methods::RunOptions options;
+    options.seed = run.seed;
+    options.time_seconds = run.time;
+    options.target_error = settings_.base.error;
+    options.sinks = sinks_;
+    options.sinks.progress = {};
+    const Timer timer;
+    const methods::Estimate estimate = info.make(method_settings)->run(*setup_.matrix, options);
+    if (estimate.interrupted) return false;
+
+    CompareRun result;
+    result.seconds = timer.seconds();
+    result.setup_seconds = setup_.seconds["receivers"] + setup_.seconds["traced_direct"] +
+                           setup_.seconds["lights"] + setup_.seconds["matrix"];
+    result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
+    result.settings = method_settings;
+    result.settings["lights"] = std::to_string(setup_.lights.size());
+    result.settings["spp"] = std::to_string(run.spp);
+    result.rays = static_cast<double>(counters.rays_shadow.load());
+    result.entries = static_cast<double>(counters.entries_evaluated.load());
+    result.sampling_rate = result.entries / (static_cast<double>(setup_.matrix->rows()) *
+                                             static_cast<double>(setup_.matrix->columns()));
+    for (const auto& [key, value] : estimate.trace.numbers)
+      if (key.starts_with("seconds."))
+        result.phases[key.substr(8)] = value;
+      else if (key == "rows" || key == "columns")
+        result.settings[key] = std::to_string(static_cast<long long>(value));
+
+    const film::Image image = image_of(estimate.sums);
+    result.error = film::compare(image, reference_);
+    const std::string stem = "run_" + std::to_string(results_.runs.size());
+    result.image_file = stem + ".png", result.error_image_file = stem + "_error.png";
+    save(result.image_file, image);
+    save(result.error_image_file, film::false_color_error(image, reference_));
+    results_.runs.push_back(std::move(result));
+    return true;
+  }
+
+  // Hašan 2007, Figure 3: of a small matrix of evenly drawn receivers and lights, scalar entries.
+  void find_singular_values() {
+    constexpr std::size_t kRows = 1200, kColumns = 1000;
+    prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    const auto pick = [](std::size_t count, std::size_t of, std::uint64_t seed, std::uint64_t stream) {
+      count = std::min(count, of);
+      std::vector<matrix::Index> chosen(count);
+      Rng rng(seed, Stage::benchmark, stream);
+      for (std::size_t k = 0; k < count; ++k)  // one from each of `count` strata
+        chosen[k] = static_cast<matrix::Index>((static_cast<double>(k) + rng.next_double()) *
+                                               static_cast<double>(of) / static_cast<double>(count));
+      return chosen;
+    };
+    const auto rows = pick(kRows, setup_.matrix->rows(), settings_.base.seed, 1);
+    const auto columns = pick(kColumns, setup_.matrix->columns(), settings_.base.seed, 2);
+    std::vector<Rgb> block(rows.size() * columns.size());
+    setup_.matrix->block(rows, columns, block);
+    std::vector<double> scalar(block.size());
+    for (std::size_t k = 0; k < block.size(); ++k) scalar[k] = norm2(block[k]);
+    results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
+  }
+
+  bool finish(bool whole) {
+    if (!whole)
+      results_.notes.push_back("Interrupted: " + std::to_string(results_.runs.size()) + " of " +
+                               std::to_string(plan_.size()) + " runs were finished.");
+    mark_equal();
+    write_results_json(folder_, results_);
+    write_results_csv(folder_, results_);
+    write_compare_page(folder_, results_);
+    return whole;
+  }
+
+  // --equal: for every other method, the run nearest to the best run of the first one.
+  void mark_equal() {
+    if (settings_.equal.empty() || results_.runs.empty()) return;
+    const auto cost = [&](const CompareRun& r) {
+      if (settings_.equal == "time") return r.seconds;
+      return settings_.equal == "rays" ? r.rays : r.error.relative_l2;
+    };
+    const CompareRun* anchor = nullptr;
+    for (const auto& r : results_.runs)
+      if (r.method == settings_.methods.front() &&
+          (!anchor || r.error.relative_l2 < anchor->error.relative_l2))
+        anchor = &r;
+    if (!anchor) return;
+    results_.notes.push_back("At equal " + settings_.equal + " to " + anchor->label + ":");
+    for (const auto& method : settings_.methods) {
+      const CompareRun* nearest = nullptr;
+      for (const auto& r : results_.runs)
+        if (r.method == method && (!nearest || std::abs(std::log(cost(r) / cost(*anchor))) <
+                                                   std::abs(std::log(cost(*nearest) / cost(*anchor)))))
+          nearest = &r;
+      if (nearest)
+        results_.notes.push_back(nearest->label + ": " + std::to_string(nearest->seconds) + " s, " +
+                                 std::to_string(nearest->rays / 1e6) + " million rays, relative L2 " +
+                                 std::to_string(100 * nearest->error.relative_l2) + " %");
+    }
+  }
+
+  const CompareSettings& settings_;
+  std::string folder_;
+  Sinks sinks_;
+  std::vector<PlannedRun> plan_;
+  std::vector<scenedesc::Warning> warnings_;
+  world::World world_;
+  Setup setup_;
+  int spp_ = 0;
+  std::size_t lights_ = 0;
+  std::uint64_t lights_seed_ = 0;
+  double columns_per_second_ = 0;
+  film::Image reference_;
+  CompareResults results_;
+};
+
+}  // namespace
+
+bool compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
+             const Sinks& sinks) {
+  validate(settings.base);
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code)
+    throw InputError({folder, 0}, "the folder cannot be made: " + code.message(), "choose another place");
+  bool whole = false;
+  with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
+  return whole;
+}
+
+}  // namespace lumirank

@@ -1,0 +1,186 @@
+// The path tracer against closed forms.
+#include <gtest/gtest.h>
+
+#include "lumirank/lumirank.h"
+#include "support/scene_file.h"
+#include "support/statistics.h"
+
+namespace lumirank {
+namespace {
+
+using test::load_text;
+using test::mean_of;
+using test::normal_quantile;
+using test::point_camera;
+
+// False alarm in one of 10,000 runs of the whole file's tests.
+constexpr double kAlpha = 1e-4;
+
+std::vector<double> channel(const Picture& picture, std::size_t c) {
+  std::vector<double> values;
+  for (std::size_t p = c; p < picture.planes[0].rgb.size(); p += 3)
+    values.push_back(picture.planes[0].rgb[p]);
+  return values;
+}
+
+// Pixels are independent; the mean over them must lie within the confidence interval.
+void expect_mean(const Picture& picture, const double (&expected)[3], const char* what) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto values = channel(picture, c);
+    const auto m = mean_of(values);
+    // Single precision sets a floor under the interval of noise-free pictures.
+    const double allowed =
+        normal_quantile(kAlpha, 30) * m.standard_error + 2e-5 * std::abs(expected[c]) + 1e-7;
+    EXPECT_NEAR(m.mean, expected[c], allowed) << what << ", channel " << c;
+  }
+}
+
+constexpr const char* kClosedBox =
+    "<shape type=\"cube\"><boolean name=\"flip_normals\" value=\"true\"/>"
+    "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5, 0.2, 0.8\"/></bsdf>"
+    "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1, 2, 0.5\"/></emitter></shape>";
+
+TEST(Reference, FurnaceOfAShiningBox) {
+  // Inside a closed surface that emits L and reflects ρ everywhere, every bounce adds a factor ρ: L / (1 -
+  // ρ).
+  const Scene scene = load_text(point_camera("0,0,0", "0.3,0.2,1", 32, 60) + kClosedBox);
+  RenderSettings settings;
+  settings.max_depth = -1;
+  ReferenceSettings how;
+  how.spp = 64;
+  expect_mean(reference(scene, settings, how).picture, {1 / 0.5, 2 / 0.8, 0.5 / 0.2}, "furnace");
+}
+
+TEST(Reference, FurnaceStopsAtTheDepthLimit) {
+  // Depth d holds the bounces 0 … d - 1: L Σ_{k<d} ρ^k.
+  const Scene scene = load_text(point_camera("0,0,0", "0.3,0.2,1", 32, 60) + kClosedBox);
+  for (int depth : {1, 2, 4}) {
+    RenderSettings settings;
+    settings.max_depth = depth;
+    ReferenceSettings how;
+    how.spp = 32;
+    double expected[3];
+    const double albedo[3] = {0.5, 0.2, 0.8}, radiance[3] = {1, 2, 0.5};
+    for (int c = 0; c < 3; ++c)
+      expected[c] = radiance[c] * (1 - std::pow(albedo[c], depth)) / (1 - albedo[c]);
+    expect_mean(reference(scene, settings, how).picture, expected, "depth");
+  }
+}
+
+TEST(Reference, PartsOfTheFurnace) {
+  // Direct light has one bounce, L·ρ; indirect all later ones, L·ρ²/(1 - ρ).
+  const Scene scene = load_text(point_camera("0,0,0", "0.3,0.2,1", 32, 60) + kClosedBox);
+  RenderSettings settings;
+  settings.max_depth = -1;
+  ReferenceSettings how;
+  how.spp = 64;
+  settings.only = "direct";
+  expect_mean(reference(scene, settings, how).picture, {0.5, 0.4, 0.4}, "direct");
+  settings.only = "indirect";
+  expect_mean(reference(scene, settings, how).picture, {0.5, 0.1, 1.6}, "indirect");
+}
+
+TEST(Reference, DiffusePlaneUnderTheSky) {
+  // A plane that reflects ρ under constant radiance L from the whole hemisphere: ρ·L.
+  const Scene scene =
+      load_text(point_camera("0,2,0.01", "0,0,0", 16, 20) +
+                "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/>"
+                "<scale value=\"100\"/></transform><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
+                "value=\"0.6, 0.3, 0.1\"/></bsdf></shape>"
+                "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2, 1, 3\"/></emitter>");
+  RenderSettings settings;
+  settings.max_depth = -1;
+  ReferenceSettings how;
+  how.spp = 64;
+  expect_mean(reference(scene, settings, how).picture, {1.2, 0.3, 0.3}, "sky");
+}
+
+// Irradiance over π of a rectangle [-a,a]×[-b,b] of unit radiance at height h above the point below its
+// centre: four times the corner form factor between a differential element and a parallel rectangle.
+double parallel_rectangle(double a, double b, double h) {
+  const double x = a / h, y = b / h, sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
+  return 4 / (2 * M_PI) * (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy));
+}
+
+TEST(Reference, LampOverAFloor) {
+  // Direct light at the point below a lamp: ρ·L·F. The camera sees a spot of 2 mm from 0.5 m, in which F
+  // changes by less than 1e-5; it looks past the lamp from the side.
+  const Scene scene = load_text(
+      point_camera("0.6,0.4,0", "0,0,0", 16, 0.2) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/><scale "
+      "value=\"5\"/>"
+      "</transform><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.6, 0.3, 0.1\"/></bsdf></shape>"
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/><scale x=\"0.5\" "
+      "y=\"1\" "
+      "z=\"0.25\"/><translate y=\"1\"/></transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"10, "
+      "20, 30\"/>"
+      "</emitter></shape>");
+  RenderSettings settings;
+  settings.max_depth = 2;
+  ReferenceSettings how;
+  how.spp = 64;
+  const double f = parallel_rectangle(0.5, 0.25, 1);
+  expect_mean(reference(scene, settings, how).picture, {0.6 * 10 * f, 0.3 * 20 * f, 0.1 * 30 * f}, "lamp");
+}
+
+TEST(Reference, MirrorShowsTheLampAndColumnsLeaveOutItsLightOnTheFloor) {
+  // Columns and rest together are all paths: checked as means over a picture with a mirror beside a diffuse
+  // floor.
+  const std::string body =
+      point_camera("0,1.5,4", "0,0.5,0", 24, 45) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/><scale "
+      "value=\"3\"/></transform>"
+      "<bsdf type=\"diffuse\"/></shape>"
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><translate z=\"-1\"/></transform>"
+      "<bsdf type=\"conductor\"/></shape>"
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/><scale "
+      "value=\"0.5\"/>"
+      "<translate y=\"2\" z=\"0.5\"/></transform><emitter type=\"area\"><rgb name=\"radiance\" "
+      "value=\"5\"/></emitter></shape>";
+  const Scene scene = load_text(body);
+  RenderSettings settings;
+  settings.max_depth = 5;
+  ReferenceSettings how;
+  how.spp = 256;
+  const auto run = [&](const char* paths, std::uint64_t seed) {
+    how.paths = paths;
+    settings.seed = seed;
+    const Picture picture = reference(scene, settings, how).picture;
+    return channel(picture, 1);
+  };
+  const auto all = run("all", 1), columns = run("columns", 2), rest = run("rest", 3);
+  std::vector<double> difference;
+  double rest_sum = 0;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    difference.push_back(all[p] - columns[p] - rest[p]);
+    rest_sum += rest[p];
+  }
+  const auto m = mean_of(difference);
+  EXPECT_NEAR(m.mean, 0, normal_quantile(kAlpha, 30) * m.standard_error);
+  EXPECT_GT(rest_sum, 0) << "the mirror throws light of the lamp on the floor";
+}
+
+TEST(Reference, StatesItsErrorHonestly) {
+  // The stated error of a short run against a run with 64 times the samples, whose own error is an eighth:
+  // relative L1 averages over 24² pixels, so the statement holds within 25 %.
+  const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml");
+  RenderSettings settings;
+  settings.width = settings.height = 24;
+  ReferenceSettings how;
+  how.spp = 8;
+  const RenderResult small = reference(scene, settings, how);
+  how.spp = 512;
+  settings.seed = 2;
+  const RenderResult large = reference(scene, settings, how);
+  double difference = 0, total = 0;
+  for (std::size_t k = 0; k < small.picture.planes[0].rgb.size(); ++k) {
+    difference += std::abs(small.picture.planes[0].rgb[k] - large.picture.planes[0].rgb[k]);
+    total += large.picture.planes[0].rgb[k];
+  }
+  const std::string& report = small.report_json;
+  const double stated = std::stod(report.substr(report.find("error.relative_l1\": ") + 20));
+  EXPECT_NEAR(stated / (difference / total), 1, 0.25);
+}
+
+}  // namespace
+}  // namespace lumirank

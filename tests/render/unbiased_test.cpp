@@ -1,0 +1,145 @@
+// The matrix against the path tracer, and row-column sampling against the matrix.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "lumirank/lumirank.h"
+#include "support/scene_file.h"
+#include "support/statistics.h"
+
+namespace lumirank {
+namespace {
+
+using test::mean_of;
+using test::normal_quantile;
+using test::student_quantile;
+
+constexpr double kAlpha = 1e-3;  // false alarms of each test
+
+Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
+
+// Mean of each channel over the whole (cropped) picture.
+std::array<double, 3> mean_colour(const Picture& picture) {
+  std::array<double, 3> sum{};
+  const auto& rgb = picture.planes[0].rgb;
+  for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
+  for (double& s : sum) s /= static_cast<double>(rgb.size() / 3);
+  return sum;
+}
+
+// Brute force over unclamped columns estimates the same as the path tracer over the paths that columns carry.
+// The window shows the middle of the back wall: farther than 5 % of the scene from every other surface, so
+// 1/d² leaves the variance finite.
+void expect_equal_means(const char* only) {
+  const Scene scene = box();
+  RenderSettings settings;
+  settings.width = settings.height = 64;
+  settings.crop[0] = 26, settings.crop[1] = 12, settings.crop[2] = 12, settings.crop[3] = 8;
+  settings.only = only;
+  settings.max_depth = 6;
+  settings.method = "brute-force";
+  settings.clamp = 0;
+  settings.direct = "matrix";
+  settings.lights = 1000;
+  ReferenceSettings how;
+  how.paths = "columns";
+  how.spp = 256;
+  constexpr int kSeeds = 40;
+  std::vector<double> lights[3], paths[3];
+  for (int k = 0; k < kSeeds; ++k) {
+    settings.seed = 100 + static_cast<std::uint64_t>(k);
+    const auto a = mean_colour(render(scene, settings).picture);
+    const auto b = mean_colour(reference(scene, settings, how).picture);
+    for (std::size_t c = 0; c < 3; ++c) lights[c].push_back(a[c]), paths[c].push_back(b[c]);
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto a = mean_of(lights[c]), b = mean_of(paths[c]);
+    const double error = std::hypot(a.standard_error, b.standard_error);
+    EXPECT_NEAR(a.mean, b.mean, student_quantile(kAlpha, 3, kSeeds - 1) * error) << only << ", channel " << c;
+    // The test has teeth: an error of 3 % would be seen.
+    EXPECT_LT(student_quantile(kAlpha, 3, kSeeds - 1) * error, 0.03 * b.mean) << only << ", channel " << c;
+  }
+}
+
+TEST(Unbiased, BruteForceAgreesWithThePathTracerOnDirectLight) { expect_equal_means("direct"); }
+TEST(Unbiased, BruteForceAgreesWithThePathTracerOnIndirectLight) { expect_equal_means("indirect"); }
+
+TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
+  // Scalar representatives, zero columns sampled, fixed rows and columns: the estimator of section 3.3,
+  // unbiased by construction. The lights stay the same; what varies is the method's own choices.
+  const Scene scene = box();
+  RenderSettings settings;
+  settings.width = 32, settings.height = 32;
+  settings.lights = 600;
+  settings.spp = 1;
+  settings.direct = "matrix";
+  settings.method = "brute-force";
+  const Picture truth = render(scene, settings).picture;
+
+  settings.method = "row-column-sampling";
+  settings.method_settings = {
+      {"rows", "20"}, {"columns", "30"}, {"colour", "scalar"}, {"zero-columns", "sample"}};
+  constexpr int kSeeds = 48, kBlock = 8, kBlocks = 32 / kBlock;
+  std::vector<std::vector<double>> blocks(kBlocks * kBlocks * 3);
+  const auto add = [&](const Picture& picture, auto&& keep) {
+    std::vector<double> sums(blocks.size());
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (int c = 0; c < 3; ++c)
+          sums[static_cast<std::size_t>(((y / kBlock) * kBlocks + x / kBlock) * 3 + c)] +=
+              picture.planes[0].rgb[static_cast<std::size_t>((y * 32 + x) * 3 + c)];
+    for (std::size_t k = 0; k < sums.size(); ++k) keep(k, sums[k]);
+  };
+  std::vector<double> expected(blocks.size());
+  add(truth, [&](std::size_t k, double v) { expected[k] = v; });
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    settings.method_seed = 1000 + static_cast<std::uint64_t>(seed);
+    add(render(scene, settings).picture, [&](std::size_t k, double v) { blocks[k].push_back(v); });
+  }
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const auto m = mean_of(blocks[k]);
+    EXPECT_NEAR(m.mean, expected[k],
+                student_quantile(kAlpha, blocks.size(), kSeeds - 1) * m.standard_error + 1e-6 * expected[k])
+        << "block " << k / 3 << ", channel " << k % 3;
+  }
+}
+
+TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
+  const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/interior.xml");
+  RenderSettings settings;
+  settings.width = 96, settings.height = 64;
+  settings.lights = 4000;
+  for (const char* method : {"brute-force", "instant-radiosity", "power-sampling", "row-column-sampling"}) {
+    settings.method = method;
+    settings.threads = 1;
+    const Picture one = render(scene, settings).picture;
+    for (int threads : {2, 4}) {
+      settings.threads = threads;
+      const Picture many = render(scene, settings).picture;
+      ASSERT_EQ(one.planes[0].rgb.size(), many.planes[0].rgb.size());
+      EXPECT_EQ(std::memcmp(one.planes[0].rgb.data(), many.planes[0].rgb.data(),
+                            one.planes[0].rgb.size() * sizeof(float)),
+                0)
+          << method << " on " << threads << " threads";
+    }
+  }
+}
+
+TEST(Determinism, TheReferenceToo) {
+  const Scene scene = box();
+  RenderSettings settings;
+  settings.width = settings.height = 32;
+  ReferenceSettings how;
+  how.spp = 8;
+  settings.threads = 1;
+  const Picture one = reference(scene, settings, how).picture;
+  for (int threads : {2, 4}) {
+    settings.threads = threads;
+    const Picture many = reference(scene, settings, how).picture;
+    EXPECT_EQ(one.planes[0].rgb, many.planes[0].rgb) << threads << " threads";
+  }
+}
+
+}  // namespace
+}  // namespace lumirank
