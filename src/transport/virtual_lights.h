@@ -14,9 +14,11 @@
 namespace lumirank::transport {
 
 enum class LightKind : std::uint8_t {
-  omni,         // power: intensity (W/sr), point emitters
-  oriented,     // power: emitted radiance × area share; cosine emission about `normal`; emitter samples
-  surface,      // power: incident flux Φ; scatters with the closure at the hit; particle-traced
+  omni,      // power: intensity (W/sr), point emitters
+  oriented,  // power: emitted radiance × area share; cosine emission about `normal`; emitter samples
+  surface,   // power: incident flux Φ; scatters with the closure at the hit; particle-traced
+            // (Where the shading normal n is not the geometric one ng, power is Φ·|incoming·n|/|incoming·ng|,
+            // and cosθy of the entry is taken with ng: then the entry is what an eye path would find there.)
   directional,  // power: irradiance; `normal` is the direction in which the light travels
   spot,         // power: intensity on the axis; `normal` is the axis; `closure` is an index into `spots`
 };
