@@ -12,9 +12,6 @@ namespace sd = scenedesc;
 
 namespace {
 
-// Copies of a mesh are made as long as they come to no more triangles than this.
-constexpr std::size_t kCopiedTriangles = 100000;
-
 void check_transform(const Transform& t, const SourceLocation& where) {
   if (!t.is_finite()) throw InputError(where, "to_world is not finite", "give finite numbers");
   if (t.m[12] != 0 || t.m[13] != 0 || t.m[14] != 0 || t.m[15] != 1)
@@ -120,8 +117,7 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
     const auto source = static_cast<std::size_t>(p.source);
     const geometry::TriangleMesh& original = store.mesh(p.source);
     const std::size_t triangles = original.triangle_count();
-    const bool copy = p.shines || uses[source] == 1 || uses[source] * triangles <= kCopiedTriangles ||
-                      !p.to_world.inverse();
+    const bool copy = p.shines || uses[source] == 1 || !p.to_world.inverse();
     geometry::Placement placement;
     bool flip = false;
     if (copy) {
