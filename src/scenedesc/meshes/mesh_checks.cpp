@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scenedesc/meshes/mesh_parts.h"
+
+namespace lumirank::scenedesc {
+namespace {
+
+struct Vec3d {
+  double x, y, z;
+};
+Vec3d difference(Vec3f a, Vec3f b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
+double squared(Vec3d a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
+Vec3d crossed(Vec3d a, Vec3d b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// No area, up to what rounding of the corners to float could feign.
+bool is_degenerate(const MeshData& mesh, const std::uint32_t* corner) {
+  if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) return true;
+  const Vec3f a = mesh.positions[corner[0]], b = mesh.positions[corner[1]], c = mesh.positions[corner[2]];
+  const Vec3d ab = difference(b, a), ac = difference(c, a), bc = difference(c, b);
+  const double longest = std::max({squared(ab), squared(ac), squared(bc)});
+  return squared(crossed(ab, ac)) <= 1e-20 * longest * longest;
+}
+
+void note(MeshData& mesh, std::size_t count, const char* one, const char* many) {
+  if (count > 0) mesh.notes.push_back(std::to_string(count) + (count == 1 ? one : many));
+}
+
+void drop_degenerate(MeshData& mesh) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < mesh.indices.size(); k += 3) {
+    if (is_degenerate(mesh, &mesh.indices[k])) continue;
+    if (kept != k) std::copy_n(mesh.indices.begin() + k, 3, mesh.indices.begin() + kept);
+    kept += 3;
+  }
+  const std::size_t dropped = (mesh.indices.size() - kept) / 3;
+  mesh.indices.resize(kept);
+  note(mesh, dropped, " degenerate triangle left out", " degenerate triangles left out");
+}
+
+void mend_normals(MeshData& mesh) {
+  std::vector<std::uint8_t> missing;
+  std::size_t bad = 0;
+  for (std::size_t k = 0; k < mesh.normals.size(); ++k) {
+    const Vec3f n = mesh.normals[k];
+    // In double: neither tiny nor huge normals lose their direction.
+    const double len = std::sqrt(squared(difference(n, {})));
+    if (len > 0 && std::isfinite(len)) {
+      mesh.normals[k] = {float(n.x / len), float(n.y / len), float(n.z / len)};
+    } else {
+      if (missing.empty()) missing.resize(mesh.normals.size());
+      missing[k] = 1;
+      ++bad;
+    }
+  }
+  if (bad == 0) return;
+  MeshData faces;
+  faces.positions = mesh.positions;
+  faces.indices = mesh.indices;
+  make_smooth_normals(faces);
+  for (std::size_t k = 0; k < missing.size(); ++k)
+    if (missing[k]) mesh.normals[k] = faces.normals[k];
+  note(mesh, bad, " missing normal taken from its faces", " missing normals taken from their faces");
+}
+
+}  // namespace
+
+MeshData checked(MeshData mesh, const std::string& filename) {
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k)
+    if (!is_finite(mesh.positions[k]))
+      throw InputError({filename, 0}, "vertex " + std::to_string(k) + " is not finite", "repair the mesh");
+  const bool had_triangles = !mesh.indices.empty();
+  drop_degenerate(mesh);
+  if (mesh.indices.empty())
+    throw InputError({filename, 0},
+                     had_triangles ? "all triangles are degenerate" : "the mesh has no triangle",
+                     "export it again, with faces");
+  std::size_t bad = 0;
+  for (Vec2f& uv : mesh.uvs)
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {}, ++bad;
+  note(mesh, bad, " texture coordinate that is not finite set to 0",
+       " texture coordinates that are not finite set to 0");
+  bad = 0;
+  for (Rgb& c : mesh.colors)
+    if (!is_finite(c)) c = Rgb(0), ++bad;
+  note(mesh, bad, " vertex colour that is not finite set to 0",
+       " vertex colours that are not finite set to 0");
+  mend_normals(mesh);
+  return mesh;
+}
+
+}  // namespace lumirank::scenedesc
