@@ -61,13 +61,17 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
       receivers(receivers_),
       lights(lights_),
       settings(settings_),
-      rows(make_rows(receivers_, settings_)),
-      columns(make_columns(lights_)) {
+      row_forms(receivers_.closures),
+      column_forms(lights_.closures),
+      rows(make_rows(receivers_, row_forms, settings_)),
+      columns(make_columns(lights_, column_forms)) {
   context.rows = &rows;
   context.columns = &columns;
-  context.row_scatter = {&receivers.closures, &receivers.closure, &receivers.normal, &receivers.ng,
-                         &receivers.wo};
-  context.column_scatter = {&lights.closures, &lights.closure, &lights.normal, &lights.ng, &lights.incoming};
+  context.row_scatter = {
+      &receivers.closures, &row_forms, &receivers.closure, &receivers.normal, &receivers.ng,
+      &receivers.wo,       false};
+  context.column_scatter = {&lights.closures, &column_forms, &lights.closure, &lights.normal, &lights.ng,
+                            &lights.incoming, true};
   context.lights = &lights;
   context.rays = &world.rays();
   context.seed = settings.seed;

@@ -18,6 +18,7 @@ struct SceneMatrix::Impl {
   const Receivers& receivers;
   const VirtualLights& lights;
   SceneMatrixSettings settings;
+  ScatterForms row_forms, column_forms;
   RowStore rows;
   ColumnStore columns;
   PairContext context;

@@ -14,13 +14,6 @@ constexpr std::uint32_t kRowTile = 2048;
 constexpr std::uint32_t kColumnTile = 4096;
 constexpr float kNoLimit = 1e9f;
 
-bool transmits(const ClosurePool& pool, std::uint32_t closure) {
-  const auto lobes = pool.lobes(pool.recipe(closure));
-  return std::any_of(lobes.begin(), lobes.end(), [](const scatter::Lobe& lobe) {
-    return lobe.kind == scatter::LobeKind::microfacet_transmit;
-  });
-}
-
 float roughness(const Receivers& receivers, std::size_t i) {
   if (receivers.closure[i] == Receivers::kLambertian) return 1;
   return receivers.closure_at(i).roughness();
@@ -39,16 +32,19 @@ bool answers(Vec3f n, Vec3f ng, Vec3f wo) { return dot(n, wo) * dot(ng, wo) > 0;
 
 }  // namespace
 
-RowStore make_rows(const Receivers& receivers, const SceneMatrixSettings& settings) {
+RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
+                   const SceneMatrixSettings& settings) {
   RowStore store;
   const std::size_t count = receivers.size();
   std::vector<std::uint16_t> kinds(count);
-  bool some_transmit = false;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t closure = receivers.closure[i];
-    kinds[i] = closure == Receivers::kLambertian ? kRowLambertian : kRowScatter;
-    some_transmit = some_transmit || (kinds[i] == kRowScatter && transmits(receivers.closures, closure));
+    kinds[i] =
+        closure == Receivers::kLambertian
+            ? kRowLambertian
+            : static_cast<std::uint16_t>(kRowScatter + forms.of_recipe(receivers.closures.recipe(closure)));
   }
+  const bool some_transmit = forms.some_transmit();
   store.plan = TilePlan::build(kinds, kRowTile);
   store.groups.assign(store.plan.groups(), empty_group<RowGroup>());
   if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
@@ -69,7 +65,7 @@ RowStore make_rows(const Receivers& receivers, const SceneMatrixSettings& settin
         const Rgb f = receivers.albedo[i] * kInvPi;
         write3(to + 12 * 16, {f.r, f.g, f.b});
       } else if (some_transmit) {
-        store.two_sided[slot] = transmits(receivers.closures, receivers.closure[i]);
+        store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[i] - kRowScatter)].transmits;
       }
       const bool direct_elsewhere =
           settings.traced_direct_below > 0 && roughness(receivers, i) < settings.traced_direct_below;
@@ -82,11 +78,11 @@ RowStore make_rows(const Receivers& receivers, const SceneMatrixSettings& settin
   return store;
 }
 
-ColumnStore make_columns(const VirtualLights& lights) {
+ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms) {
   ColumnStore store;
   const std::size_t count = lights.size();
   std::vector<std::uint16_t> kinds(count);
-  bool some_transmit = false;
+  const bool some_transmit = forms.some_transmit();
   for (std::size_t j = 0; j < count; ++j) {
     switch (lights.kind[j]) {
       case LightKind::omni:
@@ -102,9 +98,10 @@ ColumnStore make_columns(const VirtualLights& lights) {
         kinds[j] = kColumnSpot;
         break;
       case LightKind::surface:
-        kinds[j] = lights.closure[j] == VirtualLights::kLambertian ? kColumnFacing : kColumnScatter;
-        some_transmit =
-            some_transmit || (kinds[j] == kColumnScatter && transmits(lights.closures, lights.closure[j]));
+        kinds[j] = lights.closure[j] == VirtualLights::kLambertian
+                       ? kColumnFacing
+                       : static_cast<std::uint16_t>(
+                             kColumnScatter + forms.of_recipe(lights.closures.recipe(lights.closure[j])));
         break;
     }
   }
@@ -135,7 +132,7 @@ ColumnStore make_columns(const VirtualLights& lights) {
           power *= lights.albedo[j] * kInvPi;
           area *= max_component(lights.albedo[j]);
         } else if (some_transmit) {
-          store.two_sided[slot] = transmits(lights.closures, lights.closure[j]);
+          store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[j] - kColumnScatter)].transmits;
         }
       }
       write3(to, p), write3(to + 3 * 16, n), write3(to + 6 * 16, ng), write3(to + 9 * 16, target);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "transport/kernels/lanes.h"
+#include "transport/kernels/scatter_forms.h"
 #include "transport/kernels/tile_plan.h"
 #include "transport/receivers.h"
 #include "transport/scene_matrix.h"
@@ -28,10 +29,10 @@ struct ColumnGroup {
   Lane depth;
 };
 
-// Classes of receivers.
+// Classes of receivers; from kRowScatter on, one for each form of scattering.
 inline constexpr std::uint16_t kRowLambertian = 0, kRowScatter = 1;
 
-// Classes of lights.
+// Classes of lights; from kColumnScatter on, one for each form of scattering.
 enum ColumnKind : std::uint16_t {
   kColumnOmni,
   kColumnFacing,
@@ -79,8 +80,9 @@ struct GroupStore {
 using RowStore = GroupStore<RowGroup>;
 using ColumnStore = GroupStore<ColumnGroup>;
 
-RowStore make_rows(const Receivers& receivers, const SceneMatrixSettings& settings);
-ColumnStore make_columns(const VirtualLights& lights);
+RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
+                   const SceneMatrixSettings& settings);
+ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms);
 
 inline Vec3f read3(const float* p) { return {p[0], p[16], p[32]}; }
 inline void write3(float* p, Vec3f v) { p[0] = v.x, p[16] = v.y, p[32] = v.z; }

@@ -113,7 +113,7 @@ void PairBlock::set_row_tile(std::size_t tile) {
   tile_arena_.clear();
   tile_scatter_.resize(std::max(tile_scatter_.size(), groups_));
   for (const TilePlan::Run& run : runs) {
-    if (run.kind != kRowScatter) continue;
+    if (run.kind < kRowScatter) continue;
     for (std::uint32_t s = run.begin; s < run.end; s += 16)
       tile_scatter_[(s - first_slot_) / 16] = tile_arena_.fetch(context_.row_scatter, &plan.item[s]);
   }
@@ -130,7 +130,7 @@ void PairBlock::set_column_tile(std::size_t tile) {
   for (const TilePlan::Run& run : runs) {
     for (std::uint32_t s = run.begin; s < run.end; s += 16) {
       const std::uint32_t* items = &plan.item[s];
-      if (run.kind == kColumnScatter)
+      if (run.kind >= kColumnScatter)
         tile_scatter_[(s - first_slot_) / 16] = tile_arena_.fetch(context_.column_scatter, items);
       if (run.kind == kColumnSpot)
         for (int k = 0; k < 16; ++k)
@@ -150,7 +150,7 @@ void PairBlock::evaluate_column(std::uint32_t column_slot) {
   extras.clamp = context_.clamp;
   ScatterGroup scatter;
   std::array<const SpotShape*, 16> spots;
-  if (kind == kColumnScatter) {
+  if (kind >= kColumnScatter) {
     partner_arena_.clear();
     scatter = partner_arena_.fetch(context_.column_scatter, item);
     extras.column = &scatter;
@@ -174,7 +174,7 @@ void PairBlock::evaluate_row(std::uint32_t row_slot) {
   PairExtras extras;
   extras.clamp = context_.clamp;
   ScatterGroup scatter;
-  if (kind == kRowScatter) {
+  if (kind >= kRowScatter) {
     partner_arena_.clear();
     scatter = partner_arena_.fetch(context_.row_scatter, context_.rows->plan.item[row_slot]);
     extras.row = &scatter;

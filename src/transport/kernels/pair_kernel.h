@@ -60,8 +60,8 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
   // The geometric term of the kind of light: cosθx·cosθy/d², cosθx/d² or cosθx.
   Lane g;
   if constexpr (facing || scattering_column) {
-    const Lane cos_y = -dot(c.n, w);
-    if constexpr (facing) alive &= (cos_y > zero) & (dot(c.ng, w) < zero);
+    const Lane cos_y = -dot(c.ng, w);  // see VirtualLights::power about ng
+    if constexpr (facing) alive &= (cos_y > zero) & (dot(c.n, w) < zero);
     g = (abs(cos_x) * inv) * (abs(cos_y) * inv);
   } else if constexpr (directional) {
     g = abs(cos_x);

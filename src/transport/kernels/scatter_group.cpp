@@ -1,35 +1,113 @@
 #include "transport/kernels/scatter_group.h"
 
+#include <algorithm>
+
+#include "transport/kernels/lobe_lanes.h"
 #include "transport/kernels/tile_plan.h"
 
 namespace lumirank::transport {
+namespace {
+
+constexpr std::size_t kChunk = 256;
+
+void put(Lane3& to, int lane, Vec3f v) { to.x[lane] = v.x, to.y[lane] = v.y, to.z[lane] = v.z; }
+void put(Lane3& to, int lane, Rgb c) { to.x[lane] = c.r, to.y[lane] = c.g, to.z[lane] = c.b; }
+
+// Reads the plain parameters of one closure into a lane.
+void read(ScatterGroup& group, LobeLanes* lobes, int lane, const ScatterSide& side, std::uint32_t item) {
+  const std::uint32_t closure = (*side.closure)[item];
+  // The frame as ClosurePool::get() makes it, then mirrored to wo's side.
+  const float outward = side.pool->side(closure);
+  const Vec3f wo = (*side.wo)[item], n = (*side.normal)[item] * outward, ng = (*side.ng)[item] * outward;
+  const bool outside = dot(n, wo) > 0;
+  const float turn = outside ? 1.0f : -1.0f;
+  put(group.wo, lane, wo);
+  put(group.n, lane, n * turn);
+  put(group.ng, lane, ng * turn);
+  if (group.form->anisotropic) {
+    const Frame frame = Frame::from_normal_tangent(n, side.pool->tangent(closure));
+    put(group.s, lane, frame.s);
+    put(group.t, lane, frame.t);
+  }
+  const auto shared = side.pool->lobes(side.pool->recipe(closure));
+  const auto colors = side.pool->colors(closure);
+  for (std::size_t k = 0; k < shared.size(); ++k) {
+    const scatter::Lobe& lobe = shared[k];
+    put(lobes[k].color, lane, colors[k]);
+    lobes[k].alpha_u[lane] = lobe.alpha_u, lobes[k].alpha_v[lane] = lobe.alpha_v;
+    const bool inverse = lobe.kind == scatter::LobeKind::microfacet_reflect && !outside;
+    lobes[k].eta[lane] = inverse ? 1 / lobe.eta : lobe.eta;
+    put(lobes[k].a, lane, lobe.conductor_eta);
+    put(lobes[k].b, lane, lobe.conductor_k);
+  }
+}
+
+template <typename T>
+void spread(T& lanes, std::size_t fields) {
+  float* all = reinterpret_cast<float*>(&lanes);
+  for (std::size_t k = 0; k < fields; ++k) store(all + 16 * k, splat(all[16 * k]));
+}
+
+}  // namespace
+
+void ScatterArena::clear() {
+  closures_.clear();
+  chunk_ = used_ = 0;
+}
+
+LobeLanes* ScatterArena::new_lobes(std::size_t count) {
+  if (!chunks_.empty() && used_ + count > kChunk) ++chunk_, used_ = 0;
+  if (chunk_ >= chunks_.size()) chunks_.emplace_back(kChunk);
+  used_ += count;
+  return chunks_[chunk_].data() + (used_ - count);
+}
 
 ScatterGroup ScatterArena::fetch(const ScatterSide& side, const std::uint32_t items[16]) {
   ScatterGroup group;
-  for (int k = 0; k < 16; ++k) {
-    if (items[k] == kNoItem) {
-      group.closure[k] = nullptr;
-      continue;
+  group.adjoint = side.adjoint;
+  const std::uint32_t first = *std::find_if(items, items + 16, [](std::uint32_t i) { return i != kNoItem; });
+  group.form = &(*side.forms)[side.forms->of_recipe(side.pool->recipe((*side.closure)[first]))];
+  if (!group.form->in_lanes) {
+    for (int k = 0; k < 16; ++k) {
+      group.closure[k] = items[k] == kNoItem ? nullptr : &closures_.emplace_back(side.get(items[k]));
+      put(group.wo, k, items[k] == kNoItem ? Vec3f{} : (*side.wo)[items[k]]);
     }
-    group.closure[k] = &closures_.emplace_back(side.get(items[k]));
-    group.wo[k] = (*side.wo)[items[k]];
+    return group;
   }
+  LobeLanes* lobes = new_lobes(group.form->lobes.size());
+  group.lobes = lobes;
+  for (int k = 0; k < 16; ++k) read(group, lobes, k, side, items[k] == kNoItem ? first : items[k]);
+  prepare(group, lobes);
   return group;
 }
 
 ScatterGroup ScatterArena::fetch(const ScatterSide& side, std::uint32_t item) {
   ScatterGroup group;
-  const scatter::Closure& closure = closures_.emplace_back(side.get(item));
-  for (int k = 0; k < 16; ++k) group.closure[k] = &closure, group.wo[k] = (*side.wo)[item];
+  group.adjoint = side.adjoint;
+  group.form = &(*side.forms)[side.forms->of_recipe(side.pool->recipe((*side.closure)[item]))];
+  if (!group.form->in_lanes) {
+    const scatter::Closure& closure = closures_.emplace_back(side.get(item));
+    for (int k = 0; k < 16; ++k) group.closure[k] = &closure, put(group.wo, k, (*side.wo)[item]);
+    return group;
+  }
+  LobeLanes* lobes = new_lobes(group.form->lobes.size());
+  group.lobes = lobes;
+  read(group, lobes, 0, side, item);
+  for (Lane3* v : {&group.wo, &group.n, &group.ng}) spread(*v, 3);
+  if (group.form->anisotropic) spread(group.s, 3), spread(group.t, 3);
+  for (std::size_t k = 0; k < group.form->lobes.size(); ++k)
+    spread(lobes[k], sizeof(LobeLanes) / sizeof(Lane));
+  prepare(group, lobes);
   return group;
 }
 
 Lane3 eval_f(const ScatterGroup& group, const Lane3& wi) {
+  if (group.form->in_lanes) return eval_lobes(group, wi);
   Lane3 f{};
   for (int k = 0; k < 16; ++k) {
     if (!group.closure[k]) continue;
-    const Rgb c = scatter::eval_f(*group.closure[k], group.wo[k], {wi.x[k], wi.y[k], wi.z[k]});
-    f.x[k] = c.r, f.y[k] = c.g, f.z[k] = c.b;
+    const Vec3f wo{group.wo.x[k], group.wo.y[k], group.wo.z[k]};
+    put(f, k, scatter::eval_f(*group.closure[k], wo, {wi.x[k], wi.y[k], wi.z[k]}, group.adjoint));
   }
   return f;
 }

@@ -1,45 +1,67 @@
-// Receivers or surface lights that are not lambertian, 16 at a time.
+// Receivers or surface lights that are not lambertian, 16 of one form at a time. What depends on the
+// direction known first is worked out once, when a group is fetched; then the group is evaluated for many
+// partners.
 #pragma once
 
 #include <cstdint>
 #include <deque>
-#include <span>
 #include <vector>
 
 #include "scatter/closure.h"
 #include "transport/closure_pool.h"
 #include "transport/kernels/lanes.h"
+#include "transport/kernels/scatter_forms.h"
 
 namespace lumirank::transport {
 
 // The closures of one side of the matrix and the directions known first.
 struct ScatterSide {
   const ClosurePool* pool;
+  const ScatterForms* forms;
   const std::vector<std::uint32_t>* closure;
   const std::vector<Vec3f>*normal, *ng, *wo;
+  bool adjoint;  // light flows from wo, as at a virtual light
 
   scatter::Closure get(std::uint32_t item) const {
     return pool->get((*closure)[item], (*normal)[item], (*ng)[item]);
   }
 };
 
-// Fetched once, evaluated for many partners.
+// One lobe of 16 closures. What the fields mean depends on the lobe's kind.
+struct LobeLanes {
+  Lane3 color;  // diffuse: color/π; interfaced_diffuse: color·T(wo)/π; microfacet: color·G1(wo)/(4·wo.z)
+  Lane alpha_u, alpha_v;
+  Lane eta;    // seen from wo's side
+  Lane3 a, b;  // conductor: eta and k; schlick: a is F0; interfaced_diffuse: the coefficients of T
+};
+
+// All directions on the side of wo: n, ng and t are turned so that n·wo > 0.
 struct ScatterGroup {
-  const scatter::Closure* closure[16];  // nullptr: padding
-  Vec3f wo[16];
+  const ScatterForm* form = nullptr;
+  bool adjoint = false;
+  Lane3 n, ng, wo;
+  Lane3 s, t;                        // anisotropic forms only
+  LaneMask answers;                  // n and ng agree about the side of wo
+  const LobeLanes* lobes = nullptr;  // form->lobes.size()
+  // Forms without lane code: nullptr where padded.
+  const scatter::Closure* closure[16];
 };
 
 // Keeps what ScatterGroups point to; clear() before the next tile.
 class ScatterArena {
  public:
-  // items: 16 receivers or lights, kNoItem where there is none.
+  // items: 16 receivers or lights of one form, kNoItem where there is none.
   ScatterGroup fetch(const ScatterSide& side, const std::uint32_t items[16]);
   // 16 times the same.
   ScatterGroup fetch(const ScatterSide& side, std::uint32_t item);
-  void clear() { closures_.clear(); }
+  void clear();
 
  private:
+  LobeLanes* new_lobes(std::size_t count);
+
   std::deque<scatter::Closure> closures_;  // does not move its elements
+  std::vector<std::vector<LobeLanes>> chunks_;
+  std::size_t chunk_ = 0, used_ = 0;
 };
 
 // f(wo, wi) of scatter::eval_f, wi unit and away from the surface.

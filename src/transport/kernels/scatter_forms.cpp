@@ -1,0 +1,53 @@
+#include "transport/kernels/scatter_forms.h"
+
+#include <algorithm>
+
+namespace lumirank::transport {
+namespace {
+
+using scatter::LobeKind;
+
+bool has_lane_code(const scatter::Lobe& lobe) {
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+    case LobeKind::interfaced_diffuse:
+      return true;
+    case LobeKind::microfacet_reflect:
+      return lobe.variant == 0;
+    default:
+      return false;
+  }
+}
+
+ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
+  ScatterForm form;
+  form.in_lanes = std::all_of(lobes.begin(), lobes.end(), has_lane_code);
+  for (const scatter::Lobe& lobe : lobes) {
+    form.transmits = form.transmits || lobe.kind == LobeKind::microfacet_transmit;
+    form.microfacets = form.microfacets || lobe.kind == LobeKind::microfacet_reflect;
+    form.anisotropic =
+        form.anisotropic || (lobe.kind == LobeKind::microfacet_reflect && lobe.alpha_u != lobe.alpha_v);
+    if (form.in_lanes) form.lobes.push_back({lobe.kind, lobe.fresnel, lobe.distribution});
+  }
+  // One form for all that goes lane by lane, but for the side on which rays start.
+  if (!form.in_lanes) form.lobes.clear(), form.microfacets = form.anisotropic = false;
+  return form;
+}
+
+}  // namespace
+
+ScatterForms::ScatterForms(const ClosurePool& pool) {
+  form_of_recipe_.reserve(pool.recipes());
+  for (std::uint32_t recipe = 0; recipe < pool.recipes(); ++recipe) {
+    const ScatterForm form = form_of(pool.lobes(recipe));
+    const auto found = std::find(forms_.begin(), forms_.end(), form);
+    form_of_recipe_.push_back(static_cast<std::uint16_t>(found - forms_.begin()));
+    if (found == forms_.end()) forms_.push_back(form);
+  }
+}
+
+bool ScatterForms::some_transmit() const {
+  return std::any_of(forms_.begin(), forms_.end(), [](const ScatterForm& form) { return form.transmits; });
+}
+
+}  // namespace lumirank::transport

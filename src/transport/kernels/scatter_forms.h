@@ -1,0 +1,42 @@
+// Which closures can be evaluated together: those whose lobes have the same kinds in the same order.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scatter/closure.h"
+#include "transport/closure_pool.h"
+
+namespace lumirank::transport {
+
+struct LobeForm {
+  scatter::LobeKind kind;
+  scatter::FresnelKind fresnel;
+  scatter::NormalDistribution distribution;
+  friend bool operator==(const LobeForm&, const LobeForm&) = default;
+};
+
+struct ScatterForm {
+  std::vector<LobeForm> lobes;
+  bool in_lanes = false;  // there is vectorised code for all lobes; otherwise scatter::eval_f, lane by lane
+  bool microfacets = false;  // some lobe needs the half vector
+  bool anisotropic = false;  // some lobe needs the tangent
+  bool transmits = false;    // some lobe shines through the surface
+  friend bool operator==(const ScatterForm&, const ScatterForm&) = default;
+};
+
+// The forms of the closures of one pool.
+class ScatterForms {
+ public:
+  explicit ScatterForms(const ClosurePool& pool);
+  std::uint16_t of_recipe(std::uint32_t recipe) const { return form_of_recipe_[recipe]; }
+  const ScatterForm& operator[](std::uint16_t form) const { return forms_[form]; }
+  std::size_t size() const { return forms_.size(); }
+  bool some_transmit() const;
+
+ private:
+  std::vector<ScatterForm> forms_;
+  std::vector<std::uint16_t> form_of_recipe_;
+};
+
+}  // namespace lumirank::transport
