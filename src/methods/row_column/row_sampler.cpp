@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "base/random.h"
 
@@ -97,6 +98,41 @@ std::vector<SampledRow> RowSampler::next(std::size_t count) {
     ++given_count_;
     sampled.push_back({order_[at], 1.0f});
   }
+  return sampled;
+}
+
+std::vector<SampledRow> RowSampler::next_by_density(std::size_t count, std::span<const float> density) {
+  const std::size_t rows = order_.size(), blocks = std::min<std::size_t>(rows, 1024);
+  if (count == 0 || rows == 0) return {};
+  const auto block_begin = [&](std::size_t b) { return rows * b / blocks; };
+  std::vector<double> mass(blocks, 0.0), cdf(blocks + 1, 0.0);
+  double total = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t k = block_begin(b); k < block_begin(b + 1); ++k)
+      mass[b] += static_cast<double>(density[order_[k]]);
+    total += mass[b];
+  }
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const double uniform =
+        static_cast<double>(block_begin(b + 1) - block_begin(b)) / static_cast<double>(rows);
+    cdf[b + 1] = cdf[b] + (total > 0 ? 0.5 * uniform + 0.5 * mass[b] / total : uniform);
+  }
+  std::vector<SampledRow> sampled;
+  Rng rng(seed_, Stage::rows, 1, sequence_);
+  for (std::size_t k = 0; k < count && given_count_ < rows; ++k) {
+    const double u = (static_cast<double>(k) + rng.next_double()) / static_cast<double>(count) * cdf.back();
+    const auto it = std::upper_bound(cdf.begin() + 1, cdf.end() - 1, u);
+    const auto b = static_cast<std::size_t>(it - cdf.begin()) - 1;
+    const std::size_t begin = block_begin(b), size = block_begin(b + 1) - begin;
+    const double probability = (cdf[b + 1] - cdf[b]) / cdf.back() / static_cast<double>(size);
+    const std::size_t at = begin + rng.next_below(size);
+    if (given_[at]) continue;  // known already
+    given_[at] = true;
+    ++given_count_;
+    sampled.push_back(
+        {order_[at], static_cast<float>(1.0 / std::sqrt(static_cast<double>(rows) * probability))});
+  }
+  ++sequence_;
   return sampled;
 }
 

@@ -30,6 +30,10 @@ class RowSampler {
   // of the curve have equal shares of all rows given so far (± 1): a scrambled van der Corput sequence (Owen
   // 1995).
   std::vector<SampledRow> next(std::size_t count);
+  // As next(), but half of them in proportion to `density` (one number ≥ 0 per row, averaged over blocks of
+  // the image), for rows where something is known to be wrong. Weights make up for it: 1/√(rows ×
+  // probability).
+  std::vector<SampledRow> next_by_density(std::size_t count, std::span<const float> density);
 
  private:
   std::uint64_t seed_;

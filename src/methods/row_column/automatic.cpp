@@ -1,0 +1,147 @@
+// Automatic numbers of rows and columns: the second half of RowColumnRun.
+#include <algorithm>
+#include <cmath>
+
+#include "methods/row_column/run.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+constexpr std::size_t kFirstRows = 100;
+constexpr std::size_t kMostRows = 4096;
+constexpr std::size_t kPilotColumns = 48;
+constexpr std::size_t kMostPasses = 5;
+constexpr double kDefaultTarget = 0.02;
+// Held-out rows measure one draw of a random error on few rows: only clearly more than the target is a
+// disagreement.
+constexpr double kDisagreement = 1.5;
+// Share of the time that a plan spends; the rest is for what the plan does not see.
+constexpr double kPlannedTime = 0.94;
+
+}  // namespace
+
+double RowColumnRun::needed_error() const {
+  if (target_ <= 0) return 0;
+  const double have = blend_.expected_error();
+  const double missing = 1 / (target_ * target_) - (have > 0 ? 1 / (have * have) : 0.0);
+  // The next pass may not be asked for less than half of the work: what the held-out rows disagree with is
+  // not trusted.
+  return 1 / std::sqrt(std::max(missing, 0.5 / (target_ * target_)));
+}
+
+bool RowColumnRun::target_met() {
+  return target_ > 0 && blend_.expected_error() <= target_ * 1.001 &&
+         unseen_.measured_error(blend_.sums()) <= kDisagreement * target_;
+}
+
+ErrorCurve RowColumnRun::error_curve(const ColumnsKnown& known, double until_error) {
+  ErrorCurve curve;
+  const std::size_t most = std::max<std::size_t>(64, std::min<std::size_t>(columns_ / 2, 16384));
+  linalg::Splitter clusters = known.cluster(1, linalg::ClusteringAlgorithm::splitting);
+  for (std::size_t c = 32; c <= most; c *= 2) {
+    const bool more = clusters.split_to(c);
+    curve.points.push_back(
+        {static_cast<double>(c), known.expected_error(clusters), known.expected_error(clusters, unseen_)});
+    if (!more || (until_error > 0 && curve.points.back().unseen <= until_error)) break;
+    if (options_.time_seconds > 0 && static_cast<double>(c) * costs().column > time_left()) break;
+  }
+  return curve;
+}
+
+void RowColumnRun::more_rows_while_they_pay(double needed) {
+  double columns_before = 0;
+  while (!stopped() && settings_.rows == 0 && rows_read() < std::min(kMostRows, rows_ / 4)) {
+    const double start = timer_.seconds();
+    const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+    const ErrorCurve curve = error_curve(known, needed);
+    trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
+    bool pay = true;
+    if (settings_.columns > 0) {
+      // The number of columns is given: rows pay while unseen rows show more error than seen ones, and cost
+      // less than columns.
+      const auto c = static_cast<double>(settings_.columns);
+      pay = curve.unseen(c) > 1.25 * curve.seen(c) &&
+            static_cast<double>(rows_read()) * costs().row < 0.5 * c * costs().column;
+    } else if (needed > 0) {
+      const auto most = static_cast<double>(columns_);
+      pay = more_rows_pay_for_target(curve, {needed, rows_read(), most, columns_before}, costs());
+      columns_before = std::min(curve.columns_for_unseen(needed), most);
+    }
+    if (options_.time_seconds > 0 && settings_.columns == 0)
+      pay = pay && more_rows_pay_for_budget(curve, kPlannedTime * time_left(), rows_read(), costs());
+    if (!pay) return;
+    explore(sampler_.next(rows_read()), true,
+            options_.time_seconds > 0 ? timer_.seconds() + 0.6 * time_left() : 0);
+    if (time_left() < 0.3 * options_.time_seconds) return;
+  }
+}
+
+linalg::Splitter RowColumnRun::cluster_for(const ColumnsKnown& known, double needed) {
+  std::size_t most = settings_.columns > 0 ? settings_.columns : columns_;
+  if (options_.time_seconds > 0 && settings_.columns == 0) {
+    const double affordable = kPlannedTime * time_left() / costs().column / (1 + settings_.zero_share);
+    most = std::min(most, static_cast<std::size_t>(std::max(affordable, 1.0)));
+  }
+  if (settings_.columns > 0 || needed <= 0) return known.cluster(most, settings_.clustering);
+
+  // Splitting alone is quick and gives a first guess; the clustering that is used needs fewer columns.
+  const ErrorCurve curve = error_curve(known, needed);
+  const auto bounded = [&](double c) {
+    return static_cast<std::size_t>(std::clamp(c, 1.0, static_cast<double>(most)));
+  };
+  std::size_t c = bounded(0.7 * curve.columns_for_unseen(needed));
+  linalg::Splitter clusters = known.cluster(c, settings_.clustering);
+  for (int round = 0; round < 6; ++round) {
+    const double error = known.expected_error(clusters, unseen_);
+    if (error <= needed && (error >= 0.93 * needed || round >= 3)) break;
+    if (error > needed && (c >= most || clusters.clusters() < c)) break;  // no more can be had
+    c = bounded(static_cast<double>(c) * std::clamp(1.02 * error / needed, 0.5, 2.0));
+    clusters = known.cluster(c, settings_.clustering);
+  }
+  return clusters;
+}
+
+void RowColumnRun::pilot() {
+  const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+  const linalg::Splitter clusters =
+      known.cluster(std::min(kPilotColumns, columns_ / 8), settings_.clustering);
+  pass(known, clusters, known.expected_error(clusters, unseen_));
+}
+
+Estimate RowColumnRun::automatic() {
+  if (target_ <= 0 && options_.time_seconds <= 0) target_ = kDefaultTarget;
+  // So few columns that looking for fewer costs more than rendering them.
+  if (columns_ <= 2 * kPilotColumns) {
+    pass_over_all_columns();
+    return finish();
+  }
+  const std::size_t first =
+      settings_.rows > 0 ? settings_.rows : std::min(kFirstRows, std::max<std::size_t>(rows_ / 4, 1));
+  explore(sampler_.next(first), true, 0.3 * options_.time_seconds);
+  if (!stopped()) pilot();
+
+  while (!stopped() && passes_ < kMostPasses && !target_met()) {
+    const double needed = needed_error();
+    more_rows_while_they_pay(needed);
+    if (stopped()) break;
+    const double start = timer_.seconds();
+    const ColumnsKnown known(matrix_, seen_, settings_, options_.seed + passes_);
+    const linalg::Splitter clusters = cluster_for(known, needed);
+    trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
+    if (clusters.clusters() * 2 > columns_ && settings_.columns == 0) {
+      pass_over_all_columns();
+      break;
+    }
+    if (!pass(known, clusters, known.expected_error(clusters, unseen_))) break;
+    if (settings_.columns > 0) break;
+    if (options_.time_seconds > 0 && time_left() < 0.15 * options_.time_seconds) break;
+    if (settings_.rows == 0)
+      explore(sampler_.next_by_density(rows_read() / 2, blend_.disagreement()), false,
+              options_.time_seconds > 0 ? timer_.seconds() + 0.3 * time_left() : 0);
+  }
+  if (target_ > 0 && !stopped() && !target_met()) trace_.notes["target"] = "not reached";
+  return finish();
+}
+
+}  // namespace lumirank::methods

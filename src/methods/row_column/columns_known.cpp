@@ -1,0 +1,88 @@
+#include "methods/row_column/columns_known.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace lumirank::methods {
+
+ColumnsKnown::ColumnsKnown(const matrix::LightingMatrix& matrix, Exploration& exploration,
+                           const RowColumnSettings& settings, std::uint64_t seed)
+    : matrix_(matrix),
+      exploration_(exploration),
+      settings_(settings),
+      seed_(seed),
+      points_(exploration.sketch().points()) {
+  for (std::size_t j = 0; j < matrix.columns(); ++j)
+    (exploration.sketch().is_zero(j) ? zero_ : lit_).push_back(static_cast<matrix::Index>(j));
+  norms_ = linalg::own_norms(points_);
+}
+
+linalg::Splitter ColumnsKnown::cluster(std::size_t columns, linalg::ClusteringAlgorithm algorithm) const {
+  return linalg::cluster(points_, norms_, lit_, matrix_.column_features().group, {algorithm, columns, seed_});
+}
+
+double ColumnsKnown::expected_error(const linalg::Splitter& clusters) const {
+  return exploration_.squared_sum() > 0 ? std::sqrt(clusters.cost() / exploration_.squared_sum()) : 0.0;
+}
+
+double ColumnsKnown::expected_error(const linalg::Splitter& clusters, Exploration& unseen) const {
+  if (unseen.squared_sum() == 0) return 0;
+  const linalg::Partition partition = clusters.partition();
+  const linalg::Points values = unseen.sketch().points();
+  const linalg::ColumnSketch& seen = exploration_.sketch();
+  double error = parallel_sum(partition.clusters(), 8, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      linalg::PointSum all(values.dimension);
+      double s = 0, squares_over_norms = 0;
+      for (std::uint32_t j : partition.members(k)) {
+        all.add(values[j], 0);
+        double square = 0;
+        for (float v : values[j]) square += static_cast<double>(v) * static_cast<double>(v);
+        const double norm = static_cast<double>(seen.norm(j));
+        s += norm;
+        squares_over_norms += square / norm;
+      }
+      sum += std::max(0.0, s * squares_over_norms - all.squared_length());
+    }
+    return sum;
+  });
+  if (!zero_.empty()) {
+    const auto power = matrix_.column_features().power;
+    linalg::PointSum all(values.dimension);
+    double total = 0, squares_over_powers = 0;
+    for (matrix::Index j : zero_) {
+      const double p = power.empty() ? 1.0 : static_cast<double>(power[j]);
+      if (p <= 0) continue;
+      total += p;
+      all.add(values[j], 0);
+      double square = 0;
+      for (float v : values[j]) square += static_cast<double>(v) * static_cast<double>(v);
+      squares_over_powers += square / p;
+    }
+    if (settings_.zero_columns == ZeroColumns::ignore)
+      error += all.squared_length();
+    else
+      error += std::max(0.0, total * squares_over_powers - all.squared_length()) /
+               static_cast<double>(zero_draws(clusters.clusters()));
+  }
+  return std::sqrt(error / unseen.squared_sum());
+}
+
+std::size_t ColumnsKnown::zero_draws(std::size_t columns) const {
+  if (settings_.zero_columns == ZeroColumns::ignore) return 0;
+  const auto wanted =
+      static_cast<std::size_t>(std::llround(settings_.zero_share * static_cast<double>(columns)));
+  return std::clamp<std::size_t>(wanted, std::min<std::size_t>(1, zero_.size()), zero_.size());
+}
+
+Representatives ColumnsKnown::choose(const linalg::Splitter& clusters, std::uint64_t round) const {
+  const RepresentativeSettings choice{settings_.colour, seed_, round};
+  Representatives chosen = choose_representatives(clusters.partition(), exploration_.sketch(), choice);
+  add_zero_columns(zero_, matrix_.column_features().power, zero_draws(clusters.clusters()), choice, chosen);
+  return chosen;
+}
+
+}  // namespace lumirank::methods

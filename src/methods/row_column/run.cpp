@@ -1,0 +1,147 @@
+#include "methods/row_column/run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/brute_force/brute_force.h"
+
+namespace lumirank::methods {
+
+namespace {
+std::size_t projection_for(const RowColumnSettings& settings) {
+  // Fewer rows than projected dimensions are better kept as they are.
+  return settings.rows > 0 && settings.rows <= settings.projection ? 0 : settings.projection;
+}
+}  // namespace
+
+RowColumnRun::RowColumnRun(const matrix::LightingMatrix& matrix, const RunOptions& options,
+                           const RowColumnSettings& settings)
+    : matrix_(matrix),
+      options_(options),
+      settings_(settings),
+      target_(options.target_error),
+      rows_(matrix.rows()),
+      columns_(matrix.columns()),
+      sampler_(matrix, options.seed),
+      seen_(matrix, projection_for(settings), options.seed),
+      unseen_(matrix, 0, options.seed) {}
+
+Estimate RowColumnRun::fixed() {
+  explore(sampler_.stratified(settings_.rows), false, 0);
+  if (!stopped()) {
+    const double start = timer_.seconds();
+    const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+    const linalg::Splitter clusters = known.cluster(settings_.columns, settings_.clustering);
+    trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
+    pass(known, clusters, known.expected_error(clusters));
+  }
+  return finish();
+}
+
+void RowColumnRun::explore(const std::vector<SampledRow>& rows, bool hold_out, double until) {
+  // Enough held-out rows for the error to expect; they are kept as they are, so their number is bounded.
+  constexpr std::size_t kMostHeldOut = 64;
+  const double start = timer_.seconds();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    cancelled_ = cancelled_ || options_.sinks.cancelled();
+    if (cancelled_ || (until > 0 && timer_.seconds() > until && rows_read() >= 8)) break;
+    const bool apart = hold_out && k % 5 == 2 && unseen_.rows() < kMostHeldOut;
+    (apart ? unseen_ : seen_).read(rows[k]);
+    options_.sinks.report("rows", static_cast<double>(k + 1) / static_cast<double>(rows.size()));
+  }
+  trace_.numbers["seconds.rows"] += timer_.seconds() - start;
+}
+
+bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clusters, double expected_error) {
+  const double start = timer_.seconds();
+  const Representatives chosen = known.choose(clusters, passes_);
+  trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
+
+  double total = 0;
+  for (double e : chosen.energy) total += e;
+  // The part that is done stands for all, by energy; its error is taken to fall with the number of columns.
+  const auto so_far = [&](std::span<const Rgb> sums, std::size_t done) {
+    double energy = 0;
+    for (std::size_t k = 0; k < done; ++k) energy += chosen.energy[k];
+    const double missing = static_cast<double>(chosen.columns.size()) / static_cast<double>(done);
+    return blend_.with(scaled_sums(sums, energy > 0 ? static_cast<float>(total / energy) : 1.0f),
+                       std::max(expected_error, 1e-4) * missing);
+  };
+  std::vector<Rgb> sums(rows_, Rgb(0));
+  PassControl control{options_, timer_, options_.time_seconds, {}};
+  if (options_.on_estimate)
+    control.on_block = [&](std::span<const Rgb> part, std::size_t done) {
+      options_.on_estimate(so_far(part, done));
+    };
+  const PassResult result = render_columns(matrix_, chosen.columns, control, sums);
+
+  trace_.numbers["seconds.columns"] += result.seconds;
+  trace_.numbers["clusters"] = static_cast<double>(clusters.clusters());
+  trace_.numbers["zero_columns"] = static_cast<double>(known.zero().size());
+  trace_.numbers["zero_columns_drawn"] += static_cast<double>(chosen.zero_columns);
+  trace_.numbers["predicted_error_seen"] = known.expected_error(clusters);
+  for (std::size_t k = 0; k < result.done; ++k) rendered_.insert(chosen.columns[k].column);
+  rendered_count_ += result.done;
+  cancelled_ = cancelled_ || result.cancelled;
+  out_of_time_ = out_of_time_ || result.out_of_time;
+  if (result.done == chosen.columns.size()) {
+    blend_.add(sums, expected_error);
+    ++passes_;
+  } else if (result.done > 0) {
+    blend_.sums() = so_far(sums, result.done);
+  }
+  if (options_.on_estimate && !blend_.sums().empty()) options_.on_estimate(blend_.sums());
+  return !stopped();
+}
+
+void RowColumnRun::pass_over_all_columns() {
+  RunOptions rest = options_;
+  if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-3);
+  const Estimate all = sum_all_columns(matrix_, rest);
+  rendered_count_ += static_cast<std::size_t>(all.trace.numbers.at("columns"));
+  for (matrix::Index j = 0; j < columns_; ++j) rendered_.insert(j);
+  trace_.numbers["seconds.columns"] += all.trace.numbers.at("seconds.columns");
+  cancelled_ = cancelled_ || all.interrupted;
+  out_of_time_ = out_of_time_ || all.trace.notes.contains("stopped");
+  blend_ = Blend();
+  blend_.add(all.sums, 0);
+  ++passes_;
+}
+
+double RowColumnRun::time_left() const {
+  return options_.time_seconds > 0 ? options_.time_seconds - timer_.seconds() : 1e9;
+}
+
+Costs RowColumnRun::costs() const {
+  if (options_.time_seconds <= 0) return {static_cast<double>(columns_), static_cast<double>(rows_)};
+  const auto& t = trace_.numbers;
+  return {t.at("seconds.rows") / static_cast<double>(std::max<std::size_t>(rows_read(), 1)),
+          t.contains("seconds.columns") && rendered_count_ > 0
+              ? t.at("seconds.columns") / static_cast<double>(rendered_count_)
+              : 1.0};
+}
+
+Estimate RowColumnRun::finish() {
+  Estimate estimate;
+  auto& numbers = trace_.numbers;
+  if (!blend_.sums().empty()) {
+    numbers["sampled_rows_error"] = seen_.measured_error(blend_.sums());
+    if (unseen_.rows() > 0) numbers["heldout_error"] = unseen_.measured_error(blend_.sums());
+  }
+  numbers["predicted_error"] = blend_.expected_error();
+  numbers["rows"] = static_cast<double>(rows_read());
+  numbers["rows_held_out"] = static_cast<double>(unseen_.rows());
+  numbers["columns"] = static_cast<double>(rendered_.size());
+  numbers["passes"] = static_cast<double>(passes_);
+  numbers["sampling_rate"] =
+      static_cast<double>(rows_read()) / static_cast<double>(std::max<std::size_t>(rows_, 1)) +
+      static_cast<double>(rendered_count_) / static_cast<double>(std::max<std::size_t>(columns_, 1));
+  if (cancelled_) trace_.notes["stopped"] = "cancelled";
+  if (out_of_time_ && !cancelled_) trace_.notes["stopped"] = "time budget";
+  estimate.sums = blend_.sums().empty() ? std::vector<Rgb>(rows_, Rgb(0)) : std::move(blend_.sums());
+  estimate.trace = std::move(trace_);
+  estimate.interrupted = cancelled_;
+  return estimate;
+}
+
+}  // namespace lumirank::methods

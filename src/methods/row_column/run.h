@@ -1,0 +1,70 @@
+// One run of row-column sampling: its state, and the two ways through it.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "base/timer.h"
+#include "methods/column_pass.h"
+#include "methods/row_column/blend.h"
+#include "methods/row_column/columns_known.h"
+#include "methods/row_column/planner.h"
+
+namespace lumirank::methods {
+
+class RowColumnRun {
+ public:
+  RowColumnRun(const matrix::LightingMatrix& matrix, const RunOptions& options,
+               const RowColumnSettings& settings);
+
+  // Rows and columns are given: the paper's four phases, once.
+  Estimate fixed();
+  // One of them, or both, is to be found:
+  //  1. read some rows, a fifth of them apart from the clustering (held out); render a small pilot, which is
+  //  shown at once;
+  //  2. split clusters and follow the errors to expect on seen and on held-out rows; read as many rows again
+  //  as long as that
+  //     pays (planner.h);
+  //  3. cluster so finely that the error to expect on held-out rows meets the target, or the time that is
+  //  left; render;
+  //  4. if the held-out rows disagree with the picture, or time is left: read rows where the last two
+  //  estimates differ, and
+  //     repeat from 2. Passes are averaged by expected precision (blend.h).
+  // Without a time budget costs count entries, so the result is a function of the seed; with one they are
+  // seconds.
+  Estimate automatic();
+
+ private:
+  // Reads rows until done, cancelled or `until` (seconds since the call; 0: no limit) has passed.
+  void explore(const std::vector<SampledRow>& rows, bool hold_out, double until);
+  bool pass(const ColumnsKnown& known, const linalg::Splitter& clusters, double expected_error);
+  void pass_over_all_columns();
+  void pilot();
+  void more_rows_while_they_pay(double needed);
+  linalg::Splitter cluster_for(const ColumnsKnown& known, double needed);
+  ErrorCurve error_curve(const ColumnsKnown& known, double until_error);
+  double needed_error() const;  // of the next pass, for the blend to meet the target; 0: no target
+  bool target_met();
+  double time_left() const;  // seconds; a large number without a budget
+  Costs costs() const;
+  std::size_t rows_read() const { return seen_.rows() + unseen_.rows(); }
+  bool stopped() const { return cancelled_ || out_of_time_; }
+  Estimate finish();
+
+  const matrix::LightingMatrix& matrix_;
+  const RunOptions& options_;
+  const RowColumnSettings& settings_;
+  Timer timer_;
+  double target_;
+  std::size_t rows_, columns_;  // of the matrix
+  RowSampler sampler_;
+  Exploration seen_, unseen_;
+  Blend blend_;
+  Trace trace_;
+  std::set<matrix::Index> rendered_;
+  std::size_t rendered_count_ = 0;
+  std::size_t passes_ = 0;
+  bool cancelled_ = false, out_of_time_ = false;
+};
+
+}  // namespace lumirank::methods
