@@ -1,0 +1,242 @@
+#include <cstdarg>
+#include <cstdio>
+
+#include "scenedesc/readers.h"
+
+namespace lumirank::scenedesc {
+
+namespace {
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <typename... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+std::string num(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+std::string show(Rgb c) {
+  return c.r == c.g && c.g == c.b ? num(c.r) : "(" + num(c.r) + ", " + num(c.g) + ", " + num(c.b) + ")";
+}
+std::string show(Vec3f v) { return "(" + num(v.x) + ", " + num(v.y) + ", " + num(v.z) + ")"; }
+std::string show(const ColorInput& c) {
+  return c.texture == kNone ? show(c.value) : "texture " + std::to_string(c.texture);
+}
+std::string show(const FloatInput& f) {
+  return f.texture == kNone ? num(f.value) : "texture " + std::to_string(f.texture);
+}
+std::string show(const Transform& t) {
+  if (t.is_identity()) return "";
+  std::string text = ", to_world [";
+  for (std::size_t i = 0; i < 12; ++i) text += (i ? (i % 4 ? " " : "; ") : "") + num(t.m[i]);
+  return text + "]";
+}
+std::string show(const UvTransform& t) {
+  std::string text = "[";
+  for (int i = 0; i < 6; ++i) text += (i ? (i % 3 ? " " : "; ") : "") + num(t.m[i]);
+  return text + "]";
+}
+std::string rough(Distribution d, const FloatInput& u, const FloatInput& v) {
+  if (u.texture == kNone && v.texture == kNone && u.value == 0 && v.value == 0) return ", smooth";
+  const bool same = u.value == v.value && u.texture == v.texture;
+  return std::string(d == Distribution::ggx ? ", ggx " : ", beckmann ") + show(u) +
+         (same ? "" : " × " + show(v));
+}
+std::string b(int index) { return index == kNone ? "none" : "bsdf " + std::to_string(index); }
+const char* show(WrapMode mode) {
+  return mode == WrapMode::repeat ? "repeat" : (mode == WrapMode::mirror ? "mirror" : "clamp");
+}
+
+std::string kind(const TextureDesc& t) {
+  return std::visit(
+      Overloaded{
+          [](const BitmapTextureDesc& x) {
+            return "bitmap " + x.filename + (x.raw ? ", raw" : "") +
+                   (x.filter == FilterMode::nearest ? ", nearest" : "") + ", wrap " + show(x.wrap_u) + " × " +
+                   show(x.wrap_v) + ", to_uv " + show(x.to_uv);
+          },
+          [](const CheckerboardTextureDesc& x) {
+            return "checkerboard " + show(x.color0) + " and " + show(x.color1) + ", to_uv " + show(x.to_uv);
+          },
+          [](const ScaleTextureDesc& x) { return "scale of " + show(x.input) + " by " + show(x.scale); },
+          [](const VertexColorTextureDesc& x) { return "vertex colours \"" + x.attribute + "\""; }},
+      t.kind);
+}
+
+std::string kind(const BsdfDesc& desc) {
+  return std::visit(
+      Overloaded{[](const NullBsdfDesc&) { return std::string("null"); },
+                 [](const DiffuseDesc& x) { return "diffuse " + show(x.reflectance); },
+                 [](const RoughDiffuseDesc& x) {
+                   return "roughdiffuse " + show(x.reflectance) + ", alpha " + show(x.alpha);
+                 },
+                 [](const ConductorDesc& x) {
+                   return "conductor eta " + show(x.eta) + ", k " + show(x.k) + ", reflectance " +
+                          show(x.specular_reflectance) + rough(x.distribution, x.alpha_u, x.alpha_v);
+                 },
+                 [](const DielectricDesc& x) {
+                   return "dielectric eta " + num(x.eta) + ", reflectance " + show(x.specular_reflectance) +
+                          ", transmittance " + show(x.specular_transmittance) +
+                          rough(x.distribution, x.alpha_u, x.alpha_v);
+                 },
+                 [](const ThinDielectricDesc& x) {
+                   return "thindielectric eta " + num(x.eta) + ", reflectance " +
+                          show(x.specular_reflectance) + ", transmittance " + show(x.specular_transmittance);
+                 },
+                 [](const PlasticDesc& x) {
+                   return "plastic eta " + num(x.eta) + ", diffuse " + show(x.diffuse_reflectance) +
+                          ", specular " + show(x.specular_reflectance) + (x.nonlinear ? ", nonlinear" : "") +
+                          rough(x.distribution, x.alpha, x.alpha);
+                 },
+                 [](const PhongDesc& x) {
+                   return "phong diffuse " + show(x.diffuse_reflectance) + ", specular " +
+                          show(x.specular_reflectance) + ", exponent " + show(x.exponent);
+                 },
+                 [](const WardDesc& x) {
+                   return "ward diffuse " + show(x.diffuse_reflectance) + ", specular " +
+                          show(x.specular_reflectance) + ", alpha " + show(x.alpha_u) + " × " +
+                          show(x.alpha_v);
+                 },
+                 [](const PrincipledDesc& x) {
+                   return "principled " + show(x.base_color) + ", roughness " + show(x.roughness) +
+                          ", metallic " + show(x.metallic) + ", spec_trans " + show(x.spec_trans) +
+                          ", anisotropic " + show(x.anisotropic) + ", spec_tint " + show(x.spec_tint) +
+                          ", sheen " + show(x.sheen) + " (tint " + show(x.sheen_tint) + "), clearcoat " +
+                          show(x.clearcoat) + " (gloss " + show(x.clearcoat_gloss) + "), flatness " +
+                          show(x.flatness) + ", eta " + num(x.eta);
+                 },
+                 [](const MaskDesc& x) { return "mask " + show(x.opacity) + " over " + b(x.nested); },
+                 [](const TwoSidedDesc& x) {
+                   return "twosided " + b(x.front) + (x.back == x.front ? "" : " and " + b(x.back));
+                 },
+                 [](const BumpMapDesc& x) {
+                   return "bumpmap texture " + std::to_string(x.texture) + " × " + num(x.scale) + " over " +
+                          b(x.nested);
+                 },
+                 [](const NormalMapDesc& x) {
+                   return "normalmap texture " + std::to_string(x.texture) + " over " + b(x.nested);
+                 },
+                 [](const MixtureDesc& x) {
+                   std::string text = "mixture";
+                   for (const auto& part : x.parts)
+                     text += std::string(" ") +
+                             (part.complement ? "(1 - " + show(part.weight) + ")" : show(part.weight)) +
+                             " of " + b(part.bsdf);
+                   return text;
+                 }},
+      desc.kind);
+}
+
+std::string kind(const ShapeDesc& s) {
+  return std::visit(
+      Overloaded{
+          [](const MeshFileDesc& x) {
+            std::string text = std::string(x.format == MeshFormat::obj   ? "obj "
+                                           : x.format == MeshFormat::ply ? "ply "
+                                                                         : "serialized ") +
+                               x.filename;
+            if (x.format == MeshFormat::serialized) text += " [" + std::to_string(x.shape_index) + "]";
+            if (x.face_normals) text += ", face normals";
+            if (x.flip_tex_coords) text += ", v flipped";
+            if (x.max_smooth_angle) text += ", smooth up to " + num(*x.max_smooth_angle) + "°";
+            return text;
+          },
+          [](const RectangleDesc&) { return std::string("rectangle"); },
+          [](const CubeDesc&) { return std::string("cube"); },
+          [](const SphereDesc& x) { return "sphere at " + show(x.center) + ", radius " + num(x.radius); },
+          [](const DiskDesc&) { return std::string("disk"); },
+          [](const CylinderDesc& x) {
+            return "cylinder " + show(x.p0) + " to " + show(x.p1) + ", radius " + num(x.radius);
+          },
+          [](const ShapeGroupDesc& x) {
+            std::string text = "group of shapes";
+            for (const int shape : x.shapes) text += " " + std::to_string(shape);
+            return text;
+          },
+          [](const InstanceDesc& x) { return "instance of shape " + std::to_string(x.group); }},
+      s.kind);
+}
+
+std::string kind(const EmitterDesc& e) {
+  return std::visit(
+      Overloaded{[](const PointLightDesc& x) {
+                   return "point at " + show(x.position) + ", intensity " + show(x.intensity);
+                 },
+                 [](const SpotLightDesc& x) {
+                   return "spot, intensity " + show(x.intensity) + ", cutoff " + num(x.cutoff_angle) +
+                          "°, beam " + num(x.beam_width) + "°" + show(x.to_world);
+                 },
+                 [](const DirectionalLightDesc& x) {
+                   return "directional " + show(x.direction) + ", irradiance " + show(x.irradiance);
+                 },
+                 [](const ConstantEnvironmentDesc& x) { return "constant, radiance " + show(x.radiance); },
+                 [](const EnvironmentMapDesc& x) {
+                   return "envmap " + x.filename + ", scale " + num(x.scale) + show(x.to_world);
+                 },
+                 [](const SunSkyDesc& x) {
+                   return std::string(x.sun ? (x.sky ? "sunsky" : "sun") : "sky") + ", turbidity " +
+                          num(x.turbidity) + ", sun towards " + show(x.sun_direction) + ", scales " +
+                          num(x.sun_scale) + " and " + num(x.sky_scale) + ", radius × " +
+                          num(x.sun_radius_scale) + ", albedo " + show(x.albedo) + show(x.to_world);
+                 }},
+      e.kind);
+}
+
+std::string head(std::size_t index, const std::string& id) {
+  return "  " + std::to_string(index) + (id.empty() ? "" : " \"" + id + "\"") + ": ";
+}
+
+std::string show(const SensorDesc& s) {
+  const char* kinds[] = {"perspective", "thinlens", "orthographic"};
+  const char* filters[] = {"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"};
+  const FilmDesc& f = s.film;
+  std::string text = std::string(kinds[static_cast<int>(s.kind)]) + " " + std::to_string(f.width) + " × " +
+                     std::to_string(f.height);
+  if (f.crop_width > 0)
+    text += " (crop " + std::to_string(f.crop_width) + " × " + std::to_string(f.crop_height) + " at " +
+            std::to_string(f.crop_x) + ", " + std::to_string(f.crop_y) + ")";
+  if (s.kind != SensorKind::orthographic) text += ", fov_x " + num(s.fov_x) + "°";
+  if (s.kind == SensorKind::thinlens)
+    text += ", aperture " + num(s.aperture_radius) + ", focus " + num(s.focus_distance);
+  text += std::string(", filter ") + filters[static_cast<int>(f.filter.kind)];
+  if (s.samples_per_pixel > 0) text += ", " + std::to_string(s.samples_per_pixel) + " samples per pixel";
+  return text + show(s.to_world);
+}
+
+}  // namespace
+
+std::string describe(const SceneDesc& scene) {
+  std::string text = scene.source_file + " (" + scene.format + ")\n";
+  text += "integrator " + (scene.integrator.empty() ? "not stated" : scene.integrator) + ", depth " +
+          (scene.max_depth < 0 ? "unlimited" : std::to_string(scene.max_depth)) + "\n";
+  text += std::to_string(scene.sensors.size()) + " sensors\n";
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    text += head(i, scene.sensors[i].id) + show(scene.sensors[i]) + "\n";
+  text += std::to_string(scene.emitters.size()) + " emitters besides shapes\n";
+  for (std::size_t i = 0; i < scene.emitters.size(); ++i)
+    text += head(i, scene.emitters[i].id) + kind(scene.emitters[i]) + "\n";
+  text += std::to_string(scene.textures.size()) + " textures\n";
+  for (std::size_t i = 0; i < scene.textures.size(); ++i)
+    text += head(i, scene.textures[i].id) + kind(scene.textures[i]) + "\n";
+  text += std::to_string(scene.bsdfs.size()) + " BSDFs\n";
+  for (std::size_t i = 0; i < scene.bsdfs.size(); ++i)
+    text += head(i, scene.bsdfs[i].id) + kind(scene.bsdfs[i]) + "\n";
+  text += std::to_string(scene.shapes.size()) + " shapes\n";
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+    const ShapeDesc& s = scene.shapes[i];
+    text += head(i, s.id) + kind(s) + (s.bsdf == kNone ? "" : ", " + b(s.bsdf)) +
+            (s.flip_normals ? ", normals flipped" : "") + (s.in_group ? ", in a group" : "") +
+            (s.emitter ? ", radiance " + show(s.emitter->radiance) : "") + show(s.to_world) + "\n";
+  }
+  text += std::to_string(scene.warnings.size()) + " warnings\n";
+  for (const Warning& w : scene.warnings)
+    text += "  " + to_string(w.where) + ": " + w.what +
+            (w.used_instead.empty() ? ": left out" : ": instead " + w.used_instead) + "\n";
+  return text;
+}
+
+}  // namespace lumirank::scenedesc

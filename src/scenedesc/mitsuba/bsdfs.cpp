@@ -1,0 +1,61 @@
+#include "scenedesc/mitsuba/bsdf_kinds.h"
+
+namespace lumirank::scenedesc::mitsuba {
+
+namespace {
+
+using Builder = BsdfKind (*)(Reader&, Plugin&);
+const std::map<std::string, Builder>& builders() {
+  static const std::map<std::string, Builder> all = {
+      {"diffuse", diffuse},
+      {"roughdiffuse", rough_diffuse},
+      {"dielectric", dielectric},
+      {"roughdielectric", dielectric},
+      {"thindielectric", thin_dielectric},
+      {"conductor", conductor},
+      {"roughconductor", conductor},
+      {"plastic", plastic},
+      {"roughplastic", plastic},
+      {"phong", phong},
+      {"ward", ward},
+      {"principled", principled},
+      {"principledthin", principled},
+      {"mask", mask},
+      {"twosided", two_sided},
+      {"bumpmap", bump_map},
+      {"bump", bump_map},
+      {"normalmap", normal_map},
+      {"mixturebsdf", mixture},
+      {"blendbsdf", blend},
+      {"null", [](Reader&, Plugin&) -> BsdfKind { return NullBsdfDesc{}; }},
+  };
+  return all;
+}
+
+}  // namespace
+
+int Reader::build_bsdf(const Element& element) {
+  if (const auto found = bsdfs_.find(&element); found != bsdfs_.end()) return found->second;
+  const OpenGuard guard(*this, element);
+  Plugin p(*this, element);
+  int index = kNone;
+  if (const auto builder = builders().find(p.type()); builder != builders().end()) {
+    // A two-step push: nested BSDFs come before the ones that use them.
+    BsdfKind kind = builder->second(*this, p);
+    p.finish();
+    index = add_bsdf(p.id(), p.where(), std::move(kind));
+  } else {
+    const auto nested = p.take_all("bsdf");
+    if (nested.size() == 1) {
+      warn(p.where(), "the BSDF \"" + p.type() + "\"", "the BSDF in it");
+      index = build_bsdf(*nested[0]);
+    } else {
+      warn(p.where(), "the BSDF \"" + p.type() + "\"", "diffuse, gray 0.5");
+      index = add_bsdf(p.id(), p.where(), DiffuseDesc{});
+    }
+  }
+  bsdfs_[&element] = index;
+  return index;
+}
+
+}  // namespace lumirank::scenedesc::mitsuba

@@ -1,0 +1,243 @@
+// BSDFs that hold no others.
+#include <cmath>
+
+#include "scenedesc/mitsuba/bsdf_kinds.h"
+#include "scenedesc/mitsuba/ior.h"
+
+namespace lumirank::scenedesc::mitsuba {
+
+namespace {
+
+// A number, or the name of a material.
+float index_of(Plugin& p, const std::string& name, const std::string& fallback) {
+  std::string material = fallback;
+  if (p.has(name)) {
+    const auto text = p.text_or_number(name);
+    if (const float* number = std::get_if<float>(&text)) {
+      if (!(*number > 0))
+        throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is not positive",
+                         "indices of refraction are 1 or more");
+      return *number;
+    }
+    material = std::get<std::string>(text);
+  }
+  if (const auto index = dielectric_index(material)) return *index;
+  throw InputError(p.where_of(name), "the material \"" + material + "\" is not known",
+                   "give a number, or one of: " + dielectric_names());
+}
+
+float relative_index(Plugin& p, const std::string& interior) {
+  if (const auto eta = p.number("eta")) {
+    if (!(*eta > 0))
+      throw InputError(p.where_of("eta"), "\"eta\" of " + p.title() + " is not positive",
+                       "indices of refraction are 1 or more");
+    return *eta;
+  }
+  const float inside = index_of(p, "int_ior", interior);
+  return inside / index_of(p, "ext_ior", "air");
+}
+
+struct Roughness {
+  Distribution distribution = Distribution::beckmann;
+  FloatInput alpha_u, alpha_v;
+};
+
+void check_alpha(Plugin& p, const std::string& name, const FloatInput& alpha) {
+  if (alpha.texture == kNone && !(alpha.value >= 0))
+    throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is negative",
+                     "give a roughness from 0 to 1");
+}
+
+Roughness roughness(Reader& reader, Plugin& p, float fallback) {
+  Roughness out;
+  if (const auto name = p.text("distribution")) {
+    if (*name == "ggx" || *name == "trowbridge-reitz")
+      out.distribution = Distribution::ggx;
+    else if (*name == "phong" || *name == "as")
+      reader.warn(p.where_of("distribution"), "the microfacet distribution \"" + *name + "\"",
+                  "beckmann of the same alpha");
+    else if (*name != "beckmann")
+      throw InputError(p.where_of("distribution"), "the distribution \"" + *name + "\" is not known",
+                       "beckmann and ggx are");
+  }
+  const FloatInput alpha = p.scalar("alpha", fallback);
+  check_alpha(p, "alpha", alpha);
+  out.alpha_u = p.has("alpha_u") ? p.scalar("alpha_u", fallback) : alpha;
+  out.alpha_v = p.has("alpha_v") ? p.scalar("alpha_v", fallback) : alpha;
+  check_alpha(p, "alpha_u", out.alpha_u);
+  check_alpha(p, "alpha_v", out.alpha_v);
+  p.ignore({"sample_visible"});
+  return out;
+}
+
+bool is_rough(const Plugin& p) { return p.type().rfind("rough", 0) == 0; }
+
+}  // namespace
+
+BsdfKind diffuse(Reader&, Plugin& p) {
+  DiffuseDesc out;
+  // 0.6 takes either name.
+  out.reflectance = p.has("reflectance") ? p.reflectance("reflectance", Rgb(0.5f))
+                                         : p.reflectance("diffuse_reflectance", Rgb(0.5f));
+  return out;
+}
+
+BsdfKind rough_diffuse(Reader&, Plugin& p) {
+  RoughDiffuseDesc out;
+  out.reflectance = p.has("reflectance") ? p.reflectance("reflectance", Rgb(0.5f))
+                                         : p.reflectance("diffuse_reflectance", Rgb(0.5f));
+  out.alpha = p.scalar("alpha", 0.2f);
+  check_alpha(p, "alpha", out.alpha);
+  p.ignore({"use_fast_approx"});
+  return out;
+}
+
+BsdfKind dielectric(Reader& reader, Plugin& p) {
+  DielectricDesc out;
+  out.eta = relative_index(p, "bk7");
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
+  out.specular_transmittance = p.reflectance("specular_transmittance", Rgb(1));
+  if (is_rough(p)) {
+    const Roughness r = roughness(reader, p, 0.1f);
+    out.distribution = r.distribution, out.alpha_u = r.alpha_u, out.alpha_v = r.alpha_v;
+  }
+  return out;
+}
+
+BsdfKind thin_dielectric(Reader&, Plugin& p) {
+  ThinDielectricDesc out;
+  out.eta = relative_index(p, "bk7");
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
+  out.specular_transmittance = p.reflectance("specular_transmittance", Rgb(1));
+  return out;
+}
+
+BsdfKind conductor(Reader& reader, Plugin& p) {
+  ConductorDesc out;
+  const bool own = p.has("eta") || p.has("k");
+  const auto name = p.text("material");
+  if (own && name)
+    throw InputError(p.where_of("material"), p.title() + " has both a material and its own eta and k",
+                     "keep one of them");
+  MetalIndex metal = {Rgb(0), Rgb(1)};
+  if (!own) {
+    const std::string material = name.value_or(reader.dialect().camel_case() ? "Cu" : "none");
+    if (const auto known = metal_index(material)) {
+      metal = *known;
+    } else {
+      metal = *metal_index("Cr");
+      reader.warn(p.where_of("material"), "the metal \"" + material + "\" (known are: " + metal_names() + ")",
+                  "Cr");
+    }
+  } else {
+    metal.eta = p.constant_color("eta", Rgb(0), Intent::index);
+    metal.k = p.constant_color("k", Rgb(0), Intent::index);
+    for (int i = 0; i < 3; ++i) {
+      if (metal.eta[i] < 0) throw InputError(p.where_of("eta"), "\"eta\" of " + p.title() + " is negative");
+      if (metal.k[i] < 0) throw InputError(p.where_of("k"), "\"k\" of " + p.title() + " is negative");
+    }
+  }
+  // 0.6 divides by the outside's index, which is that of air unless given; 3.x does not know it.
+  const float outside = p.has("ext_eta") ? index_of(p, "ext_eta", "air")
+                                         : (reader.dialect().camel_case() ? *dielectric_index("air") : 1.0f);
+  out.eta = metal.eta / outside;
+  out.k = metal.k / outside;
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
+  if (is_rough(p)) {
+    const Roughness r = roughness(reader, p, 0.1f);
+    out.distribution = r.distribution, out.alpha_u = r.alpha_u, out.alpha_v = r.alpha_v;
+  }
+  return out;
+}
+
+BsdfKind plastic(Reader& reader, Plugin& p) {
+  PlasticDesc out;
+  out.eta = relative_index(p, "polypropylene");
+  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
+  out.nonlinear = p.flag("nonlinear", false);
+  if (is_rough(p)) {
+    if (p.has("alpha_u") || p.has("alpha_v"))
+      throw InputError(p.where_of(p.has("alpha_u") ? "alpha_u" : "alpha_v"),
+                       p.title() + " cannot be anisotropic", "give one \"alpha\"");
+    const Roughness r = roughness(reader, p, 0.1f);
+    out.distribution = r.distribution, out.alpha = r.alpha_u;
+  }
+  return out;
+}
+
+BsdfKind phong(Reader&, Plugin& p) {
+  PhongDesc out;
+  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(0.2f));
+  out.exponent = p.scalar("exponent", 30);
+  if (out.exponent.texture == kNone && out.exponent.value < 0)
+    throw InputError(p.where_of("exponent"), "\"exponent\" of " + p.title() + " is negative");
+  return out;
+}
+
+BsdfKind ward(Reader&, Plugin& p) {
+  WardDesc out;
+  const std::string variant = p.text("variant").value_or("balanced");
+  if (variant == "ward")
+    out.variant = WardDesc::Variant::ward;
+  else if (variant == "ward-duer")
+    out.variant = WardDesc::Variant::ward_duer;
+  else if (variant != "balanced")
+    throw InputError(p.where_of("variant"),
+                     "the variant \"" + variant + "\" of " + p.title() + " is not known",
+                     "ward, ward-duer and balanced are");
+  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(0.2f));
+  const FloatInput alpha = p.scalar("alpha", 0.1f);
+  out.alpha_u = p.has("alpha_u") ? p.scalar("alpha_u", 0.1f) : alpha;
+  out.alpha_v = p.has("alpha_v") ? p.scalar("alpha_v", 0.1f) : alpha;
+  for (const auto& [name, value] : {std::pair{"alpha_u", out.alpha_u}, std::pair{"alpha_v", out.alpha_v}})
+    if (value.texture == kNone && !(value.value > 0))
+      throw InputError(p.where_of(p.has(name) ? name : "alpha"),
+                       std::string("\"") + name + "\" of " + p.title() + " is not positive",
+                       "Ward's model has no mirror limit");
+  return out;
+}
+
+BsdfKind principled(Reader& reader, Plugin& p) {
+  PrincipledDesc out;
+  if (p.type() == "principledthin")
+    reader.warn(p.where(), "the thin-film lobes of \"principledthin\"", "\"principled\"");
+  out.base_color = p.reflectance("base_color", Rgb(0.5f));
+  const std::pair<const char*, FloatInput*> inputs[] = {{"roughness", &out.roughness},
+                                                        {"anisotropic", &out.anisotropic},
+                                                        {"metallic", &out.metallic},
+                                                        {"spec_trans", &out.spec_trans},
+                                                        {"spec_tint", &out.spec_tint},
+                                                        {"sheen", &out.sheen},
+                                                        {"sheen_tint", &out.sheen_tint},
+                                                        {"clearcoat", &out.clearcoat},
+                                                        {"clearcoat_gloss", &out.clearcoat_gloss},
+                                                        {"flatness", &out.flatness}};
+  for (const auto& [name, input] : inputs) {
+    *input = p.scalar(name, input->value);
+    if (input->texture == kNone && !(input->value >= 0 && input->value <= 1))
+      throw InputError(p.where_of(name),
+                       std::string("\"") + name + "\" of " + p.title() + " is not between 0 and 1");
+  }
+  if (const auto eta = p.number("eta")) {
+    if (p.has("specular"))
+      throw InputError(p.where_of("specular"), p.title() + " has both \"eta\" and \"specular\"",
+                       "keep one of them");
+    if (!(*eta > 1)) throw InputError(p.where_of("eta"), "\"eta\" of " + p.title() + " is not above 1");
+    out.eta = *eta;
+  } else {
+    // Reflectance at normal incidence is 0.08·specular.
+    const float specular = p.number("specular", 0.5f);
+    if (!(specular > 0 && specular <= 1))
+      throw InputError(p.where_of("specular"), "\"specular\" of " + p.title() + " is not in (0, 1]");
+    out.eta = 2 / (1 - std::sqrt(0.08f * specular)) - 1;
+  }
+  if (p.type() == "principledthin") p.ignore({"diff_trans"});
+  p.ignore({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate",
+            "main_specular_sampling", "clearcoat_sampling", "diffuse_sampling"});
+  return out;
+}
+
+}  // namespace lumirank::scenedesc::mitsuba

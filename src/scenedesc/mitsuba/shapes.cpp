@@ -1,0 +1,127 @@
+#include "scenedesc/mitsuba/plugin.h"
+
+namespace lumirank::scenedesc::mitsuba {
+
+namespace {
+
+MeshFileDesc mesh_file(Reader& reader, Plugin& p, MeshFormat format) {
+  MeshFileDesc out;
+  out.format = format;
+  const std::string name = p.required_text("filename");
+  out.filename = reader.existing_file(name, p.where_of("filename"), "mesh file");
+  out.face_normals = p.flag("face_normals", false);
+  // The same defaults in 0.6 and 3.x: the v of OBJ runs up and is flipped, that of the others runs down
+  // already.
+  out.flip_tex_coords = p.flag("flip_tex_coords", format == MeshFormat::obj);
+  if (const auto angle = p.number("max_smooth_angle")) {
+    if (!(*angle >= 0 && *angle <= 180))
+      throw InputError(p.where_of("max_smooth_angle"),
+                       "\"max_smooth_angle\" of " + p.title() + " is not between 0 and 180");
+    if (out.face_normals)
+      throw InputError(p.where_of("max_smooth_angle"),
+                       p.title() + " has both \"max_smooth_angle\" and \"face_normals\"", "keep one of them");
+    out.max_smooth_angle = *angle;
+  }
+  if (format == MeshFormat::serialized) {
+    out.shape_index = p.integer("shape_index", 0);
+    if (out.shape_index < 0)
+      throw InputError(p.where_of("shape_index"), "\"shape_index\" of " + p.title() + " is negative");
+  } else if (format == MeshFormat::obj && p.has("shape_index")) {
+    reader.warn(p.where_of("shape_index"), "a \"shape_index\" of OBJ files", "all shapes of the file");
+    p.ignore({"shape_index"});
+  }
+  p.ignore({"collapse", "load_materials", "srgb", "vertex_normals", "compress"});
+  return out;
+}
+
+Vec3f point(Plugin& p, const std::string& name, Vec3f fallback) { return p.vec3(name).value_or(fallback); }
+
+}  // namespace
+
+AreaEmitterDesc Reader::area_emitter(const Element& element) {
+  Plugin p(*this, element);
+  AreaEmitterDesc out;
+  out.id = p.id();
+  out.where = p.where();
+  out.radiance = p.radiance("radiance", Rgb(1));
+  p.ignore({"sampling_weight"});
+  p.finish();
+  used_area_emitters_.insert(&element);
+  return out;
+}
+
+int Reader::build_shape(const Element& element, bool in_group) {
+  if (const auto found = groups_.find(&element); found != groups_.end()) return found->second;
+  const OpenGuard guard(*this, element);
+  Plugin p(*this, element);
+  ShapeDesc shape;
+  shape.id = p.id();
+  shape.where = p.where();
+  shape.in_group = in_group;
+  const std::string& type = p.type();
+  const bool group = type == "shapegroup", instance = type == "instance";
+  if (in_group && (group || instance))
+    throw InputError(p.where(), "a " + type + " in a shapegroup", "groups cannot be nested; take it out");
+
+  if (type == "obj" || type == "ply" || type == "serialized") {
+    shape.kind = mesh_file(
+        *this, p,
+        type == "obj" ? MeshFormat::obj : (type == "ply" ? MeshFormat::ply : MeshFormat::serialized));
+  } else if (type == "rectangle") {
+    shape.kind = RectangleDesc{};
+  } else if (type == "cube") {
+    shape.kind = CubeDesc{};
+  } else if (type == "sphere") {
+    shape.kind = SphereDesc{point(p, "center", {}), p.positive("radius", 1)};
+  } else if (type == "disk") {
+    shape.kind = DiskDesc{};
+  } else if (type == "cylinder") {
+    const CylinderDesc cylinder{point(p, "p0", {0, 0, 0}), point(p, "p1", {0, 0, 1}),
+                                p.positive("radius", 1)};
+    if (!(length(cylinder.p1 - cylinder.p0) > 0))
+      throw InputError(p.where_of("p1"), "p0 and p1 of " + p.title() + " are the same point");
+    shape.kind = cylinder;
+  } else if (group) {
+    ShapeGroupDesc out;
+    for (const Element* member : p.take_all("shape"))
+      if (const int index = build_shape(*member, true); index != kNone) out.shapes.push_back(index);
+    if (out.shapes.empty()) throw InputError(p.where(), p.title() + " holds no shapes", "nest a <shape>");
+    shape.kind = out;
+  } else if (instance) {
+    const Element* target = p.take_one("shape");
+    if (!target) throw InputError(p.where(), p.title() + " names no shapegroup", "add <ref id=\"…\"/>");
+    if (target->require("type") != "shapegroup")
+      throw InputError(p.where(), p.title() + " refers to a shape that is not a shapegroup",
+                       "put that shape into a shapegroup");
+    shape.kind = InstanceDesc{build_shape(*target, false)};
+  } else {
+    warn(p.where(), "the shape \"" + type + "\"", "");
+    return kNone;
+  }
+
+  if (!group) shape.to_world = p.regular_transform();
+  shape.flip_normals = p.flag("flip_normals", false);
+  if (!group && !instance) {
+    const auto bsdfs = p.take_all("bsdf");
+    if (bsdfs.size() > 1)
+      throw InputError(bsdfs[1]->where, p.title() + " has more than one BSDF", "keep one of them");
+    if (!bsdfs.empty()) shape.bsdf = build_bsdf(*bsdfs[0]);
+    if (const Element* emitter = p.take_one("emitter")) {
+      if (emitter->require("type") != "area")
+        throw InputError(emitter->where, "an emitter \"" + emitter->require("type") + "\" in a shape",
+                         "only area emitters can be there");
+      if (in_group)
+        throw InputError(emitter->where, "an area emitter in a shapegroup",
+                         "instances cannot emit light; take the shape out of the group");
+      shape.emitter = area_emitter(*emitter);
+      if (shape.emitter->id.empty()) shape.emitter->id = shape.id;
+    }
+  }
+  p.finish();
+  scene_.shapes.push_back(std::move(shape));
+  const int index = static_cast<int>(scene_.shapes.size()) - 1;
+  if (group) groups_[&element] = index;
+  return index;
+}
+
+}  // namespace lumirank::scenedesc::mitsuba

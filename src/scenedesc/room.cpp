@@ -1,1 +1,0 @@
-// keeps the room's library non-empty until its first source file arrives
