@@ -17,7 +17,8 @@ struct CompareRun {
   std::string series;  // the curve to which the run belongs
   std::map<std::string, std::string> settings;
   std::uint64_t seed = 0;
-  double seconds = 0, setup_seconds = 0;  // the total, and the part of it before the method itself
+  double seconds = 0,
+         setup_seconds = 0;  // of the method; and of what it stands on (receivers, lights, matrix)
   double rays = 0, entries = 0;
   film::ErrorMetrics error;
   double sampling_rate = 0;
