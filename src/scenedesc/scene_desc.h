@@ -38,6 +38,11 @@ struct FloatInput {
 enum class FilterMode { nearest, bilinear };
 enum class WrapMode { repeat, mirror, clamp };
 
+// Texture coordinates: (u, v) = (0, 0) is the lower left corner of the picture, so v runs up and row 0 of the file is at
+// v = 1. `to_uv` maps the surface's coordinates to these. Formats whose v runs down (Mitsuba: v = 0 is the top row) have
+// that flip at the end of each bitmap's `to_uv`, after the format's own uv transform; surfaces, built-in shapes and meshes
+// alike, keep the coordinates of their format (MeshFileDesc::flip_tex_coords). So wraps, scales, checkerboards and the
+// uv of rectangles and spheres stay exact.
 struct BitmapTextureDesc {
   std::string filename;
   // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear anyway).
@@ -157,7 +162,9 @@ struct MeshFileDesc {
   std::string filename;
   int shape_index = 0;              // serialized only
   bool face_normals = false;        // ignore the file's normals
-  bool flip_tex_coords = false;     // v → 1 - v
+  // v → 1 - v of what the mesh file states, in place of the stated value. Mitsuba, 0.6 and 3.x alike: true by default for
+  // OBJ (whose v runs up), false for PLY and serialized; the bitmap's own flip (see BitmapTextureDesc) comes on top.
+  bool flip_tex_coords = false;
   std::optional<float> max_smooth_angle;  // degrees; normals are made anew
 };
 struct RectangleDesc {};  // [-1,1]² in z = 0, normal +z

@@ -27,12 +27,6 @@ float index_of(Plugin& p, const std::string& name, const std::string& fallback) 
 }
 
 float relative_index(Plugin& p, const std::string& interior) {
-  if (const auto eta = p.number("eta")) {
-    if (!(*eta > 0))
-      throw InputError(p.where_of("eta"), "\"eta\" of " + p.title() + " is not positive",
-                       "indices of refraction are 1 or more");
-    return *eta;
-  }
   const float inside = index_of(p, "int_ior", interior);
   return inside / index_of(p, "ext_ior", "air");
 }

@@ -11,10 +11,12 @@ namespace lumirank::scenedesc::mitsuba {
 
 namespace {
 
-constexpr int kDeepest = 64;           // of nested elements; real scenes use about 10
-constexpr std::size_t kIncludes = 32;  // of files inside files
-constexpr std::size_t kElements = 20'000'000;
-constexpr std::size_t kLongestValue = 64u << 20;
+constexpr int kDeepest = 64;            // of nested elements; real scenes use about 10
+constexpr std::size_t kIncludes = 32;   // of files inside files
+constexpr std::size_t kFiles = 10'000;  // included in all
+constexpr std::size_t kElements = 5'000'000;
+constexpr std::size_t kSubstituted =
+    64u << 20;  // bytes put in for $parameters in all: defaults can double each other
 
 // Offsets of line starts, to turn pugixml's byte offsets into lines.
 class Lines {
@@ -65,6 +67,9 @@ class Loader {
         throw InputError({filename, lines.at(node.offset_debug())},
                          "the file declares a DOCTYPE, which is not accepted",
                          "remove it; entities are not expanded");
+    if (result.status == pugi::status_no_document_element)
+      throw InputError({filename, 1}, "this is not well-formed XML: it holds no element",
+                       "is this a Mitsuba scene?");
     if (!result)
       throw InputError({filename, lines.at(result.offset)},
                        std::string("this is not well-formed XML: ") + result.description(),
@@ -125,14 +130,19 @@ class Loader {
                         int depth) {
     for (pugi::xml_node node : from.children()) {
       const SourceLocation where{filename, lines.at(node.offset_debug())};
-      if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata)
-        throw InputError(where,
-                         "stray text \"" + std::string(node.value()).substr(0, 40) + "\" between elements",
+      if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
+        const std::string stray = node.value();
+        const auto first = std::min(stray.find_first_not_of(" \t\r\n"), stray.size());
+        const auto end = std::min(stray.find_first_of("\r\n", first), stray.size());
+        throw InputError({filename, lines.at(node.offset_debug() + static_cast<std::ptrdiff_t>(first))},
+                         "stray text \"" + stray.substr(first, std::min<std::size_t>(end - first, 40)) +
+                             "\" between elements",
                          "values are written as value=\"…\"");
+      }
       if (node.type() != pugi::node_element) continue;
       if (depth > kDeepest)
         throw InputError(where, "elements are nested more than 64 deep", "flatten the scene");
-      if (++elements_ > kElements) throw InputError(where, "the scene has more than 20 million elements");
+      if (++elements_ > kElements) throw InputError(where, "the scene has more than 5 million elements");
       const std::string tag = node.name();
       auto element = std::make_unique<Element>();
       element->tag = tag;
@@ -166,6 +176,7 @@ class Loader {
                        "remove one <include>");
     if (open_.size() > kIncludes)
       throw InputError(element.where, "includes are nested more than 32 deep: " + chain + filename);
+    if (++files_ > kFiles) throw InputError(element.where, "more than 10,000 files are included");
     const std::string text = read_file(filename, element.where);
     open_.push_back(filename);
     read_into(into, text, filename, false, depth);
@@ -194,7 +205,9 @@ class Loader {
             "known are: " + known_parameters() + "; add <default name=\"…\" value=\"…\"/> or --define");
       used_.insert(name);
       out += found->second;
-      if (out.size() > kLongestValue) throw InputError(where, "an attribute grows beyond 64 MiB");
+      substituted_ += found->second.size();
+      if (substituted_ > kSubstituted)
+        throw InputError(where, "the $parameters put in add up to more than 64 MiB");
       i = start + name.size() + (braces ? 1 : 0);
     }
     return out;
@@ -210,7 +223,7 @@ class Loader {
   std::map<std::string, std::string> parameters_;
   std::set<std::string> used_;
   std::vector<std::string> open_;  // the chain of files being read
-  std::size_t elements_ = 0;
+  std::size_t elements_ = 0, files_ = 0, substituted_ = 0;
   Document document_;
 };
 

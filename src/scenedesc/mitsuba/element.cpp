@@ -31,7 +31,9 @@ std::string read_file(const std::string& filename, const SourceLocation& where) 
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(where, "file not found: " + filename, "check the name");
   if (fs::is_directory(status)) throw InputError(where, filename + " is a folder", "name a file in it");
-  const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, error) : 0;
+  if (!fs::is_regular_file(status))
+    throw InputError(where, filename + " is not a file", "name a file that can be read");
+  const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(where, "cannot read " + filename + " (" + error.message() + ")");
   if (size > kLargest)
     throw InputError(where, filename + " is larger than 256 MiB",

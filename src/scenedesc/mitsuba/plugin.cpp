@@ -67,6 +67,11 @@ bool Plugin::has(const std::string& name) const {
   return std::any_of(children_.begin(), children_.end(), [&](const Child& c) { return c.name == name; });
 }
 
+bool Plugin::has_object(const std::string& tag) const {
+  return std::any_of(children_.begin(), children_.end(),
+                     [&](const Child& c) { return c.target->tag == tag; });
+}
+
 SourceLocation Plugin::where_of(const std::string& name) const {
   for (const Child& child : children_)
     if (child.name == name) return child.element->where;
@@ -225,7 +230,8 @@ ColorInput Plugin::radiance(const std::string& name, Rgb fallback) {
 FloatInput Plugin::scalar(const std::string& name, float fallback) {
   const auto input = color_if(name, Intent::index);
   if (!input) return {fallback};
-  return {input->texture == kNone ? luminance(input->value) / luminance(Rgb(1)) : 0.0f, input->texture};
+  const Rgb c = input->value;
+  return {input->texture != kNone ? 0.0f : (c.r == c.g && c.g == c.b ? c.r : luminance(c)), input->texture};
 }
 
 std::vector<const Element*> Plugin::take_all(const std::string& tag) {

@@ -24,6 +24,7 @@ class Plugin {
   std::string title() const;
 
   bool has(const std::string& name) const;
+  bool has_object(const std::string& tag) const;
   SourceLocation where_of(
       const std::string& name) const;  // of the property, or of the plugin if there is none
 

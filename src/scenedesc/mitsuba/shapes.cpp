@@ -116,6 +116,11 @@ int Reader::build_shape(const Element& element, bool in_group) {
       shape.emitter = area_emitter(*emitter);
       if (shape.emitter->id.empty()) shape.emitter->id = shape.id;
     }
+    // Without a BSDF, lamps are black in both dialects, and in 0.6 the boundary of a medium cannot be seen.
+    if (shape.bsdf == kNone && shape.emitter)
+      shape.bsdf = add_bsdf("", p.where(), DiffuseDesc{{Rgb(0), kNone}});
+    else if (shape.bsdf == kNone && dialect().camel_case() && p.has_object("medium"))
+      shape.bsdf = add_bsdf("", p.where(), NullBsdfDesc{});
   }
   p.finish();
   scene_.shapes.push_back(std::move(shape));

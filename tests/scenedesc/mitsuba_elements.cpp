@@ -1,0 +1,237 @@
+// Parameters, includes, warnings, defaults and conversions of the Mitsuba reader.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "scenedesc/mitsuba/ior.h"
+#include "scenedesc/mitsuba/solar.h"
+#include "scenedesc/readers.h"
+
+namespace lumirank::scenedesc {
+namespace {
+
+SceneDesc parse(const std::string& content, const char* version = "3.0.0", const ReadOptions& options = {}) {
+  return parse_mitsuba("<scene version=\"" + std::string(version) + "\">\n" + content + "\n</scene>",
+                       testing::TempDir() + "elements.xml", options);
+}
+const std::string kCamera = "<sensor type=\"perspective\"/>";
+
+float radius(const SceneDesc& scene) { return std::get<SphereDesc>(scene.shapes.at(0).kind).radius; }
+
+TEST(MitsubaParameters, DefinesWinOverDefaults) {
+  const std::string text =
+      kCamera +
+      "<default name=\"r\" value=\"2\"/><shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>";
+  EXPECT_EQ(radius(parse(text)), 2);
+  EXPECT_EQ(radius(parse(text, "3.0.0", {{{"r", "5"}}, false})), 5);
+}
+
+TEST(MitsubaParameters, AnUnusedDefineIsNamed) {
+  const SceneDesc scene = parse(kCamera, "3.0.0", {{{"nobody", "5"}}, false});
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].what.find("\"nobody\""), std::string::npos);
+}
+
+TEST(MitsubaParameters, TheLongestKnownNameCounts) {
+  const std::string text = kCamera +
+                           "<default name=\"r\" value=\"9\"/><default name=\"ra\" value=\"1\"/>"
+                           "<shape type=\"sphere\"><float name=\"radius\" value=\"$ra.5\"/></shape>"
+                           "<shape type=\"sphere\"><float name=\"radius\" value=\"${r}1\"/></shape>";
+  const SceneDesc scene = parse(text);
+  EXPECT_EQ(radius(scene), 1.5f);
+  EXPECT_EQ(std::get<SphereDesc>(scene.shapes[1].kind).radius, 91);
+}
+
+TEST(MitsubaInclude, NamesAreSharedAndLinesAreThoseOfTheOtherFile) {
+  std::ofstream(testing::TempDir() + "inc.xml")
+      << "<scene version=\"3.0.0\">\n\n<bsdf type=\"diffuse\" id=\"white\"/>\n<bsdf type=\"odd\"/></scene>";
+  const SceneDesc scene =
+      parse(kCamera + "<shape type=\"sphere\"><ref id=\"white\"/></shape><include filename=\"inc.xml\"/>");
+  EXPECT_EQ(scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf)).where.line, 3);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(scene.warnings[0].where.line, 4);
+  EXPECT_EQ(scene.warnings[0].where.file, testing::TempDir() + "inc.xml");
+}
+
+TEST(MitsubaAlias, IsASecondName) {
+  const SceneDesc scene = parse(kCamera +
+                                "<bsdf type=\"diffuse\" id=\"a\"/><alias id=\"a\" as=\"b\"/><shape "
+                                "type=\"sphere\"><ref id=\"b\"/></shape>");
+  EXPECT_EQ(scene.bsdfs.size(), 1u);
+  EXPECT_EQ(scene.shapes.at(0).bsdf, 0);
+}
+
+TEST(MitsubaWarnings, NameTheLineAndWhatIsUsedInstead) {
+  const SceneDesc scene =
+      parse(kCamera +
+            "\n<shape type=\"hair\"/>\n<bsdf type=\"hair\"/>\n<bsdf type=\"coating\"><bsdf "
+            "type=\"null\"/></bsdf>\n" +
+            "<shape type=\"sphere\"><float name=\"raduis\" value=\"2\"/></shape>\n" +
+            "<shape type=\"sphere\"><medium name=\"interior\" type=\"homogeneous\"/></shape>");
+  ASSERT_EQ(scene.warnings.size(), 5u);
+  const std::pair<int, const char*> expected[] = {{3, "shape \"hair\""},
+                                                  {4, "BSDF \"hair\""},
+                                                  {5, "BSDF \"coating\""},
+                                                  {6, "did you mean \"radius\"?"},
+                                                  {7, "participating media"}};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(scene.warnings[i].where.line, expected[i].first);
+    EXPECT_NE(scene.warnings[i].what.find(expected[i].second), std::string::npos) << scene.warnings[i].what;
+  }
+  EXPECT_EQ(scene.shapes.size(), 2u);
+}
+
+TEST(MitsubaWarnings, StrictMakesTheFirstAnError) {
+  try {
+    parse(kCamera + "\n<bsdf type=\"hair\"/>", "3.0.0", {{}, true});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where().line, 3);
+    EXPECT_NE(std::string(error.what()).find("\"hair\""), std::string::npos);
+  }
+}
+
+TEST(MitsubaAnimation, TheKeyOfTheLeastTimeIsUsed) {
+  const SceneDesc scene =
+      parse(kCamera +
+                "<shape type=\"sphere\"><animation name=\"toWorld\"><transform time=\"1\"><translate "
+                "x=\"5\"/></transform>"
+                "<transform time=\"0\"><translate x=\"3\"/></transform></animation></shape>",
+            "0.6.0");
+  EXPECT_EQ(scene.shapes.at(0).to_world.point({0, 0, 0}), (Vec3f{3, 0, 0}));
+  EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+// In both dialects a lamp without a BSDF is black; in 0.6 a boundary of media without one is not there.
+TEST(MitsubaDefaults, BsdfOfLampsAndOfMediumBoundaries) {
+  const std::string text =
+      kCamera +
+      "<shape type=\"sphere\"><emitter type=\"area\"/></shape><shape type=\"sphere\"><medium "
+      "name=\"interior\" type=\"homogeneous\"/></shape><shape type=\"cube\"/>";
+  for (const char* version : {"0.6.0", "3.0.0"}) {
+    const SceneDesc scene = parse(text, version);
+    const auto bsdf = [&](std::size_t shape) {
+      return scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf)).kind;
+    };
+    EXPECT_EQ(std::get<DiffuseDesc>(bsdf(0)).reflectance.value, Rgb(0));
+    if (version[0] == '0') {
+      EXPECT_TRUE(std::holds_alternative<NullBsdfDesc>(bsdf(1)));
+    } else {
+      EXPECT_EQ(scene.shapes[1].bsdf, kNone);
+    }
+    EXPECT_EQ(scene.shapes[2].bsdf, kNone);
+    EXPECT_EQ(scene.sensors[0].film.filter.kind, FilterKind::gaussian);
+  }
+}
+
+TEST(MitsubaDefaults, ConductorsAreCopperIn06AndMirrorsIn3) {
+  const std::string text = kCamera + "<bsdf type=\"conductor\"/>";
+  const auto old = std::get<ConductorDesc>(parse(text, "0.6.0").bsdfs.at(0).kind),
+             now = std::get<ConductorDesc>(parse(text).bsdfs.at(0).kind);
+  EXPECT_EQ(now.eta, Rgb(0));
+  EXPECT_EQ(now.k, Rgb(1));
+  const auto copper = *mitsuba::metal_index("Cu");
+  EXPECT_FLOAT_EQ(old.eta.g, copper.eta.g / 1.000277f);
+}
+
+// The focal length of a full-frame camera whose diagonal is sqrt(36² + 24²) mm; 4:3 film, so the half width
+// is 4/5 of the half diagonal.
+TEST(MitsubaSensor, FocalLength) {
+  const double half_diagonal = std::hypot(36, 24) / (2 * 50.0);
+  const float fov = parse(kCamera).sensors[0].fov_x;
+  EXPECT_NEAR(fov, 2 * std::atan(half_diagonal * 0.8) * 180 / M_PI, 1e-4);
+  EXPECT_NEAR(parse("<sensor type=\"perspective\"><string name=\"focal_length\" value=\"50mm\"/></sensor>")
+                  .sensors[0]
+                  .fov_x,
+              fov, 1e-5);
+}
+
+TEST(MitsubaSensor, FieldOfViewAxes) {
+  const auto fov = [](const char* axis) {
+    return parse(std::string("<sensor type=\"perspective\"><float name=\"fov\" value=\"50\"/><string "
+                             "name=\"fov_axis\" value=\"") +
+                 axis +
+                 "\"/><film type=\"hdrfilm\"><integer name=\"width\" value=\"300\"/><integer name=\"height\" "
+                 "value=\"200\"/></film></sensor>")
+        .sensors[0]
+        .fov_x;
+  };
+  const double t = std::tan(25 * M_PI / 180), degrees = 360 / M_PI;
+  EXPECT_EQ(fov("x"), 50);
+  EXPECT_EQ(fov("larger"), 50);
+  EXPECT_NEAR(fov("y"), std::atan(1.5 * t) * degrees, 1e-4);
+  EXPECT_EQ(fov("smaller"), fov("y"));
+  EXPECT_NEAR(fov("diagonal"), std::atan(t * 3 / std::sqrt(13.0)) * degrees, 1e-4);
+}
+
+TEST(MitsubaTexture, ColorsGammaAndOffsets06) {
+  std::ofstream(testing::TempDir() + "t.png") << "x";
+  const SceneDesc scene =
+      parse(kCamera +
+                "<texture type=\"bitmap\"><string name=\"filename\" value=\"t.png\"/><float name=\"gamma\" "
+                "value=\"1\"/>"
+                "<float name=\"uscale\" value=\"4\"/><float name=\"voffset\" value=\"0.25\"/></texture>",
+            "0.6.0");
+  const auto& texture = std::get<BitmapTextureDesc>(scene.textures.at(0).kind);
+  EXPECT_TRUE(texture.raw);
+  // v' = v + 1/4 down the picture is 3/4 - v up it.
+  EXPECT_EQ(texture.to_uv, (UvTransform{{4, 0, 0, 0, -1, 0.75f}}));
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(MitsubaPrincipled, SpecularIsAnIndex) {
+  // Reflectance at normal incidence ((η - 1)/(η + 1))² = 0.08 · specular = 0.04 means η = 1.5.
+  const SceneDesc scene = parse(kCamera +
+                                "<bsdf type=\"principled\"><float name=\"specular\" value=\"0.5\"/><float "
+                                "name=\"metallic\" value=\"1\"/></bsdf>");
+  const auto& desc = std::get<PrincipledDesc>(scene.bsdfs.at(0).kind);
+  EXPECT_NEAR(desc.eta, 1.5f, 1e-6);
+  EXPECT_EQ(desc.metallic.value, 1);
+}
+
+TEST(MitsubaMixture, WeightsAndComplement) {
+  const SceneDesc scene = parse(kCamera +
+                                "<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.25\"/><bsdf "
+                                "type=\"null\"/><bsdf type=\"diffuse\"/></bsdf>");
+  const auto& parts = std::get<MixtureDesc>(scene.bsdfs.back().kind).parts;
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_TRUE(parts[0].complement);
+  EXPECT_FALSE(parts[1].complement);
+  EXPECT_TRUE(
+      std::holds_alternative<NullBsdfDesc>(scene.bsdfs.at(static_cast<std::size_t>(parts[0].bsdf)).kind));
+}
+
+// The example of Reda and Andreas, "Solar position algorithm for solar radiation applications"
+// (NREL/TP-560-34302, table A5.1): elevation 39.872° without refraction, azimuth 194.340°. The formulas here
+// are stated to be good to 0.01°.
+TEST(SolarPosition, AgreesWithThePublishedExample) {
+  mitsuba::PlaceAndTime t;
+  t.latitude = 39.742476, t.longitude = -105.1786, t.timezone = -7;
+  t.year = 2003, t.month = 10, t.day = 17, t.hour = 12, t.minute = 30, t.second = 30;
+  const auto sun = mitsuba::sun_position(t);
+  EXPECT_NEAR(sun.elevation * 180 / M_PI, 39.872, 0.02);
+  EXPECT_NEAR(std::fmod(sun.azimuth * 180 / M_PI + 360, 360), 194.340, 0.02);
+}
+
+// 0.6 has +x east and +y up, 3.x +x south, +y west and +z up: the same sky once the frames are the same.
+TEST(SolarPosition, TheDialectsAgreeOnEastAndUp) {
+  const std::string text = kCamera + "<emitter type=\"sun\"><float name=\"hour\" value=\"8\"/></emitter>";
+  const auto world = [&](const char* version) {
+    const SceneDesc scene = parse(text, version);
+    const auto& sun = std::get<SunSkyDesc>(scene.emitters.at(0).kind);
+    return std::pair(sun.to_world.vector(sun.sun_direction), sun.to_world.vector({0, 1, 0}));
+  };
+  const auto [old_sun, old_up] = world("0.6.0");
+  const auto [new_sun, new_up] = world("3.0.0");
+  EXPECT_EQ(old_up, (Vec3f{0, 1, 0}));
+  EXPECT_NEAR(new_up.z, 1, 1e-6);
+  EXPECT_GT(old_sun.x, 0.3f);  // in the east in the morning
+  EXPECT_NEAR(new_sun.x, old_sun.z, 1e-6);
+  EXPECT_NEAR(new_sun.y, -old_sun.x, 1e-6);
+  EXPECT_NEAR(new_sun.z, old_sun.y, 1e-6);
+}
+
+}  // namespace
+}  // namespace lumirank::scenedesc
