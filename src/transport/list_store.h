@@ -41,7 +41,7 @@ class ListStore {
 
   // Gives back the look-up table and spare capacity. A later intern() makes the table again.
   void shrink() {
-    table_ = {};
+    table_ = std::vector<std::uint32_t>();  // (assigning {} would keep the capacity)
     offsets_.shrink_to_fit();
     values_.shrink_to_fit();
   }

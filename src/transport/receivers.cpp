@@ -167,7 +167,7 @@ class ReceiverTracer {
         result_.closure[i] = v.closure == Receivers::kLambertian ? v.closure : first_closure[p] + v.closure;
         ++i;
       }
-      pieces_[p].vertices = {};
+      pieces_[p] = Piece();
     });
   }
 

@@ -1,0 +1,371 @@
+#include "transport/virtual_lights.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+
+namespace lumirank::transport {
+namespace {
+
+using test::SceneMaker;
+
+constexpr double kAlpha = 1e-4;  // false alarms per test
+
+Rgb total_power(const VirtualLights& lights, LightKind kind) {
+  Rgb sum{0};
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    if (lights.kind[j] == kind) sum += lights.power[j];
+  return sum;
+}
+
+// Sum of the flux of surface lights, per depth, of the first channel.
+std::map<int, double> flux_by_depth(const VirtualLights& lights) {
+  std::map<int, double> sums;
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    if (lights.kind[j] == LightKind::surface) sums[lights.depth[j]] += lights.power[j].r;
+  return sums;
+}
+
+void expect_mean(const std::vector<double>& values, double expected, std::size_t tests,
+                 const std::string& what) {
+  const auto m = test::mean_of(values);
+  const double bound = test::student_quantile(kAlpha, tests, values.size() - 1) * m.standard_error;
+  // Sums of thousands of floats: rounding of 1e-5 where there is no noise at all.
+  EXPECT_NEAR(m.mean, expected, bound + 1e-5 * std::abs(expected)) << what;
+}
+
+LightSettings settings_of(std::uint64_t seed, std::size_t count) {
+  LightSettings s;
+  s.seed = seed, s.count = count;
+  return s;
+}
+
+SceneMaker furnace(float reflectance, Rgb intensity = Rgb(1)) {
+  SceneMaker scene;
+  scene.box_inside(1, scene.diffuse(Rgb(reflectance)));
+  scene.point_light({0.2f, -0.1f, 0.3f}, intensity);
+  return scene;
+}
+
+// Oriented lights carry radiance × area share: over the whole lamp Le·A, so π times their sum is its power
+// π·Le·A. All triangles shine alike, so this holds without noise.
+TEST(VirtualLights, AreaLampSumsToItsPower) {
+  SceneMaker scene;
+  scene.rectangle({0, 0, -1}, {2, 0, 0}, {0, 2, 0}, scene.diffuse(Rgb(0.5f)));
+  scene.lamp({0, 0, 1}, {0, 0.5f, 0}, {0.25f, 0, 0}, {3, 2, 1}, scene.diffuse(Rgb(0)));  // 1 × 0.5, downwards
+  const auto world = scene.build();
+  auto settings = settings_of(1, 500);
+  settings.indirect = false;
+  const auto lights = trace_virtual_lights(world, settings);
+  EXPECT_EQ(lights.size(), 500u);
+  EXPECT_EQ(lights.direct_count, 500u);
+  EXPECT_EQ(lights.paths, 0u);
+  const Rgb sum = total_power(lights, LightKind::oriented);
+  EXPECT_NEAR(sum.r, 3 * 0.5, 1e-4);
+  EXPECT_NEAR(sum.g, 2 * 0.5, 1e-4);
+  EXPECT_NEAR(sum.b, 1 * 0.5, 1e-4);
+  float area = 0;
+  int upper_half = 0;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    EXPECT_NEAR(lights.normal[j].z, -1, 1e-6);
+    EXPECT_NEAR(lights.position[j].z, 1, 1e-6);
+    EXPECT_LE(std::abs(lights.position[j].x), 0.25f + 1e-6f);
+    EXPECT_LE(std::abs(lights.position[j].y), 0.5f + 1e-6f);
+    EXPECT_EQ(lights.depth[j], 0);
+    area += lights.area[j];
+    upper_half += lights.position[j].y > 0;
+  }
+  EXPECT_NEAR(area, 0.5, 1e-4);
+  // Stratified over the area: independent samples would have a standard deviation of √125 ≈ 11.
+  EXPECT_NEAR(upper_half, 250, 11);
+}
+
+// ∫ L dω = 4π for a constant environment of radiance 1: the irradiances of all directional lights.
+TEST(VirtualLights, EnvironmentSumsToItsIntegral) {
+  SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, scene.diffuse(Rgb(0.5f)));
+  scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
+  auto settings = settings_of(1, 1000);
+  settings.indirect = false;
+  const auto lights = trace_virtual_lights(scene.build(), settings);
+  EXPECT_EQ(lights.size(), 1000u);
+  EXPECT_NEAR(total_power(lights, LightKind::directional).r, 4 * kPi, 1e-3);
+  // Irradiance of a horizontal plane: ∫ cosθ dω over the upper half = π. Stratified samples: well under the
+  // error of independent ones, 4π·sd(cos⁺)/√1000 = 4π·√(1/6 - 1/16)/√1000 ≈ 0.13.
+  float irradiance = 0;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    EXPECT_NEAR(length(lights.normal[j]), 1, 1e-5);
+    irradiance += lights.power[j].r * std::max(0.0f, -lights.normal[j].z);
+    EXPECT_EQ(lights.area[j], 0);
+  }
+  EXPECT_NEAR(irradiance, kPi, 0.13);
+}
+
+TEST(VirtualLights, PointSpotAndDirectionalStayAsTheyAre) {
+  SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, scene.diffuse(Rgb(0.5f)));
+  scene.point_light({0, 0, 1}, {1, 2, 3});
+  scenedesc::SpotLightDesc spot;
+  spot.to_world = Transform::look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0});
+  spot.intensity = Rgb(5);
+  spot.cutoff_angle = 30, spot.beam_width = 15;
+  scene.light(spot);
+  scene.light(scenedesc::DirectionalLightDesc{{0, 0, -1}, Rgb(7)});
+  auto settings = settings_of(1, 100);
+  settings.indirect = false;
+  const auto lights = trace_virtual_lights(scene.build(), settings);
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights.kind, (std::vector<LightKind>{LightKind::omni, LightKind::directional, LightKind::spot}));
+  EXPECT_EQ(lights.power[0], Rgb(1, 2, 3));
+  EXPECT_EQ(lights.position[0], (Vec3f{0, 0, 1}));
+  EXPECT_NEAR(lights.power[1].r, 7, 1e-5);
+  EXPECT_NEAR(lights.normal[1].z, -1, 1e-6);
+  EXPECT_EQ(lights.power[2], Rgb(5));
+  EXPECT_NEAR(lights.normal[2].z, -1, 1e-6);
+  ASSERT_LT(lights.closure[2], lights.spots.size());
+  const SpotShape& shape = lights.spots[lights.closure[2]];
+  EXPECT_NEAR(shape.cutoff, kPi / 6, 1e-6);
+  EXPECT_NEAR(shape.beam, kPi / 12, 1e-6);
+  EXPECT_NEAR(shape.cos_cutoff, std::cos(kPi / 6), 1e-6);
+  EXPECT_NEAR(shape.cos_beam, std::cos(kPi / 12), 1e-6);
+}
+
+// In a closed box of reflectance ρ the flux that arrives after k segments is P·ρ^(k-1), P = 4π·I.
+TEST(VirtualLights, ParticlesKeepTheEnergyBalanceOfAFurnace) {
+  constexpr int kSeeds = 24, kDepths = 5;
+  const auto world = furnace(0.6f).build();
+  for (const std::size_t count : {500u, 1000u}) {  // whatever the number of paths, by which all is divided
+    std::array<std::vector<double>, kDepths + 1> flux;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      auto by_depth =
+          flux_by_depth(trace_virtual_lights(world, settings_of(static_cast<std::uint64_t>(seed), count)));
+      for (int k = 1; k <= kDepths; ++k) flux[static_cast<std::size_t>(k)].push_back(by_depth[k]);
+    }
+    for (int k = 1; k <= kDepths; ++k)
+      expect_mean(flux[static_cast<std::size_t>(k)], 4 * kPi * std::pow(0.6, k - 1), 2 * kDepths,
+                  "depth " + std::to_string(k));
+  }
+}
+
+// Null surfaces in between change nothing, thin glass neither: what it reflects comes back in the end, but
+// the straight passages do not count as segments.
+TEST(VirtualLights, StraightPassagesDoNotCount) {
+  auto scene = furnace(0.6f);
+  scene.box_inside(0.7f, scene.bsdf(scenedesc::NullBsdfDesc{}));
+  const auto lights = trace_virtual_lights(scene.build(), settings_of(1, 2000));
+  auto by_depth = flux_by_depth(lights);
+  EXPECT_NEAR(by_depth[1], 4 * kPi, 1e-3);  // all particles arrive with equal powers
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    if (lights.kind[j] != LightKind::surface) continue;
+    const Vec3f p = lights.position[j];
+    EXPECT_NEAR(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}), 1, 1e-5);
+  }
+}
+
+// A mirror of reflectance ρ' in front of the lamp: its light arrives with one segment more.
+TEST(VirtualLights, MirrorsAreFollowed) {
+  SceneMaker scene;
+  scene.box_inside(1, scene.diffuse(Rgb(0.5f)));
+  scene.rectangle({0, 0, 0}, {0.9f, 0, 0}, {0, 0.9f, 0}, scene.mirror(Rgb(0.8f)));
+  scenedesc::SpotLightDesc spot;  // all its light meets the mirror
+  spot.to_world = Transform::look_at({0, 0, 0.5f}, {0, 0, 0}, {0, 1, 0});
+  spot.cutoff_angle = 40, spot.beam_width = 40;
+  scene.light(spot);
+  const auto world = scene.build();
+  const double power = 2 * kPi * (1 - std::cos(40 * kPi / 180));
+  std::vector<double> flux;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    auto by_depth = flux_by_depth(trace_virtual_lights(world, settings_of(seed, 500)));
+    EXPECT_EQ(by_depth.count(1), 0u);  // a mirror is no light
+    flux.push_back(by_depth[2]);
+  }
+  expect_mean(flux, 0.8 * power, 1, "behind the mirror");
+}
+
+// Lights per path in a box of reflectance ρ: geometric, mean 1/(1-ρ) = 2.5, variance ρ/(1-ρ)² = 3.75. The
+// pilot's mean over 4,096 paths has a relative standard deviation of √(3.75/4096)/2.5 = 1.2 %, the count
+// itself over 8,000 paths 0.9 %: together 1.5 %; the bound is five times that.
+TEST(VirtualLights, CountIsNearTheTarget) {
+  const auto lights = trace_virtual_lights(furnace(0.6f).build(), settings_of(3, 20000));
+  EXPECT_EQ(lights.direct_count, 1u);
+  EXPECT_NEAR(static_cast<double>(lights.size()), 20000, 0.075 * 20000);
+  // Survival is paid by roulette, not by power: all lights of a grey box are alike.
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    if (lights.kind[j] == LightKind::surface) {
+      EXPECT_NEAR(lights.power[j].r * static_cast<float>(lights.paths), 4 * kPi, 1e-3);
+    }
+}
+
+TEST(VirtualLights, DepthLimit) {
+  SceneMaker scene = furnace(0.6f);
+  const auto world = scene.build();
+  for (const int max_depth : {0, 1, 2, 3, 5}) {
+    auto settings = settings_of(1, 1000);
+    settings.max_depth = max_depth;
+    const auto lights = trace_virtual_lights(world, settings);
+    EXPECT_EQ(lights.direct_count, max_depth >= 2 ? 1u : 0u);
+    int deepest = 0;
+    for (const auto d : lights.depth) deepest = std::max<int>(deepest, d);
+    // A first-hit receiver and a light of depth k make a path of k + 2 segments.
+    EXPECT_EQ(deepest, std::max(0, max_depth - 2)) << max_depth;
+  }
+}
+
+TEST(VirtualLights, DirectAndIndirectAlone) {
+  const auto world = furnace(0.6f).build();
+  auto settings = settings_of(1, 1000);
+  settings.indirect = false;
+  EXPECT_EQ(trace_virtual_lights(world, settings).size(), 1u);
+  settings.indirect = true, settings.direct = false;
+  const auto lights = trace_virtual_lights(world, settings);
+  EXPECT_EQ(lights.direct_count, 0u);
+  for (const auto kind : lights.kind) EXPECT_EQ(kind, LightKind::surface);
+}
+
+// Two lamps of unequal power: each path remembers where it began, and the flux at first hits is the lamp's
+// own power.
+TEST(VirtualLights, RememberTheirEmitter) {
+  SceneMaker scene;
+  scene.box_inside(1, scene.diffuse(Rgb(0.5f)));
+  scene.lamp({0, 0, 0.9f}, {0, 0.5f, 0}, {0.5f, 0, 0}, Rgb(1), scene.diffuse(Rgb(0)), "down");
+  scene.lamp({0, 0, -0.9f}, {0.1f, 0, 0}, {0, 0.1f, 0}, Rgb(2), scene.diffuse(Rgb(0)), "up");
+  const auto world = scene.build();
+  const double power[2] = {kPi * 1 * 1.0, kPi * 2 * 0.04};
+  std::array<std::vector<double>, 2> first, direct;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    const auto lights = trace_virtual_lights(world, settings_of(seed, 1000));
+    std::array<double, 2> f{}, d{};
+    for (std::size_t j = 0; j < lights.size(); ++j) {
+      const auto e = lights.emitter[j];
+      ASSERT_LT(e, 2);
+      if (lights.depth[j] == 1) f[e] += lights.power[j].r;
+      if (lights.kind[j] == LightKind::oriented) d[e] += lights.power[j].r * kPi;
+    }
+    for (std::size_t e = 0; e < 2; ++e) first[e].push_back(f[e]), direct[e].push_back(d[e]);
+  }
+  for (std::size_t e = 0; e < 2; ++e) {
+    // The lamps' own black sides catch nothing: no light is made there, but flux is lost to them. The first
+    // lamp sees the second under a known form factor, so it is compared by what it sends out alone.
+    expect_mean(direct[e], power[e], 4, "direct");
+    const auto m = test::mean_of(first[e]);
+    EXPECT_LE(m.mean - test::student_quantile(kAlpha, 4, 23) * m.standard_error, power[e]);
+    EXPECT_GT(m.mean, 0.5 * power[e]);
+  }
+}
+
+// More lamps than lights may be: a stratified choice stands for all of them.
+TEST(VirtualLights, SomeLampsStandForAll) {
+  SceneMaker scene;
+  scene.rectangle({0, 0, -1}, {5, 0, 0}, {0, 5, 0}, scene.diffuse(Rgb(0.5f)));
+  double total = 0;
+  for (int k = 0; k < 500; ++k) {
+    const float intensity = 1 + static_cast<float>(k % 10);
+    scene.point_light({static_cast<float>(k % 25), static_cast<float>(k / 25), 1}, Rgb(intensity));
+    total += intensity;
+  }
+  const auto world = scene.build();
+  std::vector<double> sums;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    auto settings = settings_of(seed, 100);
+    settings.indirect = false;
+    const auto lights = trace_virtual_lights(world, settings);
+    EXPECT_EQ(lights.size(), 100u);
+    sums.push_back(total_power(lights, LightKind::omni).r);
+  }
+  expect_mean(sums, total, 1, "intensity of all lamps");
+}
+
+TEST(VirtualLights, SortedByKindThenAlongACurve) {
+  SceneMaker scene;
+  const int white = scene.diffuse(Rgb(0.5f));
+  scenedesc::PlasticDesc plastic;
+  plastic.alpha.value = 0.2f;
+  scene.box_inside(1, scene.bsdf(plastic));
+  scene.box_inside(0.5f, white);
+  scene.rectangle({0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, white);
+  scene.point_light({0, 0, 0.4f}, Rgb(1));
+  scene.point_light({0, 0, 0.8f}, Rgb(1));
+  scene.lamp({0, 0, 0.95f}, {0, 0.05f, 0}, {0.05f, 0, 0}, Rgb(1), white);
+  const auto lights = trace_virtual_lights(scene.build(), settings_of(1, 3000));
+  const auto sort_of = [&](std::size_t j) {
+    return std::pair(lights.kind[j],
+                     lights.kind[j] == LightKind::surface && lights.closure[j] != VirtualLights::kLambertian);
+  };
+  // A Morton curve finishes one octant of the cube [-1, 1]³ before the next: x is the lowest digit. Points
+  // within 1e-3 of the middle planes may be counted to either side.
+  const auto octant = [&](std::size_t j) {
+    const Vec3f p = lights.position[j];
+    if (std::min({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 1e-3f) return -1;
+    return (p.x > 0 ? 1 : 0) + (p.y > 0 ? 2 : 0) + (p.z > 0 ? 4 : 0);
+  };
+  std::size_t glossy = 0;
+  int latest = -1;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    if (j > 0) {
+      EXPECT_LE(sort_of(j - 1), sort_of(j));
+      if (sort_of(j) != sort_of(j - 1)) latest = -1;
+    }
+    if (sort_of(j).second) {
+      EXPECT_EQ(lights.closure[j], glossy);
+      ++glossy;
+    }
+    if (lights.kind[j] == LightKind::surface && octant(j) >= 0) {
+      EXPECT_GE(octant(j), latest);
+      latest = octant(j);
+    }
+  }
+  EXPECT_GT(glossy, 100u);
+  EXPECT_EQ(lights.closures.size(), glossy);
+}
+
+void expect_same(const VirtualLights& a, const VirtualLights& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(a.ng, b.ng);
+  EXPECT_EQ(a.power, b.power);
+  EXPECT_EQ(a.area, b.area);
+  EXPECT_EQ(a.emitter, b.emitter);
+  EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.closure, b.closure);
+  EXPECT_EQ(a.albedo, b.albedo);
+  EXPECT_EQ(a.incoming, b.incoming);
+  EXPECT_EQ(a.paths, b.paths);
+}
+
+TEST(VirtualLights, SameBitsForAnyNumberOfThreads) {
+  SceneMaker scene = furnace(0.6f);
+  scenedesc::PlasticDesc plastic;
+  plastic.alpha.value = 0.2f;
+  scene.shape(scenedesc::SphereDesc{{-0.4f, 0, 0}, 0.3f}, {}, scene.bsdf(plastic));
+  scene.shape(scenedesc::SphereDesc{{0.4f, 0.4f, 0}, 0.2f}, {}, scene.glass(1.5f));
+  scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
+  const auto world = scene.build();
+  std::array<VirtualLights, 3> runs;
+  for (int k = 0; k < 3; ++k)
+    with_threads(1 << k, [&] {
+      runs[static_cast<std::size_t>(k)] = trace_virtual_lights(world, settings_of(5, 10000));
+    });
+  expect_same(runs[0], runs[1]);
+  expect_same(runs[0], runs[2]);
+}
+
+TEST(VirtualLights, NothingShines) {
+  SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, scene.diffuse(Rgb(0.5f)));
+  EXPECT_EQ(trace_virtual_lights(scene.build(), settings_of(1, 100)).size(), 0u);
+}
+
+TEST(VirtualLights, ZeroLightsIsAnError) {
+  EXPECT_THROW(trace_virtual_lights(furnace(0.5f).build(), settings_of(1, 0)), InputError);
+}
+
+}  // namespace
+}  // namespace lumirank::transport
