@@ -98,10 +98,10 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms)
         kinds[j] = kColumnSpot;
         break;
       case LightKind::surface:
-        kinds[j] = lights.closure[j] == VirtualLights::kLambertian
-                       ? kColumnFacing
-                       : static_cast<std::uint16_t>(
-                             kColumnScatter + forms.of_recipe(lights.closures.recipe(lights.closure[j])));
+        kinds[j] = kColumnFacing;
+        if (lights.closure[j] != VirtualLights::kLambertian)
+          kinds[j] = static_cast<std::uint16_t>(kColumnScatter +
+                                                forms.of_recipe(lights.closures.recipe(lights.closure[j])));
         break;
     }
   }

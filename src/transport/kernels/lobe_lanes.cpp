@@ -148,8 +148,8 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi) {
   if (bits(lit) == 0) return f;
   const Lane safe_cos = select(lit, cos_i, one());
 
-  Lane cos_m, cos_d;
-  Across m, i;
+  Lane cos_m{}, cos_d{};
+  Across m{}, i{};
   if (form.microfacets) {
     const Lane3 half = group.wo + wi;
     const Lane3 normal = half * (one() / sqrt(dot(half, half)));

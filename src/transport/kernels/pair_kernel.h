@@ -105,9 +105,13 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
     }
   }
 
+  // Libraries may leave some threads flushing denormal numbers to zero and others not; here all do, well
+  // above them.
   const Lane3 e = (f * power) * g;
-  alive &= max_component(e) > zero;
-  out.e = select(alive, e, Lane3{zero, zero, zero});
+  const Lane least = splat(1e-35f);
+  out.e = {select(alive & (e.x > least), e.x, zero), select(alive & (e.y > least), e.y, zero),
+           select(alive & (e.z > least), e.z, zero)};
+  alive &= max_component(out.e) > zero;
   out.alive = bits(alive);
   return out;
 }
