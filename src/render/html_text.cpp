@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 namespace lumirank::render {
 
@@ -62,13 +64,12 @@ std::string escape_url(std::string_view path) {
 std::string show_number(double value) {
   if (!std::isfinite(value)) return "–";
   if (value == 0) return "0";
-  const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
   char text[64];
-  if (exponent < -4 || exponent > 6) {
-    std::snprintf(text, sizeof text, "%.2e", value);
-  } else {
+  // The exponent after rounding: 0.9996 has that of 1.00.
+  std::snprintf(text, sizeof text, "%.2e", value);
+  const int exponent = std::atoi(std::strchr(text, 'e') + 1);
+  if (exponent >= -4 && exponent <= 6)
     std::snprintf(text, sizeof text, "%.*f", std::max(0, 2 - exponent), value);
-  }
   return text;
 }
 
