@@ -249,7 +249,7 @@ Rgb albedo(const Closure& closure, Vec3f wo) {
       sum += lobe_albedo(view_from(lobe, in.side > 0), in.wo);
     }
   }
-  return sum;
+  return clamp_below(sum, 1);
 }
 
 float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi) {

@@ -14,8 +14,8 @@ double walsh(double n) {
 }
 
 double from_outside(double n) {
-  // Below 1.01 the closed form loses digits; the reflectance there is under 0.01 and nearly linear in n - 1.
-  constexpr double near_one = 1.01;
+  // Closer to 1 the closed form loses digits; the reflectance there is under 1e-4 and nearly linear in n - 1.
+  constexpr double near_one = 1.0001;
   return n >= near_one ? walsh(n) : walsh(near_one) * (n - 1) / (near_one - 1);
 }
 

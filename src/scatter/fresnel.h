@@ -24,6 +24,14 @@ inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullp
   return cos_t2 > 0 ? std::min(r, 1.0f) : 1.0f;
 }
 
+// What a dielectric transmits between two directions whose cosines are both known (each on its own side): 1 -
+// F without its cancellation, and the same number from either side. `eta` as above.
+inline float fresnel_transmittance(float cos_i, float cos_t, float eta) {
+  const float perpendicular = cos_i + eta * cos_t, parallel = eta * cos_i + cos_t;
+  return 2 * eta * cos_i * cos_t *
+         (1 / (perpendicular * perpendicular + 1e-20f) + 1 / (parallel * parallel + 1e-20f));
+}
+
 // Conductor with complex index eta + i·k relative to the outside, exact for one wavelength.
 inline float fresnel_conductor(float cos_i, float eta, float k) {
   const float c = std::min(cos_i, 1.0f), c2 = c * c, s2 = 1 - c2;

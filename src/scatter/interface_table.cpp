@@ -141,8 +141,10 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
         outside += 2 * rule.w[k] * rule.x[k] * t[k];
         lost_inside += 2 * rule.w[k] * rule.x[k] * (1 - inside.transmittance - inside.reflectance);
       }
-      cell.diffuse_transmittance = static_cast<float>(outside);
-      cell.internal_reflectance = static_cast<float>(1 - outside / (eta * eta) - lost_inside);
+      // Kept as differences from the smooth interface, which are nearly linear in what is interpolated.
+      const double smooth = 1 - fresnel_diffuse_reflectance(eta);
+      cell.diffuse_transmittance = static_cast<float>(outside - smooth);
+      cell.internal_reflectance = static_cast<float>((smooth - outside) / (eta * eta) - lost_inside);
       cells_[static_cast<std::size_t>(a) * kEtas + e] = cell;
     }
   }
@@ -155,7 +157,10 @@ InterfaceCoefficients InterfaceTable::lookup(float alpha, float eta) const {
   const int a0 = std::min(static_cast<int>(a), kAlphas - 2), e0 = std::min(static_cast<int>(e), kEtas - 2);
   const float fa = a - static_cast<float>(a0), fe = e - static_cast<float>(e0);
   InterfaceCoefficients out;
-  out.c[1] = out.diffuse_transmittance = 0;
+  const float held = std::exp(static_cast<float>(kLogRange) * (2 * e / (kEtas - 1) - 1));
+  out.c[1] = 0;
+  out.diffuse_transmittance = 1 - fresnel_diffuse_reflectance(held);
+  out.internal_reflectance = fresnel_diffuse_reflectance(1 / held);
   for (int da = 0; da < 2; ++da) {
     for (int de = 0; de < 2; ++de) {
       const float w = (da ? fa : 1 - fa) * (de ? fe : 1 - fe);

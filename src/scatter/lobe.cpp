@@ -13,18 +13,20 @@ Rgb interfaced_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
 }
 
 Rgb quadrature_albedo(LobeView view, Vec3f wo) {
-  // An additive sequence with the plastic number's powers: well spread for any count.
-  constexpr int count = 32;
+  // A Fibonacci lattice: no two-dimensional rule of so few points is much better.
+  constexpr int count = 55, step = 34;
   Rgb sum(0);
   for (int k = 0; k < count; ++k) {
-    const float u = 0.5f + 0.75487766f * static_cast<float>(k),
-                v = 0.5f + 0.56984029f * static_cast<float>(k);
+    const Vec2f u{(static_cast<float>(k) + 0.5f) / count,
+                  (static_cast<float>(k * step % count) + 0.5f) / count};
     Vec3f wi;
-    if (!lobe_sample(view, wo, {u - std::floor(u), v - std::floor(v)}, wi)) continue;
+    if (!lobe_sample(view, wo, u, wi)) continue;
     const float pdf = lobe_pdf(view, wo, wi);
     if (pdf > 0) sum += lobe_value(view, wo, wi) * (std::abs(wi.z) / pdf);
   }
-  return sum / static_cast<float>(count);
+  // As a share of energy: without the scaling of radiance.
+  const float scale = transmits(view.lobe.kind) ? view.eta * view.eta : 1.0f;
+  return sum * (scale / static_cast<float>(count));
 }
 
 }  // namespace

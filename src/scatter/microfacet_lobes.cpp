@@ -74,7 +74,7 @@ Rgb microfacet_transmit_value(LobeView view, Vec3f wo, Vec3f wi) {
   const float d = microfacet_d(lobe.distribution, r.m, lobe.alpha_u, lobe.alpha_v);
   const float g = microfacet_g1(lobe.distribution, wo, lobe.alpha_u, lobe.alpha_v) *
                   microfacet_g1(lobe.distribution, wi, lobe.alpha_u, lobe.alpha_v);
-  const float t = 1 - fresnel_dielectric(r.cos_o, view.eta);
+  const float t = fresnel_transmittance(r.cos_o, -r.cos_i, view.eta);
   return lobe.color * (t * d * g * r.cos_o * -r.cos_i / (wo.z * -wi.z * r.denominator));
 }
 

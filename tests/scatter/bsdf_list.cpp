@@ -1,0 +1,199 @@
+#include "scatter/bsdf_list.h"
+
+#include <cmath>
+
+namespace lumirank::scatter {
+namespace {
+
+constexpr auto kGgx = NormalDistribution::ggx;
+constexpr auto kBeckmann = NormalDistribution::beckmann;
+
+ColorInput color(float r, float g, float b) { return {{r, g, b}, -1}; }
+ColorInput gray(float v) { return {Rgb(v), -1}; }
+FloatInput number(float v) { return {v, -1}; }
+
+BsdfCase single(std::string name, Material m) {
+  BsdfCase c;
+  c.name = std::move(name);
+  c.set.materials.push_back(std::move(m));
+  return c;
+}
+
+// `outer` refers to `inner` by index 0.
+BsdfCase nested(std::string name, Material inner, Material outer) {
+  BsdfCase c = single(std::move(name), std::move(inner));
+  c.set.materials.push_back(std::move(outer));
+  c.material = 1;
+  return c;
+}
+
+const Rgb kGoldEta{0.143f, 0.375f, 1.442f}, kGoldK{3.983f, 2.386f, 1.603f};
+
+ConductorMaterial conductor(NormalDistribution d, float au, float av) {
+  return {kGoldEta, kGoldK, gray(1), d, number(au), number(av), au == 0};
+}
+ConductorMaterial perfect_mirror(NormalDistribution d, float a) {
+  return {Rgb(0), Rgb(1), gray(1), d, number(a), number(a), a == 0};
+}
+DielectricMaterial dielectric(NormalDistribution d, float eta, float au, float av) {
+  return {eta, gray(1), gray(1), d, number(au), number(av), au == 0};
+}
+PlasticMaterial plastic(NormalDistribution d, float alpha, bool nonlinear) {
+  return {1.49f, color(0.8f, 0.4f, 0.1f), gray(1), nonlinear, d, number(alpha), alpha == 0};
+}
+
+BsdfCase glass(std::string name, DielectricMaterial m) {
+  BsdfCase c = single(std::move(name), m);
+  c.inside_too = true;
+  c.eta = m.eta;
+  c.lossless = m.smooth;
+  return c;
+}
+
+BsdfCase principled(std::string name, float metallic, float spec_trans, float roughness, float extras) {
+  PrincipledMaterial m;
+  m.base_color = color(0.8f, 0.5f, 0.2f);
+  m.roughness = number(roughness);
+  m.metallic = number(metallic);
+  m.spec_trans = number(spec_trans);
+  m.anisotropic = m.spec_tint = m.sheen = m.sheen_tint = m.clearcoat = m.flatness = number(extras);
+  m.clearcoat_gloss = number(0.3f * extras);
+  BsdfCase c = single("principled_" + name, m);
+  c.inside_too = spec_trans > 0;
+  c.eta = m.eta;
+  c.energy_exempt =
+      "the diffuse base is not dimmed by what the specular layer reflects, and sheen is added on top";
+  return c;
+}
+
+BsdfCase ward(std::string name, int variant, float au, float av) {
+  BsdfCase c = single("ward_" + name, WardMaterial{variant, gray(0.3f), gray(0.6f), number(au), number(av)});
+  if (variant < 2)
+    c.energy_exempt =
+        "the normalisation of both older Ward models grows without bound towards grazing angles";
+  return c;
+}
+
+BsdfCase oren_nayar(std::string name, float rho, float alpha) {
+  return single("roughdiffuse_" + name, RoughDiffuseMaterial{gray(rho), number(alpha)});
+}
+
+BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
+  auto pixels = std::make_shared<TexturePixels>();
+  pixels->width = width, pixels->height = height;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) pixels->rgb.push_back(value(x, y));
+  BitmapTexture t;
+  t.pixels = pixels;
+  return t;
+}
+
+std::vector<BsdfCase> build() {
+  std::vector<BsdfCase> list;
+  list.push_back(single("diffuse", DiffuseMaterial{color(0.8f, 0.5f, 0.2f)}));
+  list.push_back(single("diffuse_white", DiffuseMaterial{gray(1)}));
+  list.back().lossless = true;
+  list.push_back(single("null", NullMaterial{}));
+  list.back().lossless = list.back().inside_too = true;
+  list.push_back(oren_nayar("smoothish", 0.8f, 0.1f));
+  list.push_back(oren_nayar("rough", 0.8f, 0.6f));
+  list.push_back(single("conductor_smooth", conductor(kGgx, 0, 0)));
+  list.push_back(single("conductor_ggx_0.01", conductor(kGgx, 0.01f, 0.01f)));
+  list.push_back(single("conductor_ggx_0.3", conductor(kGgx, 0.3f, 0.3f)));
+  list.push_back(single("conductor_ggx_0.9", conductor(kGgx, 0.9f, 0.9f)));
+  list.push_back(single("conductor_ggx_anisotropic", conductor(kGgx, 0.08f, 0.4f)));
+  list.push_back(single("conductor_beckmann_0.02", conductor(kBeckmann, 0.02f, 0.02f)));
+  list.push_back(single("conductor_beckmann_0.3", conductor(kBeckmann, 0.3f, 0.3f)));
+  list.push_back(single("conductor_beckmann_0.9", conductor(kBeckmann, 0.9f, 0.9f)));
+  list.push_back(single("conductor_beckmann_anisotropic", conductor(kBeckmann, 0.5f, 0.1f)));
+  list.push_back(single("mirror_smooth", perfect_mirror(kGgx, 0)));
+  list.back().lossless = true;
+  list.push_back(single("mirror_ggx_0.2", perfect_mirror(kGgx, 0.2f)));
+  list.push_back(single("mirror_beckmann_0.2", perfect_mirror(kBeckmann, 0.2f)));
+  list.push_back(glass("dielectric_smooth", dielectric(kGgx, 1.5f, 0, 0)));
+  list.push_back(glass("dielectric_diamond", dielectric(kGgx, 2.4f, 0, 0)));
+  list.push_back(glass("dielectric_ggx_0.1", dielectric(kGgx, 1.5f, 0.1f, 0.1f)));
+  list.push_back(glass("dielectric_ggx_0.5", dielectric(kGgx, 1.33f, 0.5f, 0.5f)));
+  list.push_back(glass("dielectric_beckmann_0.3", dielectric(kBeckmann, 1.5f, 0.3f, 0.3f)));
+  list.push_back(glass("dielectric_beckmann_anisotropic", dielectric(kBeckmann, 1.8f, 0.1f, 0.3f)));
+  list.push_back(glass("dielectric_inverted", dielectric(kGgx, 0.75f, 0.2f, 0.2f)));
+  list.push_back(single("thindielectric", ThinDielectricMaterial{1.5f, gray(1), gray(1)}));
+  list.back().lossless = list.back().inside_too = true;
+  list.push_back(single("plastic_smooth", plastic(kGgx, 0, false)));
+  list.push_back(single("plastic_smooth_nonlinear", plastic(kGgx, 0, true)));
+  list.push_back(single("plastic_beckmann_0.1", plastic(kBeckmann, 0.1f, false)));
+  list.push_back(single("plastic_ggx_0.4_nonlinear", plastic(kGgx, 0.4f, true)));
+  list.push_back(single("plastic_ggx_0.05", plastic(kGgx, 0.05f, false)));
+  list.push_back(single("phong_30", PhongMaterial{gray(0.5f), gray(0.3f), number(30)}));
+  list.push_back(single("phong_1000", PhongMaterial{gray(0.1f), gray(0.9f), number(1000)}));
+  list.push_back(single("phong_0", PhongMaterial{gray(0), gray(1), number(0)}));
+  list.push_back(ward("original", 0, 0.1f, 0.1f));
+  list.push_back(ward("duer", 1, 0.15f, 0.3f));
+  list.push_back(ward("balanced", 2, 0.15f, 0.3f));
+  list.push_back(ward("balanced_sharp", 2, 0.02f, 0.02f));
+  list.push_back(principled("plain", 0, 0, 0.5f, 0));
+  list.push_back(principled("metal", 1, 0, 0.3f, 0));
+  list.push_back(principled("glass", 0, 1, 0.3f, 0));
+  list.back().energy_exempt.clear();
+  list.push_back(principled("everything", 0.3f, 0.4f, 0.4f, 0.5f));
+  list.push_back(principled("opaque_extras", 0.2f, 0, 0.6f, 1));
+
+  list.push_back(nested("mask_half", DiffuseMaterial{gray(0.5f)}, MaskMaterial{number(0.5f), 0}));
+  list.push_back(nested("mask_plastic", plastic(kGgx, 0.2f, false), MaskMaterial{number(0.7f), 0}));
+  list.push_back(
+      nested("twosided_diffuse", DiffuseMaterial{color(0.8f, 0.5f, 0.2f)}, TwoSidedMaterial{0, 0}));
+  list.back().inside_too = true;
+  list.push_back(nested("twosided_conductor", conductor(kBeckmann, 0.2f, 0.4f), TwoSidedMaterial{0, 0}));
+  list.back().inside_too = true;
+
+  BsdfCase two = nested("twosided_different", DiffuseMaterial{gray(0.8f)}, plastic(kGgx, 0.1f, false));
+  two.set.materials.push_back(TwoSidedMaterial{0, 1});
+  two.material = 2;
+  two.inside_too = true;
+  list.push_back(two);
+
+  BsdfCase mix = nested("mixture", plastic(kGgx, 0.3f, false), conductor(kGgx, 0.1f, 0.1f));
+  mix.set.materials.push_back(MixtureMaterial{{{number(0.4f), false, 0}, {number(0.4f), true, 1}}});
+  mix.material = 2;
+  list.push_back(mix);
+
+  BsdfCase bump = nested("bumpmap", plastic(kGgx, 0.3f, false), BumpMaterial{0, 0.5f, 0});
+  bump.set.textures.textures.push_back(bitmap(
+      4, 4, [](int x, int y) { return Rgb(0.1f * static_cast<float>(x) + 0.05f * static_cast<float>(y)); }));
+  list.push_back(bump);
+
+  BsdfCase normal = nested("normalmap", DiffuseMaterial{gray(0.7f)}, NormalMapMaterial{0, 0});
+  normal.set.textures.textures.push_back(ConstantTexture{{0.7f, 0.4f, 0.9f}});
+  list.push_back(normal);
+
+  BsdfCase textured = single("diffuse_textured", DiffuseMaterial{ColorInput{Rgb(0), 0}});
+  textured.set.textures.textures.push_back(bitmap(2, 2, [](int x, int y) {
+    return Rgb(0.2f + 0.3f * static_cast<float>(x), 0.5f, 0.4f * static_cast<float>(y));
+  }));
+  list.push_back(textured);
+  return list;
+}
+
+}  // namespace
+
+const std::vector<BsdfCase>& bsdf_list() {
+  static const std::vector<BsdfCase> list = build();
+  return list;
+}
+
+SurfacePoint point_with_normal(Vec3f n) {
+  SurfacePoint p;
+  p.ng = n;
+  p.shading = Frame::from_normal(n);
+  p.dpdu = p.shading.s;
+  p.dpdv = p.shading.t;
+  p.uv.uv = {0.375f, 0.625f};
+  return p;
+}
+
+Vec3f at_angle(float cos_theta, float phi) {
+  const float s = std::sqrt(std::max(0.0f, 1 - cos_theta * cos_theta));
+  return {s * std::cos(phi), s * std::sin(phi), cos_theta};
+}
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,136 @@
+#include "scatter/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace lumirank::scatter {
+namespace {
+
+constexpr int kWidth = 4, kHeight = 2;
+
+// Texel (column, row from the top) has the value (column, row, 0).
+BitmapTexture numbered(TexFilter filter = TexFilter::bilinear) {
+  auto pixels = std::make_shared<TexturePixels>();
+  pixels->width = kWidth, pixels->height = kHeight;
+  for (int row = 0; row < kHeight; ++row)
+    for (int column = 0; column < kWidth; ++column)
+      pixels->rgb.push_back({static_cast<float>(column), static_cast<float>(row), 0});
+  BitmapTexture t;
+  t.pixels = pixels;
+  t.filter = filter;
+  return t;
+}
+
+Rgb look(const BitmapTexture& t, float u, float v) { return TextureSet{{t}}.lookup(0, {{u, v}, Rgb(1)}); }
+
+TEST(Bitmap, TexelCentresAreExactAndTheTopRowIsAtVOne) {
+  for (const TexFilter filter : {TexFilter::nearest, TexFilter::bilinear})
+    for (int row = 0; row < kHeight; ++row)
+      for (int column = 0; column < kWidth; ++column) {
+        const float u = (static_cast<float>(column) + 0.5f) / kWidth;
+        const float v = 1 - (static_cast<float>(row) + 0.5f) / kHeight;
+        EXPECT_EQ(look(numbered(filter), u, v), Rgb(static_cast<float>(column), static_cast<float>(row), 0));
+      }
+}
+
+TEST(Bitmap, BilinearIsTheWeightedMeanOfFour) {
+  // A quarter of the way from column 1 to 2, halfway between the rows.
+  EXPECT_EQ(look(numbered(), (1.5f + 0.25f) / 4, 0.5f), Rgb(1.25f, 0.5f, 0));
+}
+
+TEST(Bitmap, WrapModes) {
+  BitmapTexture t = numbered(TexFilter::nearest);
+  const float column0 = 0.5f / 4, column3 = 3.5f / 4;
+  EXPECT_EQ(look(t, column0 + 3, 0.75f - 2).r, 0);
+  EXPECT_EQ(look(t, column3 - 1, 0.75f).r, 3);
+  t.wrap_u = TexWrap::mirror;
+  EXPECT_EQ(look(t, 1 + column0, 0.75f).r, 3);  // mirrored at u = 1
+  EXPECT_EQ(look(t, -column0, 0.75f).r, 0);     // and at u = 0
+  EXPECT_EQ(look(t, 2 + column3, 0.75f).r, 3);
+  t.wrap_u = TexWrap::clamp;
+  EXPECT_EQ(look(t, 7, 0.75f).r, 3);
+  EXPECT_EQ(look(t, -7, 0.75f).r, 0);
+}
+
+TEST(Bitmap, BilinearWrapsAcrossTheEdge) {
+  BitmapTexture t = numbered();
+  EXPECT_EQ(look(t, 0, 0.75f).r, 1.5f);  // halfway between columns 3 and 0
+  t.wrap_u = TexWrap::mirror;
+  EXPECT_EQ(look(t, 0, 0.75f).r, 0);
+  EXPECT_EQ(look(t, 1, 0.75f).r, 3);
+  t.wrap_u = TexWrap::clamp;
+  EXPECT_EQ(look(t, 0, 0.75f).r, 0);
+}
+
+TEST(Bitmap, TransformMapsMeshToTextureCoordinates) {
+  BitmapTexture t = numbered(TexFilter::nearest);
+  const float m[6] = {0, 1, 0.25f, 1, 0, 0};  // u' = v + ¼, v' = u
+  std::copy(m, m + 6, t.to_uv);
+  EXPECT_EQ(look(t, 0.75f, 0.5f / 4), Rgb(1, 0, 0));
+}
+
+TEST(Bitmap, StrangeCoordinatesAreHarmless) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  for (const TexWrap wrap : {TexWrap::repeat, TexWrap::mirror, TexWrap::clamp}) {
+    for (const TexFilter filter : {TexFilter::nearest, TexFilter::bilinear}) {
+      BitmapTexture t = numbered(filter);
+      t.wrap_u = t.wrap_v = wrap;
+      for (float u : {nan, inf, -inf, 1e30f, -1e30f, 1e9f, -0.0f, 1.0f, -1e-20f}) {
+        for (float v : {nan, 3e38f, 0.5f}) {
+          const Rgb c = look(t, u, v);
+          EXPECT_TRUE(is_finite(c) && c.r >= 0 && c.r <= 3 && c.g >= 0 && c.g <= 1) << u << ' ' << v;
+        }
+      }
+      EXPECT_EQ(look(t, nan, inf), look(t, 0, 0));
+    }
+  }
+}
+
+TEST(Bitmap, GradientOfALinearRamp) {
+  // Between columns the value rises by 1 per texel, so by 4 per unit of u; it falls by 2 per unit of v (row 0
+  // is on top).
+  TextureSet set{{numbered()}};
+  const SurfaceUv at{{0.5f, 0.5f}, Rgb(1)};
+  const Vec2f g = set.gradient(0, at);
+  EXPECT_NEAR(g.x, 4 * 0.2126f, 1e-5f);
+  EXPECT_NEAR(g.y, 0, 1e-5f);  // with two rows the central difference of one texel wraps onto itself
+  // Through a transform by the chain rule: u' = 2u doubles the slope.
+  BitmapTexture stretched = numbered();
+  stretched.to_uv[0] = 2;
+  set.textures.push_back(stretched);
+  EXPECT_NEAR(set.gradient(1, {{0.25f, 0.5f}, Rgb(1)}).x, 8 * 0.2126f, 1e-5f);
+  set.textures.push_back(ScaleTexture{0, Rgb(3)});
+  EXPECT_NEAR(set.gradient(2, at).x, 12 * 0.2126f, 1e-4f);
+  set.textures.push_back(ConstantTexture{Rgb(1)});
+  EXPECT_EQ(set.gradient(3, at).x, 0);
+}
+
+TEST(Checkerboard, FirstColourWhereHalvesAgree) {
+  TextureSet set;
+  set.textures.push_back(ConstantTexture{Rgb(0.1f)});
+  set.textures.push_back(ConstantTexture{Rgb(0.9f)});
+  set.textures.push_back(CheckerboardTexture{0, 1, {1, 0, 0, 0, 1, 0}});
+  const auto at = [&](float u, float v) { return set.lookup(2, {{u, v}, Rgb(1)}).r; };
+  EXPECT_EQ(at(0.2f, 0.3f), 0.1f);
+  EXPECT_EQ(at(0.7f, 0.8f), 0.1f);
+  EXPECT_EQ(at(0.7f, 0.3f), 0.9f);
+  EXPECT_EQ(at(-0.3f, 4.3f), 0.9f);
+  EXPECT_EQ(set.mean(2), Rgb(0.5f));
+}
+
+TEST(TextureSet, ScalesVertexColoursAndMeans) {
+  TextureSet set{{VertexColorTexture{}, ScaleTexture{0, {2, 1, 0.5f}}, numbered()}};
+  EXPECT_EQ(set.lookup(1, {{0, 0}, {0.25f, 0.5f, 1}}), Rgb(0.5f, 0.5f, 0.5f));
+  EXPECT_NEAR(set.lookup_float(1, {{0, 0}, {0.25f, 0.5f, 1}}), 0.5f, 1e-6f);
+  // Columns 0…3 have the mean 1.5, rows 0 and 1 the mean 0.5.
+  EXPECT_EQ(set.mean(2), Rgb(1.5f, 0.5f, 0));
+  EXPECT_THROW(set.lookup(3, {}), InternalError);
+  EXPECT_THROW(set.lookup(-1, {}), InternalError);
+}
+
+}  // namespace
+}  // namespace lumirank::scatter
