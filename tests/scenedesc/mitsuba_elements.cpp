@@ -203,6 +203,60 @@ TEST(MitsubaMixture, WeightsAndComplement) {
       std::holds_alternative<NullBsdfDesc>(scene.bsdfs.at(static_cast<std::size_t>(parts[0].bsdf)).kind));
 }
 
+// Fresnel reflectance at normal incidence: silver above 0.9 in every channel, gold and copper red before
+// green before blue, as these metals look.
+TEST(MitsubaMetals, LookAsTheyShould) {
+  const auto reflectance = [](const char* name) {
+    const auto m = *mitsuba::metal_index(name);
+    Rgb r;
+    for (int i = 0; i < 3; ++i)
+      r[i] = ((m.eta[i] - 1) * (m.eta[i] - 1) + m.k[i] * m.k[i]) /
+             ((m.eta[i] + 1) * (m.eta[i] + 1) + m.k[i] * m.k[i]);
+    return r;
+  };
+  for (int i = 0; i < 3; ++i) EXPECT_GT(reflectance("Ag")[i], 0.9f);
+  for (const char* name : {"Au", "Cu"}) {
+    const Rgb r = reflectance(name);
+    EXPECT_GT(r.r, r.g);
+    EXPECT_GT(r.g, r.b);
+    EXPECT_GT(r.r, 0.9f);
+    EXPECT_LT(r.b, 0.6f);
+  }
+  EXPECT_FALSE(mitsuba::metal_index("Unobtainium").has_value());
+}
+
+TEST(MitsubaSpectrum, FilesAndPairsAreTheSame) {
+  std::ofstream(testing::TempDir() + "s.spd") << "# wavelength value\n400 0.1\n500 0.5\n\n700 0.9\n";
+  const SceneDesc scene = parse(
+      kCamera +
+      "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" filename=\"s.spd\"/></bsdf>"
+      "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:0.1, 500:0.5 700:0.9\"/></bsdf>"
+      "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"#ff8000\"/></bsdf>"
+      "<bsdf type=\"diffuse\"><srgb name=\"reflectance\" value=\"#ff8000\"/></bsdf>");
+  const auto color = [&](std::size_t i) {
+    return std::get<DiffuseDesc>(scene.bsdfs.at(i).kind).reflectance.value;
+  };
+  EXPECT_EQ(color(0), color(1));
+  EXPECT_EQ(color(2), color(3));
+  EXPECT_NEAR(color(2).g, 0.215861, 1e-5);  // ((128/255 + 0.055)/1.055)^2.4
+}
+
+TEST(MitsubaFilter, MitchellParametersByDialect) {
+  const auto filter = [](const char* version, const char* first, const char* second) {
+    return parse(std::string("<sensor type=\"perspective\"><film type=\"hdrfilm\"><rfilter "
+                             "type=\"mitchell\"><float name=\"") +
+                     first + "\" value=\"0.2\"/><float name=\"" + second +
+                     "\" value=\"0.4\"/></rfilter></film></sensor>",
+                 version)
+        .sensors[0]
+        .film.filter;
+  };
+  for (const FilterDesc& f : {filter("0.6.0", "B", "C"), filter("3.0.0", "A", "B")}) {
+    EXPECT_EQ(f.b, 0.2f);
+    EXPECT_EQ(f.c, 0.4f);
+  }
+}
+
 // The example of Reda and Andreas, "Solar position algorithm for solar radiation applications"
 // (NREL/TP-560-34302, table A5.1): elevation 39.872° without refraction, azimuth 194.340°. The formulas here
 // are stated to be good to 0.01°.

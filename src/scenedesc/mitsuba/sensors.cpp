@@ -20,8 +20,9 @@ FilterDesc filter(Reader& reader, const Element& element) {
     out.stddev = p.positive("stddev", 0.5f);
   } else if (p.type() == "mitchell") {
     out.kind = FilterKind::mitchell;
-    out.b = p.number(p.has("A") ? "A" : (p.has("a") ? "a" : "b"), 1.0f / 3);
-    out.c = p.number(p.has("B") && p.has("A") ? "B" : (p.has("a") ? "b" : "c"), 1.0f / 3);
+    const bool old = reader.dialect().camel_case();  // 0.6 says B and C, 3.x says A and B
+    out.b = p.number(old ? "b" : "A", 1.0f / 3);
+    out.c = p.number(old ? "c" : "B", 1.0f / 3);
   } else if (p.type() == "catmullrom") {
     out.kind = FilterKind::catmullrom;
   } else if (p.type() == "lanczos") {

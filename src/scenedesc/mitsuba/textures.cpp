@@ -6,7 +6,7 @@ namespace {
 
 // Mitsuba's v runs down the picture (v = 0 is its top row), Lumirank's up: applied after everything else.
 UvTransform flip_v(UvTransform t) {
-  for (int i = 3; i < 6; ++i) t.m[i] = -t.m[i];
+  for (int i = 3; i < 6; ++i) t.m[i] = 0.0f - t.m[i];
   t.m[5] += 1;
   return t;
 }
