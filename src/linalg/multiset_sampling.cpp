@@ -75,6 +75,9 @@ namespace {
 constexpr std::size_t kPointBlock = 256, kCentreBlock = 256;
 // Cosines nearer to 1 than this differ only by rounding of single precision.
 constexpr float kSameDirection = 1e-6f;
+// Centres of one direction have equal scales (1/p falls with the length), so distances to them differ by
+// rounding; so little nearer is not nearer, or parallel points would be torn apart.
+constexpr float kNearer = 1 - 1e-4f;
 
 // label[k] = nearest of the centres (unit vectors in rows, scales w‖k‖) for the members [begin, end).
 void nearest_centres(const Points& points, std::span<const double> norms,
@@ -102,7 +105,7 @@ void nearest_centres(const Points& points, std::span<const double> norms,
         for (std::size_t k = 0; k < columns; ++k) {
           const float angle = 1.0f - row[k];
           const float distance = angle > kSameDirection ? scales[q + k] * angle : 0.0f;
-          if (distance < least) {
+          if (distance < kNearer * least) {
             least = distance;
             at = static_cast<std::uint32_t>(q + k);
           }

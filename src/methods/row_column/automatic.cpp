@@ -119,9 +119,10 @@ Estimate RowColumnRun::automatic() {
   const std::size_t first =
       settings_.rows > 0 ? settings_.rows : std::min(kFirstRows, std::max<std::size_t>(rows_ / 4, 1));
   explore(sampler_.next(first), true, 0.3 * options_.time_seconds);
-  if (!stopped()) pilot();
+  // A given number of columns is rendered once, and no others beside it.
+  if (!stopped() && settings_.columns == 0) pilot();
 
-  while (!stopped() && passes_ < kMostPasses && !target_met()) {
+  while (!stopped() && passes_ < kMostPasses && (passes_ == 0 || !target_met())) {
     const double needed = needed_error();
     more_rows_while_they_pay(needed);
     if (stopped()) break;
@@ -136,7 +137,7 @@ Estimate RowColumnRun::automatic() {
     if (!pass(known, clusters, known.expected_error(clusters, unseen_))) break;
     if (settings_.columns > 0) break;
     if (options_.time_seconds > 0 && time_left() < 0.15 * options_.time_seconds) break;
-    if (settings_.rows == 0)
+    if (settings_.rows == 0 && !target_met())
       explore(sampler_.next_by_density(rows_read() / 2, blend_.disagreement()), false,
               options_.time_seconds > 0 ? timer_.seconds() + 0.3 * time_left() : 0);
   }

@@ -113,12 +113,13 @@ double RowColumnRun::time_left() const {
 }
 
 Costs RowColumnRun::costs() const {
-  if (options_.time_seconds <= 0) return {static_cast<double>(columns_), static_cast<double>(rows_)};
-  const auto& t = trace_.numbers;
-  return {t.at("seconds.rows") / static_cast<double>(std::max<std::size_t>(rows_read(), 1)),
-          t.contains("seconds.columns") && rendered_count_ > 0
-              ? t.at("seconds.columns") / static_cast<double>(rendered_count_)
-              : 1.0};
+  const Costs entries{static_cast<double>(columns_), static_cast<double>(rows_)};
+  const double rows = static_cast<double>(rows_read()), columns = static_cast<double>(rendered_count_);
+  if (options_.time_seconds <= 0 || rows == 0) return entries;
+  const double row = trace_.numbers.at("seconds.rows") / rows;
+  // Until a column is timed its entries are taken to cost what a row's do.
+  return {row,
+          columns > 0 ? trace_.numbers.at("seconds.columns") / columns : row * entries.column / entries.row};
 }
 
 Estimate RowColumnRun::finish() {

@@ -1,0 +1,123 @@
+// Without given numbers of rows and columns.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/row_column/planner.h"
+#include "methods/row_column/settings.h"
+
+namespace lumirank::methods {
+namespace {
+
+Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const RunOptions& options) {
+  return find_method("row-column-sampling").make(settings)->run(m, options);
+}
+
+struct Spread {
+  double root_mean_square_error = 0, root_mean_square_claim = 0, columns = 0;
+};
+Spread over_seeds(const matrix::DenseMatrix& m, double target, int seeds) {
+  const auto truth = m.exact_sums();
+  Spread s;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    RunOptions options;
+    options.seed = static_cast<std::uint64_t>(seed);
+    options.target_error = target;
+    const Estimate e = run(m, {}, options);
+    s.root_mean_square_error += std::pow(relative_difference(e.sums, truth), 2) / seeds;
+    s.root_mean_square_claim += std::pow(e.trace.numbers.at("predicted_error"), 2) / seeds;
+    s.columns += e.trace.numbers.at("columns") / seeds;
+  }
+  s.root_mean_square_error = std::sqrt(s.root_mean_square_error);
+  s.root_mean_square_claim = std::sqrt(s.root_mean_square_claim);
+  return s;
+}
+
+// The claim is about expected errors, so it is held against the mean square over seeds. Held-out rows number
+// at least 20: a mean of squared errors over 20 rows with the spread of an exponential variable has a
+// deviation of 1/√20 = 22 %, its root 11 %; a factor of 1.5 is more than three of these.
+TEST(Automatic, ReachesItsTargetAndSaysSo) {
+  const auto smooth = matrix::low_rank_matrix({2048, 3000, 1}, 60);
+  const auto sparse = matrix::sparse_matrix({2048, 3000, 1}, 0.2);
+  for (const matrix::DenseMatrix* m : {&smooth, &sparse})
+    for (double target : {0.1, 0.05}) {
+      const Spread s = over_seeds(*m, target, 8);
+      EXPECT_LT(s.root_mean_square_error, 1.5 * target);
+      EXPECT_LT(s.root_mean_square_error, 1.5 * s.root_mean_square_claim);
+      EXPECT_GT(s.root_mean_square_error, s.root_mean_square_claim / 1.5);
+    }
+}
+
+TEST(Automatic, SmallerTargetsTakeMoreColumns) {
+  const auto m = matrix::sparse_matrix({2048, 3000, 1}, 0.2);
+  EXPECT_LT(over_seeds(m, 0.1, 2).columns, over_seeds(m, 0.05, 2).columns);
+}
+
+TEST(Automatic, LowRankNeedsFewColumns) {
+  const auto m = matrix::clustered_matrix({2000, 3000, 1}, 20);
+  RunOptions options;
+  const Estimate e = run(m, {}, options);
+  EXPECT_LE(e.trace.numbers.at("columns"), 100);
+  EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 0.02);
+}
+
+// Where nothing can be learned from rows, so many columns are needed that all are rendered.
+TEST(Automatic, GivesUpOnClusteringWhereItDoesNotPay) {
+  const auto m = matrix::recess_matrix({1000, 600, 1});
+  RunOptions options;
+  options.target_error = 0.001;
+  const Estimate e = run(m, {}, options);
+  EXPECT_EQ(e.trace.numbers.at("columns"), 600);
+  EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 600 * 0x1p-24);
+}
+
+TEST(Automatic, KeepsGivenNumbers) {
+  const auto m = matrix::low_rank_matrix({2000, 3000, 1}, 40);
+  const Estimate rows = run(m, {{"rows", "123"}}, {});
+  EXPECT_EQ(rows.trace.numbers.at("rows"), 123);
+  const Estimate columns = run(m, {{"columns", "200"}}, {});
+  EXPECT_EQ(columns.trace.numbers.at("clusters"), 200);
+}
+
+TEST(Automatic, TimeBudgetGivesACompleteEstimate) {
+  const auto m = matrix::low_rank_matrix({3000, 4000, 1}, 40);
+  for (double seconds : {1e-6, 0.05}) {
+    RunOptions options;
+    options.time_seconds = seconds;
+    const Estimate e = run(m, {}, options);
+    EXPECT_FALSE(e.interrupted);
+    EXPECT_LT(relative_difference(e.sums, m.exact_sums()),
+              1.0);  // some columns were rendered and stand for all
+  }
+}
+
+TEST(Planner, InterpolatesPowersExactly) {
+  // errors 1/c and 1/√c are straight lines in logarithms.
+  ErrorCurve curve;
+  for (double c : {32.0, 64.0, 128.0}) curve.points.push_back({c, 1 / c, 1 / std::sqrt(c)});
+  EXPECT_NEAR(curve.seen(50), 1 / 50.0, 1e-12);
+  EXPECT_NEAR(curve.unseen(1000), 1 / std::sqrt(1000.0), 1e-12);
+  EXPECT_NEAR(curve.columns_for_seen(0.01), 100, 1e-9);
+  EXPECT_NEAR(curve.columns_for_unseen(0.02), 2500, 1e-8);
+  EXPECT_EQ(curve.columns_for_seen(0.5), 32);
+}
+
+TEST(Planner, WeighsRowsAgainstColumns) {
+  ErrorCurve curve;
+  for (double c : {32.0, 64.0, 128.0}) curve.points.push_back({c, 1 / c, 1 / std::sqrt(c)});
+  // Target 0.02: 2500 columns by unseen rows, 50 by seen ones; half of the gap is 1225 columns.
+  EXPECT_TRUE(more_rows_pay_for_target(curve, {0.02, 1224, 1e9}, {1, 1}));
+  EXPECT_FALSE(more_rows_pay_for_target(curve, {0.02, 1226, 1e9}, {1, 1}));
+  EXPECT_FALSE(more_rows_pay_for_target(curve, {0.02, 613, 1e9}, {2, 1}));
+  // Rows that saved 500 columns before will not save more now.
+  EXPECT_FALSE(more_rows_pay_for_target(curve, {0.02, 600, 1e9, 3000}, {1, 1}));
+  EXPECT_TRUE(more_rows_pay_for_target(curve, {0.02, 400, 1e9, 3000}, {1, 1}));
+  // 1000 to spend: now 1/√1000 = 0.0316; with 500 rows more √(1/500 · 1/√500) = 0.0095.
+  EXPECT_TRUE(more_rows_pay_for_budget(curve, 1000, 500, {1, 1}));
+  EXPECT_FALSE(more_rows_pay_for_budget(curve, 1000, 990, {1, 1}));
+}
+
+}  // namespace
+}  // namespace lumirank::methods

@@ -1,0 +1,169 @@
+// What every method must do, by the list.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/parameters.h"
+
+namespace lumirank::methods {
+namespace {
+
+class EveryMethod : public testing::TestWithParam<std::string> {
+ protected:
+  const MethodInfo& info() const { return find_method(GetParam()); }
+};
+
+TEST_P(EveryMethod, SettingsRoundTripThroughJson) {
+  const SettingsMap defaults = effective_settings(info(), {});
+  const auto back = nlohmann::json::parse(nlohmann::json(defaults).dump()).get<SettingsMap>();
+  EXPECT_EQ(back, defaults);
+  EXPECT_EQ(effective_settings(info(), back), defaults);
+  EXPECT_NE(info().make(back), nullptr);
+  EXPECT_EQ(defaults.size(), info().parameters.size());
+  for (const Parameter& p : info().parameters) {
+    EXPECT_FALSE(p.help.empty()) << p.key;
+    EXPECT_FALSE(p.range.empty()) << p.key;
+    EXPECT_TRUE(p.type == "integer" || p.type == "number" || p.type == "choice") << p.key;
+  }
+  EXPECT_FALSE(info().summary.empty());
+}
+
+TEST_P(EveryMethod, EveryChoiceIsAccepted) {
+  for (const Parameter& p : info().parameters) {
+    if (p.type != "choice") continue;
+    std::stringstream range(p.range);
+    for (std::string choice; std::getline(range, choice, '|');)
+      EXPECT_NE(info().make({{p.key, choice}}), nullptr);
+  }
+}
+
+TEST_P(EveryMethod, UnknownKeysListTheValidOnes) {
+  try {
+    info().make({{"no-such-key", "1"}});
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    const std::string text = e.what();
+    EXPECT_NE(text.find("no-such-key"), std::string::npos);
+    for (const Parameter& p : info().parameters) EXPECT_NE(text.find(p.key), std::string::npos) << text;
+  }
+}
+
+TEST_P(EveryMethod, WrongValuesAreRefused) {
+  for (const Parameter& p : info().parameters)
+    for (const char* wrong : {"", "many", "-1", "1e400", "3 "}) {
+      try {
+        info().make({{p.key, wrong}});
+        ADD_FAILURE() << p.key << " took '" << wrong << "'";
+      } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find(p.key), std::string::npos);
+      }
+    }
+}
+
+TEST_P(EveryMethod, SameBitsForAnyNumberOfThreads) {
+  const auto m = matrix::sparse_matrix({600, 900, 1}, 0.3);
+  std::vector<Rgb> first;
+  for (int threads : {1, 2, 4})
+    with_threads(threads, [&] {
+      const Estimate e = info().make({})->run(m, {});
+      if (threads == 1) first = e.sums;
+      EXPECT_EQ(e.sums, first);
+    });
+}
+
+TEST_P(EveryMethod, ShowsCompleteEstimatesAndReports) {
+  const auto m = matrix::low_rank_matrix({300, 700, 1}, 5);
+  RunOptions options;
+  std::size_t shown = 0;
+  std::vector<Rgb> last;
+  options.on_estimate = [&](std::span<const Rgb> sums) {
+    ASSERT_EQ(sums.size(), m.rows());
+    for (Rgb v : sums) ASSERT_TRUE(is_finite(v));
+    ++shown;
+    last.assign(sums.begin(), sums.end());
+  };
+  double progress = 0;
+  options.sinks.progress = [&](const char*, double fraction) { progress = fraction; };
+  const Estimate e = info().make({})->run(m, options);
+  EXPECT_GT(shown, 0u);
+  EXPECT_EQ(last, e.sums);
+  EXPECT_EQ(progress, 1.0);
+  EXPECT_FALSE(e.interrupted);
+  for (const char* key : {"seconds.columns", "rows", "columns", "sampling_rate"})
+    EXPECT_TRUE(e.trace.numbers.contains(key)) << key;
+  // Watching changes nothing.
+  EXPECT_EQ(info().make({})->run(m, {}).sums, e.sums);
+}
+
+TEST_P(EveryMethod, CancelledRunsReturnWhatTheyHave) {
+  const auto m = matrix::low_rank_matrix({200, 4000, 1}, 6);
+  for (std::size_t after : {0u, 1u, 3u}) {
+    std::atomic<bool> cancel{after == 0};
+    std::size_t shown = 0;
+    RunOptions options;
+    options.target_error = 1e-3;
+    options.sinks.cancel = &cancel;
+    options.on_estimate = [&](std::span<const Rgb>) { cancel = ++shown >= after; };
+    const Estimate e = info().make({})->run(m, options);
+    ASSERT_EQ(e.sums.size(), m.rows());
+    for (Rgb v : e.sums) EXPECT_TRUE(is_finite(v));
+    if (after == 0) {
+      EXPECT_TRUE(e.interrupted);
+    }
+    // Having shown a picture, the method returns a picture: on this matrix 32 columns give far less than 100
+    // % error.
+    if (after > 0) {
+      EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 1.0);
+    }
+  }
+}
+
+TEST_P(EveryMethod, CopesWithTinyAndDarkMatrices) {
+  for (std::size_t n : {1u, 2u, 50u, 200u}) {
+    const matrix::DenseMatrix dark(3, n, std::vector<Rgb>(3 * n));
+    const Estimate e = info().make({})->run(dark, {});
+    EXPECT_EQ(e.sums, std::vector<Rgb>(3, Rgb(0)));
+    const auto m = matrix::clustered_matrix({1, n, 1}, 1);
+    EXPECT_EQ(info().make({})->run(m, {}).sums.size(), 1u);
+  }
+  const matrix::DenseMatrix no_columns(4, 0, {});
+  EXPECT_EQ(info().make({})->run(no_columns, {}).sums, std::vector<Rgb>(4, Rgb(0)));
+  const matrix::DenseMatrix no_rows(0, 300, {});
+  EXPECT_TRUE(info().make({})->run(no_rows, {}).sums.empty());
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> n;
+  for (const MethodInfo& m : all_methods()) n.push_back(m.name);
+  return n;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(names()), [](const auto& p) {
+  std::string name = p.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST(Methods, UnknownNamesListTheValidOnes) {
+  try {
+    find_method("no-such-method");
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    for (const std::string& name : names()) EXPECT_NE(std::string(e.what()).find(name), std::string::npos);
+  }
+}
+
+TEST(Methods, InstantRadiosityWantsItsLights) {
+  EXPECT_EQ(find_method("instant-radiosity").lights_wanted({{"lights", "123"}}), 123u);
+  EXPECT_EQ(find_method("brute-force").lights_wanted({}), 0u);
+}
+
+}  // namespace
+}  // namespace lumirank::methods

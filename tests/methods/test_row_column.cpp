@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/row_column/columns_known.h"
+
+namespace lumirank::methods {
+namespace {
+
+Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const RunOptions& options = {}) {
+  return find_method("row-column-sampling").make(settings)->run(m, options);
+}
+
+// As many clusters as directions, and one colour per direction: every representative is its cluster's sum up
+// to rounding. A column's entry carries about six roundings, its norm over 50 rows 25 more.
+TEST(RowColumn, ExactClustersGiveTheExactSum) {
+  const auto m = matrix::clustered_matrix({300, 400, 1}, 12);
+  for (const char* clustering : {"combined", "splitting"})
+    for (const char* colour : {"averaged", "scalar"}) {
+      const Estimate e =
+          run(m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"colour", colour}});
+      EXPECT_EQ(e.trace.numbers.at("columns"), 12);
+      EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 64 * 0x1p-24);
+    }
+}
+
+TEST(RowColumn, AllColumnsAreExact) {
+  const auto m = matrix::low_rank_matrix({300, 200, 1}, 10);
+  const Estimate e = run(m, {{"rows", "50"}, {"columns", "200"}});
+  EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 200 * 0x1p-24);
+}
+
+// Mean squared errors over 20 seeds fall with the number of columns, by a one-sided test of the difference
+// at 99.9 % each.
+TEST(RowColumn, ErrorFallsWithColumns) {
+  const auto m = matrix::low_rank_matrix({500, 1000, 1}, 15);
+  const auto truth = m.exact_sums();
+  std::vector<double> previous;
+  for (const char* columns : {"10", "30", "90", "270"}) {
+    std::vector<double> squares;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      RunOptions options;
+      options.seed = seed;
+      const double e =
+          relative_difference(run(m, {{"rows", "100"}, {"columns", columns}}, options).sums, truth);
+      squares.push_back(e * e);
+    }
+    if (!previous.empty()) {
+      double mean = 0, variance = 0;
+      for (std::size_t k = 0; k < 20; ++k) mean += (previous[k] - squares[k]) / 20;
+      for (std::size_t k = 0; k < 20; ++k) variance += std::pow(previous[k] - squares[k] - mean, 2) / 19;
+      EXPECT_GT(mean / std::sqrt(variance / 20), 3.58) << columns;  // Student's t, 19 degrees of freedom
+    }
+    previous = squares;
+  }
+}
+
+// Clusters within groups: the columns chosen for one group sum to that group's total, in expectation; with as
+// many clusters as exact directions within groups, exactly.
+TEST(RowColumn, GroupsKeepTheirTotals) {
+  auto m = matrix::clustered_matrix({200, 300, 1}, 4);
+  m.group.resize(300);
+  for (std::size_t j = 0; j < 300; ++j) m.group[j] = j < 100 ? 0 : 7;
+  RowColumnSettings settings;
+  settings.colour = ColourMode::scalar;
+  Exploration seen(m, 0, 1);
+  for (const SampledRow& row : RowSampler(m, 1).stratified(40)) seen.read(row);
+  const ColumnsKnown known(m, seen, settings, 1);
+  const auto clusters = known.cluster(8, linalg::ClusteringAlgorithm::combined);
+  ASSERT_EQ(clusters.clusters(), 8u);
+  const Representatives chosen = known.choose(clusters, 0);
+  for (std::uint16_t group : {std::uint16_t{0}, std::uint16_t{7}}) {
+    double got = 0, expected = 0;
+    for (const auto& c : chosen.columns)
+      if (m.group[c.column] == group)
+        got += static_cast<double>(c.scale.r) * static_cast<double>(m.at(5, c.column).r);
+    for (std::size_t j = 0; j < 300; ++j)
+      if (m.group[j] == group) expected += static_cast<double>(m.at(5, j).r);
+    EXPECT_NEAR(got, expected, 64 * 0x1p-24 * expected);
+  }
+}
+
+// Relative errors squared over 400 draws of representatives, against the error to expect.
+struct Errors {
+  double z_seen, z_unseen;  // (mean − expected) in standard deviations of the mean
+  std::size_t zero_columns;
+};
+Errors errors_over_draws(const matrix::DenseMatrix& coloured) {
+  // Colourless: scalars are then the entries, up to the factor √3, which cancels.
+  std::vector<Rgb> grey(coloured.rows() * coloured.columns());
+  for (std::size_t i = 0; i < coloured.rows(); ++i)
+    for (std::size_t j = 0; j < coloured.columns(); ++j)
+      grey[i * coloured.columns() + j] = Rgb(coloured.at(i, j).g);
+  matrix::DenseMatrix m(coloured.rows(), coloured.columns(), std::move(grey));
+  m.power = coloured.power;
+  RowColumnSettings settings;
+  settings.colour = ColourMode::scalar;
+  Exploration seen(m, 0, 1), unseen(m, 0, 1);
+  RowSampler sampler(m, 1);
+  for (const SampledRow& row : sampler.next(40)) seen.read(row);
+  for (const SampledRow& row : sampler.next(40)) unseen.read(row);
+  const ColumnsKnown known(m, seen, settings, 1);
+  const auto clusters = known.cluster(25, linalg::ClusteringAlgorithm::combined);
+
+  const int draws = 400;
+  double on_seen[2] = {0, 0}, on_unseen[2] = {0, 0};
+  for (int t = 0; t < draws; ++t) {
+    const Representatives chosen = known.choose(clusters, static_cast<std::uint64_t>(t));
+    std::vector<Rgb> sums(m.rows());
+    m.accumulate(chosen.columns, sums);
+    const double a = std::pow(seen.measured_error(sums), 2), b = std::pow(unseen.measured_error(sums), 2);
+    on_seen[0] += a, on_seen[1] += a * a, on_unseen[0] += b, on_unseen[1] += b * b;
+  }
+  const auto z = [&](const double* s, double expected) {
+    const double mean = s[0] / draws, deviation = std::sqrt((s[1] / draws - mean * mean) / draws);
+    return (mean - expected * expected) / deviation;
+  };
+  return {z(on_seen, known.expected_error(clusters)), z(on_unseen, known.expected_error(clusters, unseen)),
+          known.zero().size()};
+}
+
+// z-tests at 99.9 %: on the rows that were clustered by (no projection), and on others.
+TEST(RowColumn, ExpectedErrorsAreTheMeansOfTheErrors) {
+  const Errors e = errors_over_draws(matrix::low_rank_matrix({400, 300, 1}, 12));
+  ASSERT_EQ(e.zero_columns, 0u);
+  EXPECT_LT(std::abs(e.z_seen), 3.29);
+  EXPECT_LT(std::abs(e.z_unseen), 3.29);
+}
+
+// With zero columns: they add nothing on seen rows. Their draws are stratified and so vary less than the
+// independent ones that are counted: the error to expect on unseen rows is an upper bound (one-sided, 99.9
+// %).
+TEST(RowColumn, ExpectedErrorsCountZeroColumns) {
+  const Errors e = errors_over_draws(matrix::sparse_matrix({400, 300, 1}, 0.1));
+  ASSERT_GT(e.zero_columns, 20u);
+  EXPECT_LT(std::abs(e.z_seen), 3.29);
+  EXPECT_LT(e.z_unseen, 3.09);
+}
+
+TEST(RowSampler, StratifiedRowsAreDistinctAndEqualShares) {
+  const auto m = matrix::low_rank_matrix({1003, 2, 1}, 1);
+  const RowSampler sampler(m, 1);
+  for (std::size_t count : {1u, 10u, 300u, 1003u, 5000u}) {
+    const auto rows = sampler.stratified(count);
+    std::set<matrix::Index> distinct;
+    for (const auto& r : rows) distinct.insert(r.row);
+    EXPECT_EQ(rows.size(), std::min<std::size_t>(count, 1003));
+    EXPECT_EQ(distinct.size(), rows.size());
+  }
+  // Σ over blocks of weight² = rows counted with their block's size: number of rows read.
+  double squares = 0;
+  for (const auto& r : sampler.stratified(300))
+    squares += static_cast<double>(r.weight) * static_cast<double>(r.weight);
+  EXPECT_NEAR(squares, 300, 300 * 4 * 0x1p-24);
+}
+
+// Every row equally likely: chi-square of 2,000 draws of 10 rows of 50, over 50 rows (49 degrees of freedom).
+// Rows of a sample avoid each other, which makes the statistic smaller, never larger; 85.4 is exceeded with
+// probability 0.001.
+TEST(RowSampler, EveryRowIsEquallyLikely) {
+  const auto m = matrix::low_rank_matrix({50, 2, 1}, 1);
+  for (bool sequence : {false, true}) {
+    std::vector<double> seen(50, 0.0);
+    for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+      RowSampler sampler(m, seed);
+      for (const auto& r : sequence ? sampler.next(10) : sampler.stratified(10)) seen[r.row] += 1;
+    }
+    double chi = 0;
+    for (double s : seen) chi += (s - 400) * (s - 400) / 400;
+    EXPECT_LT(chi, 85.4) << sequence;
+  }
+}
+
+TEST(RowSampler, SequencesCoverTheImageEvenlyAndNeverRepeat) {
+  const auto m = matrix::low_rank_matrix({1024, 2, 1}, 1);
+  RowSampler sampler(m, 5);
+  std::set<matrix::Index> all;
+  for (std::size_t step : {16u, 16u, 32u, 64u, 896u, 10u})
+    for (const auto& r : sampler.next(step)) EXPECT_TRUE(all.insert(r.row).second);
+  EXPECT_EQ(all.size(), 1024u);
+  // The first 16 rows of a sequence are in 16 different sixteenths of the curve: on a square image, four in
+  // each quadrant.
+  RowSampler fresh(m, 6);
+  const float half = 12;  // 1024 rows, two per pixel: 23 pixels wide
+  int quadrant[2][2] = {{0, 0}, {0, 0}};
+  for (const auto& r : fresh.next(16)) ++quadrant[m.pixel[r.row].x > half][m.pixel[r.row].y > half];
+  for (auto& side : quadrant)
+    for (int n : side) EXPECT_GE(n, 2);
+}
+
+TEST(RowSampler, DensityDrawsWhereItIsHigh) {
+  const auto m = matrix::low_rank_matrix({4096, 2, 1}, 1);
+  RowSampler sampler(m, 7);
+  std::vector<float> density(4096, 0.0f);
+  for (std::size_t i = 0; i < 4096; ++i)
+    density[i] = m.pixel[i].x < 11 && m.pixel[i].y < 11;  // a sixteenth of the image
+  std::size_t inside = 0;
+  double squares = 0;
+  const auto rows = sampler.next_by_density(200, density);
+  for (const auto& r : rows) {
+    inside += density[r.row] > 0;
+    squares += static_cast<double>(r.weight) * static_cast<double>(r.weight);
+  }
+  EXPECT_GT(inside, rows.size() * 2 / 5);  // half by density and a sixteenth of the other half, less repeats
+  // Σ weight² estimates the number of rows drawn; its deviation over strata is below that of independent
+  // draws, whose weights² are at most 2: √200·2 bounds it generously, three times it is 85.
+  EXPECT_NEAR(squares, static_cast<double>(rows.size()), 85);
+}
+
+}  // namespace
+}  // namespace lumirank::methods
