@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "film/false_color.h"
@@ -14,6 +15,7 @@ namespace {
 
 struct Choice {
   std::string name, about, image, error;
+  double relative_l1 = std::numeric_limits<double>::infinity();
 };
 
 std::vector<Choice> choices_of(const CompareResults& results, const CompareSummary& summary) {
@@ -26,7 +28,7 @@ std::vector<Choice> choices_of(const CompareResults& results, const CompareSumma
       const std::string seed = group.runs.size() > 1 ? ", seed " + std::to_string(run->seed) : "";
       choices.push_back({run->label + seed,
                          show_percent(run->error.relative_l1) + " L1, " + show_seconds(run->seconds),
-                         run->image_file, run->error_image_file});
+                         run->image_file, run->error_image_file, run->error.relative_l1});
     }
   return choices;
 }
@@ -72,7 +74,11 @@ std::string select(const char* side, const char* label, const std::vector<Choice
 std::string image_section(const CompareResults& results, const CompareSummary& summary) {
   const std::vector<Choice> choices = choices_of(results, summary);
   if (choices.empty()) return {};
-  const std::size_t right = choices.size() > 1 ? 1 : 0;
+  // At first: the reference beside the run that comes nearest to it.
+  const auto nearest = std::min_element(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) {
+    return a.relative_l1 < b.relative_l1;
+  });
+  const auto right = static_cast<std::size_t>(nearest - choices.begin());
   // Small pictures are enlarged, large ones fit the page.
   const int width = std::max(results.width, 640);
   std::string out =

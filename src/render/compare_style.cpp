@@ -21,7 +21,7 @@ const char* const kCompareStyle = R"css(
 .s4 { --c: var(--c4) } .s5 { --c: var(--c5) } .s6 { --c: var(--c6) } .s7 { --c: var(--c7) }
 * { box-sizing: border-box }
 body { margin: 0; background: var(--page); color: var(--text); font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif }
-main { max-width: 1320px; margin: 0 auto; padding: 28px 24px 60px }
+main { max-width: 1360px; margin: 0 auto; padding: 28px 20px 60px }
 h1 { margin: 0 0 2px; font-size: 26px; line-height: 1.25; overflow-wrap: anywhere }
 h2 { margin: 0 0 4px; font-size: 18px }
 p { margin: 0 0 10px; max-width: 90ch }
@@ -34,6 +34,7 @@ section { margin-top: 22px; padding: 18px 20px 20px; background: var(--card); bo
 .warn { margin: 14px 0 0; padding: 8px 12px; border-radius: 6px; background: var(--warn-back); color: var(--warn) }
 .notes { margin: 14px 0 0; padding-left: 20px; color: var(--soft) }
 .bar { display: flex; flex-wrap: wrap; gap: 8px 16px; align-items: center; margin: 10px 0 }
+.bar > label { display: flex; flex-wrap: wrap; gap: 0 8px; align-items: center; max-width: 100% }
 .choice { display: inline-flex; border: 1px solid var(--rule); border-radius: 7px; overflow: hidden }
 .choice label { position: relative; cursor: pointer }
 .choice input { position: absolute; opacity: 0; inset: 0; margin: 0; cursor: pointer }
@@ -46,7 +47,7 @@ section { margin-top: 22px; padding: 18px 20px 20px; background: var(--card); bo
 .legend button[aria-pressed=false] { opacity: .45; text-decoration: line-through }
 .swatch { width: 26px; height: 14px; flex: none }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 14px 24px }
-.plots figure { margin: 0 }
+.plots figure { margin: 0; max-width: 720px }
 figcaption { font-weight: 600; margin-bottom: 2px }
 .plot { display: block; width: 100%; height: auto; font-size: 12.5px }
 .plot text { fill: var(--soft) }
@@ -66,26 +67,30 @@ figcaption { font-weight: 600; margin-bottom: 2px }
 #tip { position: absolute; z-index: 9; max-width: 340px; padding: 7px 10px; border-radius: 6px; background: var(--text); color: var(--page);
   font-size: 13px; line-height: 1.4; white-space: pre-line; pointer-events: none; display: none }
 .scroll { overflow-x: auto }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums }
-th, td { padding: 5px 12px; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--faint) }
-th:first-child, td:first-child { text-align: left; white-space: normal; min-width: 220px; padding-left: 4px }
+table { border-collapse: collapse; width: 100%; font-size: 14px; font-variant-numeric: tabular-nums }
+th, td { padding: 5px 7px; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--faint) }
+th:first-child, td:first-child { text-align: left; padding-left: 4px }
 thead th { border-bottom: 2px solid var(--rule); vertical-align: bottom; padding: 0 }
-thead button { width: 100%; padding: 5px 12px; font: inherit; font-weight: 600; color: inherit; background: none; border: 0; text-align: inherit; cursor: pointer; white-space: nowrap }
+thead button { width: 100%; padding: 5px 7px; font: inherit; font-weight: 600; color: inherit; background: none; border: 0; text-align: inherit; cursor: pointer; white-space: nowrap }
 th:first-child button { padding-left: 4px }
-thead button::after { content: "↕"; margin-left: 5px; opacity: .3 }
+thead button::after { content: "↕"; margin-left: 3px; opacity: .3 }
 th[aria-sort=ascending] button::after { content: "↑"; opacity: 1 }
 th[aria-sort=descending] button::after { content: "↓"; opacity: 1 }
 tbody tr:hover { background: var(--faint) }
 td .name { display: flex; gap: 8px; align-items: center }
-td small { color: var(--soft) }
-select { font: inherit; color: inherit; background: var(--card); border: 1px solid var(--rule); border-radius: 7px; padding: 4px 8px; max-width: 100% }
+select, #swap { font: inherit; color: inherit; background: var(--card); border: 1px solid var(--rule); border-radius: 7px; padding: 4px 8px; max-width: 100% }
+#swap { cursor: pointer }
 .stage { position: relative; margin: 6px auto 0; overflow: hidden; border-radius: 6px; background: #000; user-select: none; touch-action: pan-y }
 .stage img { display: block; width: 100%; height: auto; image-rendering: auto }
 .stage #left { position: absolute; inset: 0; height: 100% }
 .stage .handle { position: absolute; top: 0; bottom: 0; width: 2px; margin-left: -1px; background: #fff; box-shadow: 0 0 4px #000; pointer-events: none }
-.stage .handle::after { content: "⟨ ⟩"; position: absolute; top: 50%; left: 50%; transform: translate(-50%, -50%); padding: 4px 7px; border-radius: 20px;
-  background: #fff; color: #222; font-size: 14px; line-height: 1.2; white-space: nowrap; box-shadow: 0 0 5px rgba(0, 0, 0, .6) }
-.stage input { position: absolute; inset: 0; width: 100%; height: 100%; margin: 0; opacity: 0; cursor: ew-resize }
+.stage .handle::after { content: "↔"; position: absolute; top: 50%; left: 50%; transform: translate(-50%, -50%); width: 30px; padding: 4px 0; text-align: center; border-radius: 20px;
+  background: #fff; color: #222; font-size: 17px; line-height: 1.3; white-space: nowrap; box-shadow: 0 0 5px rgba(0, 0, 0, .6) }
+/* Half a thumb wider at both ends, so that the handle lies under the pointer everywhere. */
+.stage input { position: absolute; top: 0; left: -8px; width: calc(100% + 16px); height: 100%; margin: 0; opacity: 0; cursor: ew-resize;
+  appearance: none }
+.stage input::-webkit-slider-thumb { appearance: none; width: 16px; height: 100% }
+.stage input::-moz-range-thumb { width: 16px; height: 100%; border: 0 }
 .stage input:focus-visible ~ .handle { outline: 2px solid var(--accent); outline-offset: 2px }
 .badge { position: absolute; bottom: 8px; max-width: 46%; padding: 3px 8px; border-radius: 5px; background: rgba(0, 0, 0, .66); color: #fff; font-size: 13px;
   line-height: 1.35; pointer-events: none }

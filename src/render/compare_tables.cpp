@@ -28,7 +28,6 @@ std::string cell(double value, const std::string& shown) {
 std::string name_cell(const CompareGroup& group) {
   std::string out = "<td><span class=\"name\">" + svg_swatch(static_cast<int>(group.series)) + "<span>" +
                     escape_html(group.first().label);
-  if (group.runs.size() > 1) out += " <small>mean of " + std::to_string(group.runs.size()) + " seeds</small>";
   return out + "</span></span></td>";
 }
 
@@ -63,10 +62,13 @@ std::string table_section(const CompareSummary& summary) {
       "<section><h2>All settings</h2>\n<p class=\"soft\">Click a heading to sort by it.</p>\n<div "
       "class=\"scroll\"><table id=\"runs\"><thead><tr>" +
       head("Method and settings");
+  const bool seeds = summary.most_seeds > 1;
+  if (seeds) out += head("Seeds", "the other numbers are means over them");
   for (const Column& column : kColumns) out += head(column.name, column.hint);
   out += "</tr></thead><tbody>\n";
   for (const CompareGroup& group : summary.groups) {
     out += "<tr>" + name_cell(group);
+    if (seeds) out += cell(static_cast<double>(group.runs.size()), std::to_string(group.runs.size()));
     for (const Column& column : kColumns) {
       const double mean = group.mean(column.value);
       out += cell(mean, column.show(mean));

@@ -7,18 +7,28 @@
 namespace lumirank::render {
 namespace {
 
-// The shortest form of a round number.
+// The shortest form of a round number; small and large powers of ten as such.
 std::string plain(double value) {
   char text[32];
+  const double power = value > 0 ? std::log10(value) : 0, whole = std::round(power);
+  if (std::abs(whole) >= 4 && std::abs(power - whole) < 1e-9) {
+    static const char* const digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string raised = "10";
+    if (whole < 0) raised += "⁻";
+    for (const char c : std::to_string(std::abs(static_cast<int>(whole)))) raised += digits[c - '0'];
+    return raised;
+  }
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
 
 std::string with_prefix(double value) {
   const char* const units[] = {"", "k", "M", "G", "T", "P"};
+  char text[32];
   int unit = 0;
   while (std::abs(value) >= 999.999 && unit < 5) value /= 1000, ++unit;
-  return plain(value) + units[unit];
+  std::snprintf(text, sizeof text, "%.4g%s", value, units[unit]);
+  return text;
 }
 
 }  // namespace
@@ -73,7 +83,7 @@ std::vector<Tick> Scale::log_ticks() const {
       if (!holds(value)) continue;
       const bool numbered = digit == 1       ? power % stride == 0
                             : decades <= 0.8 ? true
-                            : decades <= 2.2 ? digit == 2 || digit == 5
+                            : decades <= 3   ? digit == 2 || digit == 5
                                              : false;
       if (numbered || decades <= 5) ticks.push_back({(*this)(value), numbered ? show(value) : ""});
     }

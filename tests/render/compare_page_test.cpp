@@ -197,8 +197,8 @@ TEST_F(ComparePage, ShowsEverySettingOnceAndEveryImage) {
   EXPECT_EQ(images[24]["error"], "run_23_error.png");
   // Mean over the seeds of 0.04 · {0.9, 1, 1.1} is 4 %; of the times 0.1 · {1, 1.01, 1.02}, 0.101 s.
   const auto row = document.select_node("//table[@id='runs']/tbody/tr[5]").node();
-  EXPECT_STREQ(row.select_node("td[7]").node().text().get(), "4.00 %");
-  EXPECT_STREQ(row.select_node("td[2]").node().text().get(), "0.101 s");
+  EXPECT_STREQ(row.select_node("td[8]").node().text().get(), "4.00 %");
+  EXPECT_STREQ(row.select_node("td[3]").node().text().get(), "0.101 s");
 }
 
 // σ_k = 2^(-k/10): the share of the squares beyond the first r is 2^(-r/5), at most 1e-4 from r = 5·log2(1e4)
