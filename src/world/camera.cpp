@@ -2,6 +2,8 @@
 // convention), so both are mirrored here: the left edge of the film looks towards +x.
 #include "world/camera.h"
 
+#include <cmath>
+
 #include "base/error.h"
 #include "base/warp.h"
 
@@ -27,6 +29,10 @@ void check(const scenedesc::SensorDesc& s) {
     bad("the crop window does not lie within the film", "give a window inside the film");
   if (!s.to_world.is_finite() || !s.to_world.inverse())
     bad("the camera's to_world is singular or not finite", "give an invertible transform");
+  if (!(s.near_clip >= 0 && s.near_clip < s.far_clip))
+    bad("the near clipping plane is negative or not before the far one", "give 0 ≤ near_clip < far_clip");
+  if (!std::isfinite(s.principal_point_offset.x) || !std::isfinite(s.principal_point_offset.y))
+    bad("the principal point offset is not finite", "give finite numbers");
   if (s.kind != scenedesc::SensorKind::orthographic && !(s.fov_x > 0 && s.fov_x < 180))
     bad("the field of view is not between 0 and 180 degrees", "give an angle in between");
   if (s.kind == scenedesc::SensorKind::thinlens && !(s.aperture_radius >= 0))

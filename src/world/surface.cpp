@@ -90,8 +90,13 @@ SurfaceHit World::Impl::surface(const geometry::Hit& hit) const {
   if (point.ng == Vec3f{}) point.ng = {0, 0, 1};
   Vec3f n = point.ng;
   if (!mesh.normals.empty()) {
-    const Vec3f smooth = to_world_normal(
-        unit_or_zero(mesh.normals[c.i[0]] * b0 + mesh.normals[c.i[1]] * b.x + mesh.normals[c.i[2]] * b.y));
+    // Each to the world and to unit length before they are mixed, as if the mesh had been moved for good.
+    const auto at = [&](int k) {
+      const Vec3f local = mesh.normals[c.i[k]];
+      return data.identity ? local : to_world_normal(local);
+    };
+    Vec3f smooth = unit_or_zero(at(0) * b0 + at(1) * b.x + at(2) * b.y);
+    if (data.identity && data.flip) smooth = -smooth;
     if (!(smooth == Vec3f{})) n = dot(smooth, point.ng) < 0 ? -smooth : smooth;
   }
 

@@ -1,0 +1,260 @@
+// Building a world: materials, textures, names, and what it refuses or warns about.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "film/image_io.h"
+#include "world/scene_maker.h"
+
+namespace lumirank::world {
+namespace {
+
+using namespace test;
+
+sd::SceneDesc lit_rectangle() {
+  auto desc = empty_scene();
+  add_shape(desc, sd::RectangleDesc{}, {}, 5);
+  add_emitter(desc, sd::ConstantEnvironmentDesc{Rgb(1)});
+  return desc;
+}
+
+void expect_refused(const sd::SceneDesc& desc, int line, const std::string& says) {
+  try {
+    build(desc);
+    FAIL() << "not refused: " << says;
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find(says), std::string::npos) << e.what();
+    if (line > 0) {
+      EXPECT_EQ(e.where().line, line) << e.what();
+    }
+  }
+}
+
+TEST(Build, RefusesWhatMakesNoScene) {
+  auto empty = empty_scene();
+  expect_refused(empty, 0, "no geometry");
+  auto blind = lit_rectangle();
+  blind.sensors.clear();
+  expect_refused(blind, 0, "no sensor");
+  auto singular = lit_rectangle();
+  singular.shapes[0].to_world.m[3] = std::nan("");
+  expect_refused(singular, 5, "not finite");
+  auto projective = lit_rectangle();
+  projective.shapes[0].to_world.m[12] = 1;
+  expect_refused(projective, 5, "affine");
+  auto flat = lit_rectangle();
+  flat.shapes[0].to_world = Transform::scale(1, 0, 1);
+  expect_refused(flat, 0, "area");
+  auto ball = lit_rectangle();
+  add_shape(ball, sd::SphereDesc{{0, 0, 0}, -1}, {}, 9);
+  expect_refused(ball, 9, "radius");
+  auto tube = lit_rectangle();
+  add_shape(tube, sd::CylinderDesc{{1, 1, 1}, {1, 1, 1}, 1}, {}, 9);
+  expect_refused(tube, 9, "coincide");
+  auto missing = lit_rectangle();
+  sd::MeshFileDesc mesh;
+  mesh.filename = "/nowhere/at/all.obj";
+  add_shape(missing, mesh, {}, 9);
+  expect_refused(missing, 0, "/nowhere/at/all.obj");
+}
+
+TEST(Build, RefusesCyclesAndDanglingReferences) {
+  auto textures = lit_rectangle();
+  add_texture(textures, sd::ScaleTextureDesc{{Rgb(0), 1}, Rgb(1)}, 11);
+  add_texture(textures, sd::CheckerboardTextureDesc{{Rgb(0), sd::kNone}, {Rgb(0), 0}, {}}, 12);
+  textures.shapes[0].bsdf = add_bsdf(textures, sd::DiffuseDesc{{Rgb(0), 0}});
+  expect_refused(textures, 11, "its own input");
+
+  auto bsdfs = lit_rectangle();
+  add_bsdf(bsdfs, sd::MaskDesc{{0.5f}, 1}, 11);
+  add_bsdf(bsdfs, sd::TwoSidedDesc{0, 0}, 12);
+  bsdfs.shapes[0].bsdf = 0;
+  expect_refused(bsdfs, 11, "nested in itself");
+
+  auto dangling = lit_rectangle();
+  dangling.shapes[0].bsdf = 3;
+  expect_refused(dangling, 5, "BSDF");
+  auto untextured = lit_rectangle();
+  untextured.shapes[0].bsdf = add_bsdf(untextured, sd::DiffuseDesc{{Rgb(0), 7}}, 11);
+  expect_refused(untextured, 11, "texture");
+  auto bare = lit_rectangle();
+  bare.shapes[0].bsdf = add_bsdf(bare, sd::MaskDesc{{0.5f}, sd::kNone}, 11);
+  expect_refused(bare, 11, "nested");
+  auto glass = lit_rectangle();
+  glass.shapes[0].bsdf = add_bsdf(glass, sd::DielectricDesc{-1.5f}, 11);
+  expect_refused(glass, 11, "refraction");
+  auto negative = lit_rectangle();
+  negative.shapes[0].bsdf = add_bsdf(negative, sd::DiffuseDesc{{Rgb(-1, 0, 0)}}, 11);
+  expect_refused(negative, 11, "negative");
+}
+
+TEST(Build, RefusesNestedGroups) {
+  auto desc = lit_rectangle();
+  const int child = add_shape(desc, sd::RectangleDesc{}, {}, 20);
+  const int inner = add_shape(desc, sd::ShapeGroupDesc{{child}}, {}, 21);
+  const int inside = add_shape(desc, sd::InstanceDesc{inner}, {}, 22);
+  const int outer = add_shape(desc, sd::ShapeGroupDesc{{inside}}, {}, 23);
+  desc.shapes[static_cast<std::size_t>(child)].in_group = true;
+  desc.shapes[static_cast<std::size_t>(inside)].in_group = true;
+  add_shape(desc, sd::InstanceDesc{outer}, {}, 24);
+  expect_refused(desc, 22, "group");
+  auto no_group = lit_rectangle();
+  add_shape(no_group, sd::InstanceDesc{0}, {}, 30);
+  expect_refused(no_group, 30, "not a shape group");
+}
+
+TEST(Build, RefusesImpossibleLights) {
+  const auto refused = [](auto kind, const std::string& says) {
+    auto desc = lit_rectangle();
+    add_emitter(desc, kind, "", 40);
+    expect_refused(desc, 40, says);
+  };
+  refused(sd::PointLightDesc{{0, 0, 0}, Rgb(-1)}, "negative");
+  refused(sd::PointLightDesc{{std::nanf(""), 0, 0}, Rgb(1)}, "finite");
+  refused(sd::DirectionalLightDesc{{0, 0, 0}, Rgb(1)}, "direction");
+  refused(sd::SpotLightDesc{{}, Rgb(1), -3, 0}, "cut-off");
+  refused(sd::SpotLightDesc{{}, Rgb(1), 20, 30}, "beam");
+  refused(sd::EnvironmentMapDesc{"/nowhere/sky.exr", 1, {}}, "/nowhere/sky.exr");
+  refused(sd::EnvironmentMapDesc{"/nowhere/sky.exr", 1, Transform::scale(1, 2, 1)}, "scales");
+  sd::SunSkyDesc night;
+  night.sun_direction = {0, -1, 0};
+  refused(night, "horizon");
+  sd::SunSkyDesc fog;
+  fog.turbidity = 40;
+  refused(fog, "turbidity");
+}
+
+TEST(Build, WarnsAboutLightsWithoutEffect) {
+  auto desc = lit_rectangle();
+  const int member = add_shape(desc, sd::RectangleDesc{}, {}, 7);
+  desc.shapes[static_cast<std::size_t>(member)].in_group = true;
+  shine(desc, member, {Rgb(1)});
+  const int group = add_shape(desc, sd::ShapeGroupDesc{{member}}, {}, 8);
+  add_shape(desc, sd::InstanceDesc{group}, Transform::translate(9, 0, 0), 9);
+  const int flat = add_shape(desc, sd::RectangleDesc{}, Transform::scale(0, 1, 1), 10);
+  shine(desc, flat, {Rgb(1)});
+  std::vector<sd::Warning> warnings;
+  const World w = build(desc, &warnings);
+  EXPECT_EQ(w.emitters().size(), 1u);  // the environment
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].where.line, 7);
+  EXPECT_EQ(warnings[1].where.line, 10);
+  EXPECT_THROW(build(desc, nullptr, true), InputError);
+
+  auto dark = empty_scene();
+  add_shape(dark, sd::RectangleDesc{});
+  warnings.clear();
+  build(dark, &warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].what.find("no light"), std::string::npos);
+}
+
+TEST(Build, TwoSidedCannotHoldGlass) {
+  auto desc = lit_rectangle();
+  const int glass = add_bsdf(desc, sd::DielectricDesc{}, 11);
+  desc.shapes[0].bsdf = add_bsdf(desc, sd::TwoSidedDesc{glass, glass}, 12);
+  std::vector<sd::Warning> warnings;
+  const World w = build(desc, &warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].where.line, 12);
+  const auto hit = w.intersect(ray({0.3f, 0.2f, 5}, {0, 0, -1}));
+  ASSERT_TRUE(hit);
+  EXPECT_TRUE(std::holds_alternative<scatter::DielectricMaterial>(
+      w.materials().materials[static_cast<std::size_t>(hit->material)]));
+}
+
+TEST(Build, NestedComesBeforeItsUser) {
+  auto desc = lit_rectangle();
+  // The users stand before what they use.
+  desc.bsdfs.resize(1);
+  const int white = add_bsdf(desc, sd::DiffuseDesc{{Rgb(1)}});
+  desc.bsdfs[0].kind = sd::TwoSidedDesc{white, white};
+  desc.shapes[0].bsdf = 0;
+  add_shape(desc, sd::CubeDesc{}, Transform::translate(5, 0, 0));  // without a BSDF
+  const World w = build(desc);
+  const auto& all = w.materials().materials;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const auto* two = std::get_if<scatter::TwoSidedMaterial>(&all[i])) {
+      EXPECT_LT(two->front, static_cast<int>(i));
+    }
+  const auto hit = w.intersect(ray({5, 0.2f, 5}, {0, 0, -1}));
+  ASSERT_TRUE(hit);
+  const auto& fallback = std::get<scatter::DiffuseMaterial>(all[static_cast<std::size_t>(hit->material)]);
+  EXPECT_EQ(fallback.reflectance.value, Rgb(0.5f));
+}
+
+TEST(Build, ShadowRaysPassCutoutsAndNullSurfaces) {
+  auto desc = lit_rectangle();
+  desc.shapes[0].bsdf = add_bsdf(desc, sd::NullBsdfDesc{});
+  const int base = add_bsdf(desc, sd::DiffuseDesc{});
+  const int gone = add_shape(desc, sd::RectangleDesc{}, Transform::translate(10, 0, 0));
+  desc.shapes[static_cast<std::size_t>(gone)].bsdf = add_bsdf(desc, sd::MaskDesc{{0.0f}, base});
+  const int whole = add_shape(desc, sd::RectangleDesc{}, Transform::translate(20, 0, 0));
+  desc.shapes[static_cast<std::size_t>(whole)].bsdf = add_bsdf(desc, sd::MaskDesc{{1.0f}, base});
+  const World w = build(desc);
+  const auto down = [](float x) {
+    geometry::Ray r = ray({x + 0.2f, 0.1f, 1}, {0, 0, -2});
+    r.t_max = 1;
+    return r;
+  };
+  EXPECT_FALSE(w.rays().occluded(down(0), 1));
+  EXPECT_EQ(w.rays().transmittance(down(0)), Rgb(1));
+  EXPECT_FALSE(w.rays().occluded(down(10), 1));
+  EXPECT_TRUE(w.rays().occluded(down(20), 1));
+}
+
+TEST(Build, TexturesOfOneFileShareTheirPixels) {
+  const std::string path = ::testing::TempDir() + "lumirank_world_texture.pfm";
+  film::Image image(2, 2);
+  image.at(0, 0) = Rgb(1, 0, 0), image.at(1, 0) = Rgb(0, 1, 0), image.at(0, 1) = Rgb(0, 0, 1);
+  film::write_image(path, {image, {}});
+  auto desc = lit_rectangle();
+  sd::BitmapTextureDesc bitmap;
+  bitmap.filename = path;
+  const int a = add_texture(desc, bitmap), b = add_texture(desc, bitmap);
+  bitmap.raw = true;
+  const int c = add_texture(desc, bitmap);
+  sd::BitmapTextureDesc unused_file;
+  unused_file.filename = "/nowhere/unused.png";  // never opened
+  add_texture(desc, unused_file);
+  for (const int t : {a, b, c}) {
+    const int s = add_shape(desc, sd::RectangleDesc{}, Transform::translate(3 * t + 3, 0, 0));
+    desc.shapes[static_cast<std::size_t>(s)].bsdf = add_bsdf(desc, sd::DiffuseDesc{{Rgb(0), t}});
+  }
+  const World w = build(desc);
+  std::remove(path.c_str());
+  const auto& set = w.materials().textures.textures;
+  ASSERT_EQ(set.size(), 3u);
+  const auto pixels = [&](int i) {
+    return std::get<scatter::BitmapTexture>(set[static_cast<std::size_t>(i)]).pixels;
+  };
+  EXPECT_EQ(pixels(0), pixels(1));
+  EXPECT_NE(pixels(0), pixels(2));
+  EXPECT_EQ(pixels(0)->rgb[0], Rgb(1, 0, 0));
+}
+
+TEST(Build, NamesAreUniqueAndSharedIdsShareAGroup) {
+  auto desc = empty_scene();
+  for (int k = 0; k < 3; ++k) {
+    const int s = add_shape(desc, sd::RectangleDesc{}, Transform::translate(0, 0, k));
+    shine(desc, s, {Rgb(1)}, k < 2 ? "lamp" : "");
+    desc.shapes[static_cast<std::size_t>(s)].id = "shape" + std::to_string(k);
+  }
+  add_emitter(desc, sd::PointLightDesc{}, "lamp_2");
+  add_emitter(desc, sd::PointLightDesc{});
+  const World w = build(desc);
+  const auto& e = w.emitters();
+  ASSERT_EQ(e.size(), 5u);
+  EXPECT_EQ(e[0].name, "lamp");
+  EXPECT_EQ(e[1].name, "lamp_2");
+  EXPECT_EQ(e[2].name, "shape2");
+  EXPECT_EQ(e[3].name, "lamp_2_2");
+  EXPECT_EQ(e[4].name, "emitter_5");
+  EXPECT_EQ(e[0].group, e[1].group);
+  EXPECT_NE(e[0].group, e[2].group);
+  EXPECT_NE(e[1].group, e[3].group);
+}
+
+}  // namespace
+}  // namespace lumirank::world

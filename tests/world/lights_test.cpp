@@ -1,0 +1,190 @@
+// Light of a built world: areas under transforms, textures, the environment, the sun.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "emitters/daylight.h"
+#include "emitters/environment.h"
+#include "emitters/statistics.h"
+#include "film/image_io.h"
+#include "world/scene_maker.h"
+
+namespace lumirank::world {
+namespace {
+
+using namespace test;
+
+constexpr double kPiD = 3.14159265358979323846;
+
+// Unoccluded irradiance at a point.
+Mean irradiance(const World& w, int emitter, Vec3f point, Vec3f normal, std::uint64_t seed, int n = 40000) {
+  Mean mean;
+  for (int i = 0; i < n; ++i) {
+    Rng rng(seed, Stage::test, static_cast<std::uint64_t>(i));
+    const float u1 = rng.next_float();
+    const auto s = w.sample_direct(emitter, point, u1, rng.next_2d());
+    mean.add(s.pdf > 0 ? s.radiance.g * std::max(0.0f, dot(s.direction, normal)) / s.pdf : 0.0);
+  }
+  return mean;
+}
+
+TEST(AreaLight, PowerUnderTransforms) {
+  // A rectangle of 4 by ½ turned and mirrored: A = 2, Φ = π·A·L.
+  auto desc = empty_scene();
+  shine(desc,
+        add_shape(desc, sd::RectangleDesc{}, Transform::rotate(1, 2, 3, 77) * Transform::scale(-2, 0.25, 1)),
+        {Rgb(3)});
+  // A sphere: A = 4πr² whatever its tessellation.
+  shine(desc, add_shape(desc, sd::SphereDesc{{1, 2, 3}, 0.5f}, Transform::translate(9, 0, 0)), {Rgb(3)});
+  const World w = build(desc);
+  EXPECT_NEAR(emitters::power(w.emitters()[0], 1).r / (kPiD * 2 * 3), 1, 1e-5);
+  EXPECT_NEAR(emitters::power(w.emitters()[1], 1).r / (kPiD * 4 * kPiD * 0.25 * 3), 1, 1e-4);
+}
+
+TEST(AreaLight, SphereAndDiskOverAPoint) {
+  auto desc = empty_scene();
+  shine(desc, add_shape(desc, sd::SphereDesc{{0, 0, 3}, 1}), {Rgb(2)});
+  shine(desc,
+        add_shape(desc, sd::DiskDesc{}, Transform::translate(0, 0, 1) * Transform::rotate(1, 0, 0, 180)),
+        {Rgb(2)});
+  const World w = build(desc);
+  // A facing sphere: E = πL (r/d)². The facets' own directions differ from the sphere's by half a facet, 1.4°
+  // at 64 rings: the profile of the polyhedron is within (π/64)² = 0.24 % of the circle's.
+  expect_mean(irradiance(w, 0, {0, 0, 0}, {0, 0, 1}, 1), kPiD * 2 / 9, 0.0024);
+  // A disk of radius 1 at a distance of 1: E = πL/2; 128 segments lack (2π/128)²/6 = 0.04 % of the area.
+  expect_mean(irradiance(w, 1, {0, 0, 0}, {0, 0, 1}, 2), kPiD, 0.0005);
+}
+
+TEST(AreaLight, ManySpheresKeepTheirPower) {
+  auto desc = empty_scene();
+  for (int k = 0; k < 300; ++k)
+    shine(desc, add_shape(desc, sd::SphereDesc{{static_cast<float>(k), 0, 0}, 0.1f}), {Rgb(1)});
+  const World w = build(desc);
+  EXPECT_LT(w.info().triangles, 2u << 20);
+  for (const auto& e : w.emitters())
+    EXPECT_NEAR(emitters::power(e, 1).g / (kPiD * 4 * kPiD * 0.01), 1,
+                1e-3);  // coordinates of 300 hold 3·10⁻⁵ ± of 0.1
+}
+
+TEST(AreaLight, TexturedRadianceIsExactInEverySample) {
+  const std::string path = ::testing::TempDir() + "lumirank_world_lamp.pfm";
+  film::Image image(4, 4);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) image.at(x, y) = Rgb(static_cast<float>(1 + x + 4 * y));
+  film::write_image(path, {image, {}});
+  auto desc = empty_scene();
+  sd::BitmapTextureDesc bitmap;
+  bitmap.filename = path;
+  bitmap.filter = sd::FilterMode::nearest;
+  const int t = add_texture(desc, bitmap);
+  const int s = add_shape(desc, sd::RectangleDesc{});
+  shine(desc, s, {Rgb(0), t});
+  const World w = build(desc);
+  std::remove(path.c_str());
+  // The mean of 1 … 16 is 8.5, the area 4.
+  Mean weight;
+  for (std::uint64_t i = 0; i < 40000; ++i) {
+    Rng rng(3, Stage::test, i);
+    const float u1 = rng.next_float();
+    const Vec2f up = rng.next_2d(), ud = rng.next_2d();
+    weight.add(w.sample_emission(0, u1, up, ud).weight.g);
+    const auto d = w.sample_direct(0, {0.3f, 0.1f, 2}, u1, up);
+    const auto hit = w.intersect(ray({0.3f, 0.1f, 2}, d.direction));
+    ASSERT_TRUE(hit);
+    // A sample within rounding of a texel's edge may read the neighbour: only the bulk is compared.
+    if (i < 200) {
+      EXPECT_EQ(w.emitted(*hit, -d.direction), d.radiance);
+    }
+  }
+  expect_mean(weight, kPiD * 4 * 8.5);
+  EXPECT_NEAR(emitters::power(w.emitters()[0], 1).g / (kPiD * 4 * 8.5), 1,
+              0.05);  // from 16 points per triangle
+}
+
+TEST(Environment, MapIsReadAndTurned) {
+  const std::string path = ::testing::TempDir() + "lumirank_world_sky.pfm";
+  film::Image image(8, 4, Rgb(0.25f));
+  image.at(2, 1) = Rgb(4);  // longitude 2.5/8 · 2π: towards +x, a little to +z
+  film::write_image(path, {image, {}});
+  auto desc = empty_scene();
+  add_shape(desc, sd::RectangleDesc{});
+  sd::EnvironmentMapDesc map{path, 2, Transform::rotate(0, 1, 0, 90) * Transform::scale(5, 5, 5)};
+  add_emitter(desc, map, "sky");
+  const World w = build(desc);
+  std::remove(path.c_str());
+  ASSERT_EQ(w.environment(), 0);
+  const Vec3f local = emitters::map_direction({2.5f, 1.5f}, 8, 4);
+  EXPECT_GT(local.x, 0.8f);
+  const Vec3f world = Transform::rotate(0, 1, 0, 90).vector(local);
+  EXPECT_NEAR(w.background(world).r, 8, 1e-3);
+  EXPECT_NEAR(w.background({0, -1, 0}).r, 0.5, 1e-5);
+}
+
+TEST(Environment, SeveralAreSummed) {
+  auto desc = empty_scene();
+  add_shape(desc, sd::RectangleDesc{});
+  add_emitter(desc, sd::ConstantEnvironmentDesc{Rgb(1, 0, 0)}, "a");
+  add_emitter(desc, sd::ConstantEnvironmentDesc{Rgb(0, 2, 0)}, "b");
+  sd::SunSkyDesc sky;
+  sky.sun = false;
+  sky.sun_direction = {0.3f, 0.8f, 0.2f};
+  add_emitter(desc, sky, "c");
+  const World w = build(desc);
+  ASSERT_EQ(w.emitters().size(), 1u);
+  EXPECT_EQ(w.emitters()[0].name, "a");
+  EXPECT_EQ(w.background({0, -1, 0}), Rgb(1, 2, 0));
+  const emitters::PreethamSky model(3, normalize(Vec3f{0.3f, 0.8f, 0.2f}));
+  const Rgb zenith = w.background({0, 1, 0}), expected = model.radiance({0, 1, 0}) + Rgb(1, 2, 0);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(zenith[k] / expected[k], 1, 0.01);  // one texel is 0.7° wide
+}
+
+TEST(Sun, ShinesFromItsDirection) {
+  auto desc = empty_scene();
+  add_shape(desc, sd::RectangleDesc{});
+  sd::SunSkyDesc day;
+  day.sun_direction = {0, 2, 2};
+  day.to_world = Transform::rotate(1, 0, 0, 90);  // z up: local +y becomes +z, local +z becomes -y
+  day.sun_scale = 3, day.sun_radius_scale = 2;
+  add_emitter(desc, day, "day");
+  const World w = build(desc);
+  ASSERT_EQ(w.emitters().size(), 2u);
+  EXPECT_EQ(w.environment(), 1);
+  EXPECT_EQ(w.emitters()[0].group, w.emitters()[1].group);
+  const auto& sun = std::get<emitters::DirectionalEmitter>(w.emitters()[0].kind);
+  const Vec3f towards = normalize(Vec3f{0, -1, 1});
+  EXPECT_LT(length(sun.direction + towards), 1e-6f);
+  EXPECT_NEAR(std::acos(sun.cos_half_angle), 2 * 0.2679 * kPiD / 180, 1e-4);
+  // The irradiance is that of the undilated disc: L π sin²α.
+  const double expected = 3 * luminance(emitters::sun_radiance(3, static_cast<float>(kPiD / 4))) * kPiD *
+                          std::pow(std::sin(0.2679 * kPiD / 180), 2);
+  EXPECT_NEAR(luminance(sun.irradiance) / expected, 1, 1e-3);
+  // The mean over the disc of the facing irradiance.
+  Mean mean;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    Rng rng(4, Stage::test, i);
+    const auto s = w.sample_direct(0, {0, 0, 0}, 0, rng.next_2d());
+    EXPECT_GT(dot(s.direction, towards), sun.cos_half_angle - 1e-6f);
+    mean.add(s.radiance.g * dot(s.direction, towards));
+  }
+  expect_mean(mean, sun.irradiance.g);
+}
+
+TEST(World, EmissionStartsOutsideOfTheScene) {
+  auto desc = empty_scene();
+  add_shape(desc, sd::SphereDesc{{4, 5, 6}, 2});
+  add_emitter(desc, sd::ConstantEnvironmentDesc{});
+  add_emitter(desc, sd::DirectionalLightDesc{{1, 1, 0}, Rgb(1)});
+  const World w = build(desc);
+  for (int e = 0; e < 2; ++e)
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      Rng rng(5, Stage::test, i);
+      const Vec2f up = rng.next_2d(), ud = rng.next_2d();
+      const auto s = w.sample_emission(e, 0, up, ud);
+      EXPECT_GE(length(s.origin - Vec3f{4, 5, 6}), 2);
+      EXPECT_NEAR(length(s.direction), 1, 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace lumirank::world
