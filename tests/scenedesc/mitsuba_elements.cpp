@@ -287,5 +287,22 @@ TEST(SolarPosition, TheDialectsAgreeOnEastAndUp) {
   EXPECT_NEAR(new_sun.z, old_sun.y, 1e-6);
 }
 
+// A stated sun direction is one of the world, whatever to_world turns the sky by.
+TEST(SolarPosition, AStatedDirectionIsInTheWorld) {
+  for (const char* version : {"0.6.0", "3.0.0"}) {
+    const std::string name = version[0] == '0' ? "toWorld" : "to_world",
+                      sun = version[0] == '0' ? "sunDirection" : "sun_direction";
+    const SceneDesc scene = parse(kCamera + "<emitter type=\"sunsky\"><vector name=\"" + sun +
+                                      "\" value=\"0, 3, 4\"/><transform name=\"" + name +
+                                      "\"><rotate y=\"1\" angle=\"30\"/></transform></emitter>",
+                                  version);
+    const auto& desc = std::get<SunSkyDesc>(scene.emitters.at(0).kind);
+    const Vec3f world = desc.to_world.vector(desc.sun_direction);
+    EXPECT_NEAR(world.x, 0, 1e-6);
+    EXPECT_NEAR(world.y, 0.6, 1e-6);
+    EXPECT_NEAR(world.z, 0.8, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace lumirank::scenedesc

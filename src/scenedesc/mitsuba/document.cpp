@@ -110,14 +110,14 @@ class Loader {
       p = next == end ? end : next + 1;
     }
     const Dialect dialect{part[0], part[1], part[2]};
-    const bool known = (dialect.major == 0 && dialect.minor >= 4 && dialect.minor <= 6) ||
+    const bool known = (dialect.major == 0 && dialect.minor >= 5 && dialect.minor <= 6) ||
                        dialect.major == 2 || dialect.major == 3;
     if (!good || p != end)
       throw InputError(where, "version \"" + text + "\" is not a version number",
                        "write 0.6.0 or 3.0.0, say");
     if (!known)
       throw InputError(where, "version " + text + " of the Mitsuba format is not known",
-                       "0.4 to 0.6, 2.x and 3.x are");
+                       "0.5, 0.6, 2.x and 3.x are; Mitsuba can upgrade older ones");
     if (main)
       document_.dialect = dialect;
     else if (dialect.camel_case() != document_.dialect.camel_case())
