@@ -8,10 +8,6 @@
 namespace lumirank::geometry {
 namespace {
 
-// Copies of one mesh are flattened into the top scene up to this many triangles in all: overlapping instances
-// cost more time than flat triangles, which cost memory.
-constexpr std::size_t kFlattenLimit = std::size_t{1} << 18;
-
 void on_error(void* user, RTCError, const char* message) {
   auto& first = *static_cast<std::string*>(user);
   if (first.empty()) first = message ? message : "unknown error";
@@ -93,7 +89,7 @@ embree::Scene RayScene::Impl::build_part(std::uint32_t mesh, Blocking blocking_k
   return part;
 }
 
-void RayScene::Impl::build() {
+void RayScene::Impl::build(std::size_t flatten_limit) {
   std::vector<std::size_t> copies(meshes.size());
   std::size_t triangles = 0;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
@@ -124,7 +120,7 @@ void RayScene::Impl::build() {
     const std::optional<Transform> inverse = p.to_world.inverse();
     // A transform that flattens the mesh cannot be undone on rays, so it must be applied to the vertices.
     if (p.to_world.is_identity() || !inverse || copies[p.mesh] == 1 ||
-        copies[p.mesh] * mesh.triangle_count() <= kFlattenLimit) {
+        copies[p.mesh] * mesh.triangle_count() <= flatten_limit) {
       const bool moved = !p.to_world.is_identity();
       rtcAttachGeometryByID(top.get(), triangles_of(mesh, moved ? &p.to_world : nullptr, p.blocking).get(),
                             id);

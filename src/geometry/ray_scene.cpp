@@ -1,6 +1,7 @@
 #include "geometry/ray_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <tuple>
 
@@ -16,6 +17,17 @@ RTCRay to_embree(const Ray& ray) {
   r.tnear = ray.t_min, r.tfar = ray.t_max;
   r.time = 0, r.mask = 0xffffffffu, r.id = 0, r.flags = 0;
   return r;
+}
+
+// Embree's own bound of what it can trace; some builds of it (Debian's) abort beyond, so such rays are
+// answered here.
+constexpr float kLargest = 1.8e18f;
+
+bool can_trace(const RTCRay& r) {
+  bool good = true;
+  for (const float x : {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z})
+    good &= std::abs(x) <= kLargest;
+  return good && r.tnear >= 0 && r.tnear <= r.tfar;
 }
 
 Ray segment(const ShadowPacket& p, int k) {
@@ -43,12 +55,12 @@ void closest(RTCScene scene, RTCRayHit& best) {
 }  // namespace
 
 RayScene::RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements,
-                   PassageCallbacks callbacks)
+                   PassageCallbacks callbacks, std::size_t flatten_limit)
     : impl_(std::make_unique<Impl>()) {
   impl_->meshes = std::move(meshes);
   impl_->placements = std::move(placements);
   impl_->callbacks = std::move(callbacks);
-  impl_->build();
+  impl_->build(flatten_limit);
 }
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
@@ -63,6 +75,7 @@ std::size_t RayScene::memory_bytes() const { return static_cast<std::size_t>(imp
 std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   RTCRayHit query;
   query.ray = to_embree(ray);
+  if (!can_trace(query.ray)) return std::nullopt;
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   closest(impl_->blocking.get(), query);
   if (impl_->smooth) closest(impl_->smooth.get(), query);
@@ -80,6 +93,7 @@ bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
   QueryContext context = context_for(*impl_);
   context.keys = &key;
   RTCRay query = to_embree(ray);
+  if (!can_trace(query)) return true;
   embree::occluded1(impl_->blocking.get(), context.embree, query);
   return query.tfar < 0;
 }
@@ -88,6 +102,7 @@ std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
   QueryContext context = context_for(*impl_);
   context.keys = packet.key;
   RTCRay16 rays;
+  alignas(64) int valid[16];
   std::memcpy(rays.org_x, packet.ox, sizeof packet.ox);
   std::memcpy(rays.org_y, packet.oy, sizeof packet.oy);
   std::memcpy(rays.org_z, packet.oz, sizeof packet.oz);
@@ -101,11 +116,17 @@ std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
     rays.mask[k] = 0xffffffffu;
     rays.id[k] = k;
     rays.flags[k] = 0;
+    // Bitwise, so that the loop becomes a few vector instructions.
+    const bool good = (std::abs(packet.ox[k]) <= kLargest) & (std::abs(packet.oy[k]) <= kLargest) &
+                      (std::abs(packet.oz[k]) <= kLargest) & (std::abs(packet.dx[k]) <= kLargest) &
+                      (std::abs(packet.dy[k]) <= kLargest) & (std::abs(packet.dz[k]) <= kLargest) &
+                      (rays.tfar[k] >= kShadowEpsilon);
+    valid[k] = good ? packet.valid[k] : 0;
   }
-  embree::occluded16_coherent(packet.valid, impl_->blocking.get(), context.embree, rays);
+  embree::occluded16_coherent(valid, impl_->blocking.get(), context.embree, rays);
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k)
-    visible |= static_cast<unsigned>(packet.valid[k] != 0 && rays.tfar[k] >= 0) << k;
+    visible |= static_cast<unsigned>((valid[k] != 0) & (rays.tfar[k] >= 0)) << k;
   return static_cast<std::uint16_t>(visible);
 }
 
@@ -117,6 +138,7 @@ Rgb RayScene::transmittance(const Ray& ray) const {
   QueryContext context = context_for(*impl_);
   context.crossed = &crossed;
   RTCRay query = to_embree(ray);
+  if (!can_trace(query)) return product;
   embree::occluded1(impl_->smooth.get(), context.embree, query);
   // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.
   std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {

@@ -68,9 +68,14 @@ class RayScene {
     std::function<Rgb(const Hit&, Vec3f w)> transmittance;
   };
 
+  // Copies of one mesh are traced in world space if they have at most this many triangles in all: overlapping
+  // instances cost more time than flat triangles, which cost memory.
+  static constexpr std::size_t kFlattenLimit = std::size_t{1} << 18;
+
   // Meshes placed once, or often but small, are traced in world space; the others as instances. Throws
   // InputError when there is no triangle at all or a transform is not affine.
-  RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements, PassageCallbacks callbacks);
+  RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements, PassageCallbacks callbacks,
+           std::size_t flatten_limit = kFlattenLimit);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -80,7 +85,8 @@ class RayScene {
   Bounds3f bounds() const;
   bool has_smooth() const;  // some placement attenuates
 
-  // The closest hit with t in [t_min, t_max], whatever the placement's blocking.
+  // Rays that are not finite (or beyond 1.8e18) or have t_min < 0 or t_min > t_max hit nothing and are
+  // occluded. The closest hit with t in [t_min, t_max], whatever the placement's blocking.
   std::optional<Hit> intersect(const Ray& ray) const;
   // True if something blocks in [t_min, t_max] (no ε is added); cut-outs are decided by `key`.
   bool occluded(const Ray& ray, std::uint64_t key) const;

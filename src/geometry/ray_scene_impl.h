@@ -24,7 +24,7 @@ struct RayScene::Impl {
   embree::Scene blocking, smooth;    // smooth is null if no placement attenuates
   Bounds3f bounds;
 
-  void build();
+  void build(std::size_t flatten_limit);
 
  private:
   void open_device();
