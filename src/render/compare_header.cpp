@@ -20,7 +20,7 @@ std::string reference_warning(const CompareResults& results, const CompareSummar
   if (doubtful == 0) return {};
   return "<p class=\"warn\">The reference's own error is more than a fifth of the relative L1 error of " +
          std::to_string(doubtful) + " of " + std::to_string(summary.groups.size()) +
-         " settings: their true errors are lower than the numbers here.</p>\n";
+         " settings, so its own noise weighs in those numbers.</p>\n";
 }
 
 }  // namespace
