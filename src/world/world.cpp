@@ -37,6 +37,14 @@ std::size_t bytes_of(const geometry::TriangleMesh& m) {
          m.indices.size() * sizeof(std::uint32_t);
 }
 
+std::size_t bytes_of(const emitters::Emitter& emitter) {
+  if (const auto* area = std::get_if<emitters::AreaEmitter>(&emitter.kind))
+    return area->triangles.size() * (sizeof(emitters::AreaEmitter::Triangle) + sizeof(double));
+  if (const auto* sky = std::get_if<emitters::EnvironmentEmitter>(&emitter.kind))
+    return sky->radiance.size() * (sizeof(Rgb) + sizeof(double));
+  return 0;
+}
+
 void step(const Sinks& sinks, double fraction) {
   if (sinks.cancelled()) throw Cancelled();
   sinks.report("scene", fraction);
@@ -112,6 +120,10 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   }
   w.environment = add_lights(desc, names, notes, w.emitters);
   w.radiance.resize(w.emitters.size());
+  for (std::size_t k = 0; k < w.emitters.size(); ++k) {
+    const auto* sun = std::get_if<emitters::DirectionalEmitter>(&w.emitters[k].kind);
+    if (sun && sun->cos_half_angle < 1) w.suns.push_back(k);
+  }
   if (w.emitters.empty())
     notes.warn(SourceLocation{desc.source_file, 0}, "the scene has no light", "a black picture");
 
@@ -124,6 +136,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   w.info.emitters = w.emitters.size();
   w.info.memory_bytes = textures.memory_bytes();
   for (const auto& mesh : geometry.meshes) w.info.memory_bytes += bytes_of(mesh);
+  for (const auto& emitter : w.emitters) w.info.memory_bytes += bytes_of(emitter);
   step(sinks, 0.7);
 
   geometry::RayScene::PassageCallbacks callbacks;
@@ -165,6 +178,17 @@ Rgb World::background(Vec3f direction) const {
   if (impl_->environment < 0) return Rgb{};
   const auto& kind = impl_->emitters[static_cast<std::size_t>(impl_->environment)].kind;
   return std::get<emitters::EnvironmentEmitter>(kind).eval(direction);
+}
+
+Rgb World::sun_disc(Vec3f direction) const {
+  Rgb sum;
+  for (const std::size_t k : impl_->suns) {
+    const auto& sun = std::get<emitters::DirectionalEmitter>(impl_->emitters[k].kind);
+    // E = L π sin²α on a facing surface.
+    if (dot(direction, sun.direction) < -sun.cos_half_angle)
+      sum += sun.irradiance / (kPi * (1 - square(sun.cos_half_angle)));
+  }
+  return sum;
 }
 
 emitters::DirectSample World::sample_direct(int emitter, Vec3f point, float u1, Vec2f u2) const {

@@ -57,6 +57,9 @@ class World {
   Rgb emitted(const SurfaceHit& at, Vec3f wo) const;
   // Radiance that arrives along a ray that leaves the scene (environment; delta directional light contributes nothing).
   Rgb background(Vec3f direction) const;
+  // Radiance of the discs of suns (directional emitters with a half angle) in a direction. Suns are sampled as delta lights, so
+  // this counts only where a ray leaves the scene after nothing but specular events from the eye.
+  Rgb sun_disc(Vec3f direction) const;
   // Direct samples of an area emitter read the texture here; for other emitters as in emitters::sample_direct.
   emitters::DirectSample sample_direct(int emitter, Vec3f point, float u1, Vec2f u2) const;
   emitters::Emission sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const;

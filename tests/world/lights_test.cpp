@@ -159,6 +159,12 @@ TEST(Sun, ShinesFromItsDirection) {
   const double expected = 3 * luminance(emitters::sun_radiance(3, static_cast<float>(kPiD / 4))) * kPiD *
                           std::pow(std::sin(0.2679 * kPiD / 180), 2);
   EXPECT_NEAR(luminance(sun.irradiance) / expected, 1, 1e-3);
+  // Seen directly, the disc has the radiance that integrates to the irradiance: E = L π sin²α. The half angle
+  // comes from a float cosine near 1, whose rounding of 6·10⁻⁸ is 1.4·10⁻³ of 1 - cos α = 4.4·10⁻⁵.
+  const double sine = std::sin(2 * 0.2679 * kPiD / 180);
+  EXPECT_NEAR(w.sun_disc(towards).g / (sun.irradiance.g / (kPiD * sine * sine)), 1, 3e-3);
+  EXPECT_EQ(w.sun_disc(normalize(towards + Vec3f{0.02f, 0, 0})), Rgb(0));
+  EXPECT_EQ(w.sun_disc(-towards), Rgb(0));
   // The mean over the disc of the facing irradiance.
   Mean mean;
   for (std::uint64_t i = 0; i < 1000; ++i) {
