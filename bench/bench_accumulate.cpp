@@ -1,0 +1,270 @@
+// How near the sum of columns comes to bare Embree: the same receiver-light pairs, once through
+// SceneMatrix::accumulate and once through a loop that only traces their shadow rays, in packets of 16 with
+// the coherent flag, prepared within the loop, pairs with a negative cosine at either end left out. Both in
+// one run, alternating. Also single rows.
+//
+//   bench_accumulate [scene file] [benchmark options]
+//   environment: LIGHTS (100000), COLUMNS (32), WIDTH (800), HEIGHT (600), SPP (4), THREADS (all)
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/timer.h"
+#include "geometry/embree.h"
+#include "scenedesc/readers.h"
+#include "transport/kernels/lanes.h"
+#include "transport/receivers.h"
+#include "transport/scene_matrix.h"
+#include "transport/virtual_lights.h"
+#include "world/world.h"
+
+namespace {
+
+using namespace lumirank;
+using transport::Lane;
+using transport::Lane3;
+using transport::LightKind;
+
+int setting(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::atoi(text) : otherwise;
+}
+
+// All that blocks, as one flat Embree scene.
+struct BareScene {
+  geometry::embree::Device device{rtcNewDevice(nullptr)};
+  geometry::embree::Scene scene{rtcNewScene(device.get())};
+  std::vector<geometry::TriangleMesh> meshes;
+
+  explicit BareScene(const geometry::RayScene& rays) {
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    for (const geometry::Placement& p : rays.placements()) {
+      if (p.blocking == geometry::Blocking::smooth) continue;
+      meshes.push_back(rays.meshes()[p.mesh]);
+      for (Vec3f& v : meshes.back().positions) v = p.to_world.point(v);
+      meshes.back().positions.reserve(meshes.back().positions.size() + 1);
+    }
+    for (const geometry::TriangleMesh& mesh : meshes) {
+      if (mesh.indices.empty()) continue;
+      geometry::embree::Geometry g(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+      rtcSetSharedGeometryBuffer(g.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(),
+                                 0, sizeof(Vec3f), mesh.positions.size());
+      rtcSetSharedGeometryBuffer(g.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0,
+                                 3 * sizeof(std::uint32_t), mesh.triangle_count());
+      rtcCommitGeometry(g.get());
+      rtcAttachGeometry(scene.get(), g.get());
+    }
+    rtcCommitScene(scene.get());
+  }
+};
+
+// Receivers as the bare loop reads them.
+struct BareReceivers {
+  static constexpr std::size_t kTile = 2048;
+  std::vector<float> px, py, pz, nx, ny, nz, ox, oy, oz;
+  explicit BareReceivers(const transport::Receivers& r) {
+    const std::size_t padded = (r.size() + 15) / 16 * 16;
+    for (auto* v : {&px, &py, &pz, &nx, &ny, &nz, &ox, &oy, &oz}) v->assign(padded, 0);
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      const Vec3f p = r.position[i], n = r.normal[i], o = world::World::offset_origin(p, r.ng[i], n);
+      px[i] = p.x, py[i] = p.y, pz[i] = p.z, nx[i] = n.x, ny[i] = n.y, nz[i] = n.z;
+      ox[i] = o.x, oy[i] = o.y, oz[i] = o.z;
+    }
+  }
+  std::size_t size() const { return px.size(); }
+};
+
+struct BareResult {
+  std::uint64_t rays = 0, visible = 0;
+  friend BareResult operator+(BareResult a, BareResult b) { return {a.rays + b.rays, a.visible + b.visible}; }
+};
+
+struct BareLight {
+  bool far, one_sided;
+  Vec3f position, normal, target;
+};
+
+BareResult trace_tile(const BareScene& bare, const BareReceivers& r, const BareLight& light,
+                      std::size_t begin, std::size_t end) {
+  std::uint32_t picked[BareReceivers::kTile + 16];
+  std::uint32_t* last = picked;
+  const Lane3 y = transport::splat(light.position), ny = transport::splat(light.normal);
+  for (std::size_t i = begin; i < end; i += 16) {
+    const Lane3 n{transport::load(&r.nx[i]), transport::load(&r.ny[i]), transport::load(&r.nz[i])};
+    const Lane3 p{transport::load(&r.px[i]), transport::load(&r.py[i]), transport::load(&r.pz[i])};
+    const Lane3 w = light.far ? transport::splat(light.target) : y - p;
+    auto keep = dot(n, w) > Lane{};
+    if (light.one_sided) keep &= dot(ny, w) < Lane{};
+    last = transport::append_set_bits(transport::bits(keep), static_cast<std::uint32_t>(i), last);
+  }
+  BareResult result;
+  result.rays = static_cast<std::uint64_t>(last - picked);
+  alignas(64) RTCRay16 rays;
+  alignas(64) int valid[16];
+  for (const std::uint32_t* at = picked; at < last; at += 16) {
+    const auto count = static_cast<int>(std::min<std::ptrdiff_t>(16, last - at));
+    for (int k = 0; k < 16; ++k) {
+      const std::uint32_t i = at[k < count ? k : 0];
+      rays.org_x[k] = r.ox[i], rays.org_y[k] = r.oy[i], rays.org_z[k] = r.oz[i];
+      rays.dir_x[k] = light.far ? light.target.x : light.target.x - r.ox[i];
+      rays.dir_y[k] = light.far ? light.target.y : light.target.y - r.oy[i];
+      rays.dir_z[k] = light.far ? light.target.z : light.target.z - r.oz[i];
+      rays.tnear[k] = 1e-4f, rays.tfar[k] = light.far ? kInfinity : 1 - 1e-4f;
+      rays.time[k] = 0, rays.mask[k] = 0xffffffffu, rays.id[k] = 0, rays.flags[k] = 0;
+      valid[k] = k < count ? -1 : 0;
+    }
+    geometry::embree::Context context;
+    geometry::embree::initialise(context);
+    geometry::embree::occluded16_coherent(valid, bare.scene.get(), context, rays);
+    for (int k = 0; k < count; ++k) result.visible += rays.tfar[k] >= 0;
+  }
+  return result;
+}
+
+BareResult trace_bare(const BareScene& bare, const BareReceivers& receivers,
+                      const transport::VirtualLights& lights, std::span<const matrix::ScaledColumn> columns) {
+  return parallel_sum(
+      receivers.size(), BareReceivers::kTile, BareResult{}, [&](std::size_t begin, std::size_t end) {
+        BareResult sum;
+        for (const matrix::ScaledColumn& c : columns) {
+          const LightKind kind = lights.kind[c.column];
+          BareLight light;
+          light.far = kind == LightKind::directional;
+          light.one_sided = kind == LightKind::oriented || kind == LightKind::surface;
+          light.position = lights.position[c.column];
+          light.normal = lights.normal[c.column];
+          light.target = light.far ? -light.normal
+                                   : world::World::offset_origin(light.position, light.normal, light.normal);
+          if (kind == LightKind::omni || kind == LightKind::spot) light.target = light.position;
+          sum = sum + trace_tile(bare, receivers, light, begin, end);
+        }
+        return sum;
+      });
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+struct Bench {
+  scenedesc::SceneDesc desc;
+  world::World world;
+  transport::Receivers receivers;
+  transport::VirtualLights lights;
+  transport::SceneMatrix matrix;
+  BareScene bare;
+  BareReceivers bare_receivers;
+
+  explicit Bench(const std::string& file)
+      : desc(read(file)),
+        world(build(desc)),
+        receivers(
+            transport::trace_receivers(world, world::Camera(desc.sensors.at(0)), {1, setting("SPP", 4)})),
+        lights(make_lights(world)),
+        matrix(world, receivers, lights, {}),
+        bare(world.rays()),
+        bare_receivers(receivers) {
+    std::size_t scattering_rows = 0, scattering_columns = 0;
+    for (const std::uint32_t c : receivers.closure) scattering_rows += c != transport::Receivers::kLambertian;
+    for (std::size_t j = 0; j < lights.size(); ++j)
+      scattering_columns +=
+          lights.kind[j] == LightKind::surface && lights.closure[j] != transport::VirtualLights::kLambertian;
+    std::printf("%s: %zu triangles, %zu receivers (%.0f %% not lambertian), %zu lights (%.0f %%)\n",
+                file.c_str(), world.info().triangles, receivers.size(),
+                100.0 * static_cast<double>(scattering_rows) / static_cast<double>(receivers.size()),
+                lights.size(),
+                100.0 * static_cast<double>(scattering_columns) / static_cast<double>(lights.size()));
+  }
+
+  static scenedesc::SceneDesc read(const std::string& file) {
+    scenedesc::SceneDesc desc = scenedesc::read_scene(file);
+    desc.sensors.at(0).film.width = setting("WIDTH", 800);
+    desc.sensors.at(0).film.height = setting("HEIGHT", 600);
+    return desc;
+  }
+  static world::World build(const scenedesc::SceneDesc& desc) {
+    std::vector<scenedesc::Warning> warnings;
+    return world::World::build(desc, {}, warnings);
+  }
+  static transport::VirtualLights make_lights(const world::World& world) {
+    transport::LightSettings settings;
+    settings.count = static_cast<std::size_t>(setting("LIGHTS", 100000));
+    return transport::trace_virtual_lights(world, settings);
+  }
+
+  std::vector<matrix::ScaledColumn> pick_columns() const {
+    Rng rng(1, Stage::benchmark);
+    std::vector<matrix::ScaledColumn> columns(static_cast<std::size_t>(setting("COLUMNS", 32)));
+    for (auto& c : columns) c.column = static_cast<matrix::Index>(rng.next_below(lights.size()));
+    return columns;
+  }
+};
+
+void columns_against_bare(benchmark::State& state, const Bench& bench) {
+  const auto columns = bench.pick_columns();
+  std::vector<Rgb> sums(bench.receivers.size());
+  std::vector<double> bare_rates, rates, ratios;
+  const auto& rays = bench.matrix.counters().rays_shadow;
+  for (auto _ : state) {
+    const Timer bare_timer;
+    const BareResult bare = trace_bare(bench.bare, bench.bare_receivers, bench.lights, columns);
+    const double bare_seconds = bare_timer.seconds();
+    const std::uint64_t before = rays;
+    const Timer timer;
+    bench.matrix.accumulate(columns, sums, {});
+    const double seconds = timer.seconds();
+    bare_rates.push_back(1e-6 * static_cast<double>(bare.rays) / bare_seconds);
+    rates.push_back(1e-6 * static_cast<double>(rays - before) / seconds);
+    ratios.push_back(rates.back() / bare_rates.back());
+    state.SetIterationTime(seconds);
+    state.counters["culled"] =
+        1 - static_cast<double>(rays - before) / static_cast<double>(columns.size() * bench.receivers.size());
+  }
+  state.counters["bare Mrays/s"] = median(bare_rates);
+  state.counters["accumulate Mrays/s"] = median(rates);
+  state.counters["ratio"] = median(ratios);
+}
+
+void rows(benchmark::State& state, const Bench& bench) {
+  Rng rng(2, Stage::benchmark);
+  std::vector<Rgb> out(bench.lights.size());
+  const auto& rays = bench.matrix.counters().rays_shadow;
+  std::uint64_t traced = 0;
+  double seconds = 0;
+  for (auto _ : state) {
+    const auto i = static_cast<matrix::Index>(rng.next_below(bench.receivers.size()));
+    const std::uint64_t before = rays;
+    const Timer timer;
+    bench.matrix.row(i, out, matrix::Part::value);
+    seconds += timer.seconds();
+    traced += rays - before;
+    benchmark::DoNotOptimize(out.data());
+  }
+  state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced) / seconds;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  const std::string file = argc > 1 ? argv[1] : std::string(LUMIRANK_EXAMPLES) + "/interior.xml";
+  lumirank::with_threads(setting("THREADS", 0), [&] {
+    const Bench bench(file);
+    benchmark::RegisterBenchmark("columns",
+                                 [&](benchmark::State& state) { columns_against_bare(state, bench); })
+        ->UseManualTime()
+        ->Iterations(7)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("rows", [&](benchmark::State& state) { rows(state, bench); })
+        ->Iterations(50)
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RunSpecifiedBenchmarks();
+  });
+}
