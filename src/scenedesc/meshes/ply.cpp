@@ -70,7 +70,7 @@ VertexLayout layout_of(const PlyElement& element, const std::string& filename) {
 void check_count(const PlyElement& element, PlyBody& body) {
   const std::size_t size = element.min_size(body.is_text() ? PlyFormat::ascii : PlyFormat::little_endian);
   body.enter(element, 0);
-  if (size > 0 && element.count > (body.bytes_left() + 1) / size)
+  if (size > 0 && element.count > (body.bytes_left() + body.is_text()) / size)
     body.fail("the header promises " + std::to_string(element.count) +
               " of these, but the file is too short");
 }
