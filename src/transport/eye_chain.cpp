@@ -85,9 +85,8 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
 }
 
 Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, std::vector<EyeVertex>& out,
-                     ClosurePool& pool, FirstHit& first) {
+                     ClosurePool& pool, FirstHit* first) {
   Rgb emission{0};
-  first = {};
   pending_.clear();
   if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0});
   for (bool from_eye = true; !pending_.empty(); from_eye = false) {
@@ -101,9 +100,9 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, s
     const Vec3f wo = -s.ray.direction;
     if (hit->emitter >= 0) emission += s.weight * world_.emitted(*hit, wo);
     const Closure closure = world_.materials().closure(hit->material, hit->point, wo);
-    if (from_eye) {
+    if (from_eye && first) {
       const float side = dot(closure.frame.n, wo) < 0 ? -1.0f : 1.0f;
-      first = {scatter::albedo(closure, wo), closure.frame.n * side, hit->point.position, hit->hit.t};
+      *first = {scatter::albedo(closure, wo), closure.frame.n * side, hit->point.position, hit->hit.t};
     }
     const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
     // Where the two normals disagree about the side of wo, the smooth lobes are 0 (scatter::eval).

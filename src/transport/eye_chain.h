@@ -37,8 +37,9 @@ class EyeChain {
   EyeChain(const world::World& world, const ChainSettings& settings) : world_(world), settings_(settings) {}
 
   // Appends the receivers of `sample` to `out`, their closures to `pool`; returns the emission that is seen.
+  // `first`: what the AOVs want to know, or nullptr (the albedo of glossy surfaces is not cheap).
   Rgb follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, std::vector<EyeVertex>& out,
-             ClosurePool& pool, FirstHit& first);
+             ClosurePool& pool, FirstHit* first);
 
  private:
   struct Segment {

@@ -5,7 +5,6 @@
 #include <variant>
 
 #include "scatter/closure.h"
-#include "transport/sequence.h"
 
 namespace lumirank::transport {
 namespace {
@@ -46,14 +45,22 @@ LightRecord surface_light(const Vec3f& position, const Closure& closure, Vec3f i
 
 }  // namespace
 
-void ParticleTracer::trace(std::size_t path, LightBatch& batch, PathTally* tally) const {
-  Rng rng(settings_.seed, settings_.stage, path);
-  const auto paths = static_cast<double>(settings_.paths);
-  const auto start = choice_.draw((static_cast<double>(path) + rng.next_double()) / paths);
-  const Sequence4 sequence(settings_.seed, settings_.stage, ~static_cast<std::uint64_t>(start.emitter));
-  const auto emission =
-      world_.sample_emission(start.emitter, start.remapped, sequence.first(path), sequence.second(path));
-  Rgb flux = emission.weight * static_cast<float>(1 / (start.probability * paths));
+EmissionGuide::Start ParticleTracer::trace(std::size_t path, LightBatch& batch, PathTally* tally) const {
+  Rng rng(settings_.seed, settings_.stage, settings_.first_id + path);
+  const double u = (static_cast<double>(path) + rng.next_double()) / static_cast<double>(settings_.paths);
+  const auto start = settings_.guide->draw(u, path, settings_.seed ^ settings_.first_id, settings_.stage);
+  follow(start, rng, batch, tally);
+  return start;
+}
+
+void ParticleTracer::follow(const EmissionGuide::Start& from, Rng& rng, LightBatch& batch,
+                            PathTally* tally) const {
+  const auto start = choice_.draw(from.emitter);
+  const auto emission = world_.sample_emission(start.emitter, start.remapped, {from.rest[0], from.rest[1]},
+                                               {from.rest[2], from.rest[3]});
+  Rgb flux =
+      emission.weight *
+      static_cast<float>(1 / (start.probability * from.density * static_cast<double>(settings_.paths)));
   const float level = max_component(flux);
   if (!(level > 0)) return;
 

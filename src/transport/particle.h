@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/random.h"
+#include "transport/emission_guide.h"
 #include "transport/emitter_choice.h"
 #include "transport/light_record.h"
 #include "world/world.h"
@@ -14,8 +15,10 @@ namespace lumirank::transport {
 struct ParticleSettings {
   std::uint64_t seed = 1;
   Stage stage = Stage::particles;
-  std::size_t paths = 1;  // powers are divided by it
-  int deepest = -1;       // greatest depth of a light; -1: unlimited
+  std::size_t paths = 1;                 // powers are divided by it
+  int deepest = -1;                      // greatest depth of a light; -1: unlimited
+  std::uint64_t first_id = 0;            // random numbers belong to first_id + path
+  const EmissionGuide* guide = nullptr;  // not owned; nullptr: uniform
 };
 
 // What a path met, for the pilot.
@@ -27,16 +30,22 @@ struct PathTally {
 class ParticleTracer {
  public:
   ParticleTracer(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings)
-      : world_(world), choice_(choice), settings_(settings) {}
+      : world_(world), choice_(choice), settings_(settings) {
+    if (settings_.guide == nullptr) settings_.guide = &uniform_;
+  }
+  ParticleTracer(const ParticleTracer&) = delete;
 
-  // Path number `path` of settings.paths: its lights are appended to `batch`. A function of (seed, stage,
-  // path).
-  void trace(std::size_t path, LightBatch& batch, PathTally* tally = nullptr) const;
+  // Path number `path` of settings.paths: its lights are appended to `batch`. A function of (seed,
+  // stage, path, guide). Returns where it started.
+  EmissionGuide::Start trace(std::size_t path, LightBatch& batch, PathTally* tally = nullptr) const;
 
  private:
+  void follow(const EmissionGuide::Start& start, Rng& rng, LightBatch& batch, PathTally* tally) const;
+
   const world::World& world_;
   const EmitterChoice& choice_;
   ParticleSettings settings_;
+  EmissionGuide uniform_;
 };
 
 }  // namespace lumirank::transport

@@ -131,7 +131,7 @@ class ReceiverTracer {
       FirstHit first;
       result_.emission[sample] =
           chain.follow(camera_.ray(on_film, place.lens), static_cast<std::uint32_t>(sample), rng,
-                       piece.vertices, piece.pool, first);
+                       piece.vertices, piece.pool, settings_.first_hits ? &first : nullptr);
       if (!settings_.first_hits) continue;
       result_.first_albedo[sample] = first.albedo;
       result_.first_normal[sample] = first.normal;

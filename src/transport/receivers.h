@@ -19,7 +19,7 @@ struct ReceiverSettings {
   int spp = 4;         // film samples per pixel, stratified √spp × √spp when square
   int max_depth = -1;  // Mitsuba's count
   int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // 0: the whole film
-  bool first_hits = true;  // keep the first_… arrays (40 B per sample), for AOVs
+  bool first_hits = true;  // keep the first_… arrays, for AOVs: 40 B and some µs per sample
   // Specular vertices at which both reflection and refraction are followed; at later ones, one is drawn.
   int max_splits = 3;
 };

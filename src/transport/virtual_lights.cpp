@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "transport/emitter_lights.h"
+#include "transport/guide_pilot.h"
 #include "transport/neighbour_distance.h"
 #include "transport/particle.h"
 
@@ -28,14 +29,15 @@ struct Pilot {
   double direct_share = 1;  // of the power: what arrives from emitters over that plus what surfaces send on
 };
 
-Pilot run_pilot(const world::World& world, const EmitterChoice& choice, std::uint64_t seed, int deepest) {
+Pilot run_pilot(const world::World& world, const EmitterChoice& choice, const EmissionGuide& guide,
+                std::uint64_t seed, int deepest) {
   struct Sums {
     double lights = 0, first = 0, scattered = 0;
     Sums operator+(const Sums& o) const {
       return {lights + o.lights, first + o.first, scattered + o.scattered};
     }
   };
-  const ParticleTracer tracer(world, choice, {seed, Stage::pilot, kPilotPaths, deepest});
+  const ParticleTracer tracer(world, choice, {seed, Stage::pilot, kPilotPaths, deepest, 0, &guide});
   const Sums sums =
       parallel_sum(kPilotPaths, std::size_t{256}, Sums{}, [&](std::size_t begin, std::size_t end) {
         LightBatch batch;
@@ -120,8 +122,10 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
   const int deepest = unlimited ? -1 : settings.max_depth - 2;
 
   Pilot pilot;
+  EmissionGuide guide;
   if (indirect) {
-    pilot = run_pilot(world, choice, settings.seed, deepest);
+    if (settings.receivers) guide = learn_guide(world, choice, *settings.receivers, settings.seed, deepest);
+    pilot = run_pilot(world, choice, guide, settings.seed, deepest);
     // Nothing that the emitters reach scatters: all lights may go to them.
     if (pilot.lights_per_path == 0 && direct) indirect = false;
   }
@@ -130,7 +134,7 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
   batches[0] = emitter_lights(world, choice, settings.seed, counts.direct);
   const std::size_t direct_count = batches[0].lights.size();
   if (counts.paths > 0)
-    trace_particles(world, choice, {settings.seed, Stage::particles, counts.paths, deepest},
+    trace_particles(world, choice, {settings.seed, Stage::particles, counts.paths, deepest, 0, &guide},
                     std::span(batches).subspan(1), sinks);
   VirtualLights lights = lay_out(batches);
   lights.paths = counts.paths;

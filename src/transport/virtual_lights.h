@@ -13,6 +13,8 @@
 
 namespace lumirank::transport {
 
+struct Receivers;
+
 enum class LightKind : std::uint8_t {
   omni,      // power: intensity (W/sr), point emitters
   oriented,  // power: emitted radiance × area share; cosine emission about `normal`; emitter samples
@@ -35,6 +37,10 @@ struct LightSettings {
   std::size_t count = 100000;  // target over all kinds
   int max_depth = -1;          // Mitsuba's count
   bool direct = true, indirect = true;
+  // If given, particles are aimed so that their light reaches these receivers (an interior behind windows):
+  // more of the lights are then of use to the image. The result is unbiased for every receiver either way.
+  // Read during the call only.
+  const Receivers* receivers = nullptr;
 };
 
 // Sorted by kind (in the order of LightKind), lambertian surface lights before others, then along a Morton

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "transport/receivers.h"
 
 namespace lumirank::transport {
 namespace {
@@ -348,13 +349,79 @@ TEST(VirtualLights, SameBitsForAnyNumberOfThreads) {
   scene.shape(scenedesc::SphereDesc{{0.4f, 0.4f, 0}, 0.2f}, {}, scene.glass(1.5f));
   scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
   const auto world = scene.build();
+  const world::Camera camera(test::sensor({0, 0, 0}, {1, 1, 1}, {0, 0, 1}, 40, 16, 16));
+  const auto receivers = trace_receivers(world, camera, {});
+  auto settings = settings_of(5, 10000);
+  settings.receivers = &receivers;
   std::array<VirtualLights, 3> runs;
   for (int k = 0; k < 3; ++k)
-    with_threads(1 << k, [&] {
-      runs[static_cast<std::size_t>(k)] = trace_virtual_lights(world, settings_of(5, 10000));
-    });
+    with_threads(1 << k, [&] { runs[static_cast<std::size_t>(k)] = trace_virtual_lights(world, settings); });
   expect_same(runs[0], runs[1]);
   expect_same(runs[0], runs[2]);
+}
+
+// A closed room whose only opening, a tenth of one wall wide, lets the sky in. `camera` looks from inside.
+SceneMaker room_with_a_window() {
+  SceneMaker scene;
+  scenedesc::TwoSidedDesc both;
+  both.front = both.back = scene.diffuse(Rgb(0.5f));
+  const int wall = scene.bsdf(both);
+  const Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  scene.rectangle(-z, x, y, wall), scene.rectangle(z, x, y, wall);
+  scene.rectangle(-y, x, z, wall), scene.rectangle(y, x, z, wall);
+  scene.rectangle(-x, y, z, wall);
+  scene.rectangle({1, 0.1f, 0}, y * 0.9f, z, wall);             // leaves y in (-1, -0.8)
+  scene.rectangle({1, -0.9f, 0.2f}, y * 0.1f, z * 0.8f, wall);  // and of that, z in (-1, -0.6)
+  scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
+  return scene;
+}
+bool is_inside(Vec3f normal, Vec3f position) { return dot(normal, position) < 0; }
+
+TEST(VirtualLights, AreAimedAtWhatReceiversSee) {
+  const auto world = room_with_a_window().build();
+  const world::Camera camera(test::sensor({-0.9f, 0.9f, 0.9f}, {0.5f, -0.5f, -0.5f}, {0, 0, 1}, 60, 32, 32));
+  const auto receivers = trace_receivers(world, camera, {});
+  constexpr int kSeeds = 16;
+  std::array<std::vector<double>, 2> flux, inside;  // without and with receivers
+  for (int seed = 0; seed < kSeeds; ++seed)
+    for (std::size_t aimed = 0; aimed < 2; ++aimed) {
+      auto settings = settings_of(static_cast<std::uint64_t>(seed), 4000);
+      settings.direct = false;
+      settings.receivers = aimed ? &receivers : nullptr;
+      const auto lights = trace_virtual_lights(world, settings);
+      double sum = 0, count = 0;
+      for (std::size_t j = 0; j < lights.size(); ++j) {
+        if (!is_inside(lights.normal[j], lights.position[j])) continue;
+        sum += lights.power[j].r, ++count;
+      }
+      flux[aimed].push_back(sum), inside[aimed].push_back(count / static_cast<double>(lights.size()));
+    }
+  // The same flux arrives inside, carried by more lights.
+  std::vector<double> difference;
+  for (std::size_t k = 0; k < flux[0].size(); ++k) difference.push_back(flux[1][k] - flux[0][k]);
+  const auto m = test::mean_of(difference);
+  EXPECT_NEAR(m.mean, 0, test::student_quantile(kAlpha, 1, kSeeds - 1) * m.standard_error);
+  EXPECT_GT(test::mean_of(inside[1]).mean, 2 * test::mean_of(inside[0]).mean);
+  // And the flux inside is known better for the same number of lights.
+  EXPECT_LT(test::mean_of(flux[1]).standard_error, test::mean_of(flux[0]).standard_error);
+}
+
+// The guide may prefer what it likes; energy stays in balance (compare the furnace without receivers above).
+TEST(VirtualLights, AimingKeepsTheEnergyBalance) {
+  constexpr int kSeeds = 12, kDepths = 4;
+  const auto world = furnace(0.6f).build();
+  const world::Camera corner(test::sensor({0, 0, 0}, {1, 1, 1}, {0, 0, 1}, 10, 8, 8));
+  const auto receivers = trace_receivers(world, corner, {});
+  std::array<std::vector<double>, kDepths + 1> flux;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    auto settings = settings_of(static_cast<std::uint64_t>(seed), 1000);
+    settings.receivers = &receivers;
+    auto by_depth = flux_by_depth(trace_virtual_lights(world, settings));
+    for (int k = 1; k <= kDepths; ++k) flux[static_cast<std::size_t>(k)].push_back(by_depth[k]);
+  }
+  for (int k = 1; k <= kDepths; ++k)
+    expect_mean(flux[static_cast<std::size_t>(k)], 4 * kPi * std::pow(0.6, k - 1), kDepths,
+                "depth " + std::to_string(k));
 }
 
 TEST(VirtualLights, NothingShines) {
