@@ -17,13 +17,11 @@ using scatter::LobeKind;
 constexpr int kDeep = 32;
 constexpr float kDeepSurvival = 0.9f;
 
-// Flux is measured through the geometric surface, f·cos with the shading normal: the quotient belongs to the
-// light (Veach 1997, section 5.3.2).
+// Flux is measured through the geometric surface, but the closure's cosine is that of the shading normal:
+// this part of Veach's correction (1997, section 5.3) belongs to the light, the rest to the direction in
+// which light leaves it.
 float incident_correction(const Closure& closure, Vec3f incoming) {
   return std::abs(dot(incoming, closure.frame.n) / dot(incoming, closure.ng));
-}
-float outgoing_correction(const Closure& closure, Vec3f outgoing) {
-  return std::abs(dot(outgoing, closure.ng) / dot(outgoing, closure.frame.n));
 }
 
 LightRecord surface_light(const Vec3f& position, const Closure& closure, Vec3f incoming, ClosurePool& pool) {
@@ -89,7 +87,7 @@ void ParticleTracer::follow(const EmissionGuide::Start& from, Rng& rng, LightBat
     const auto next = scatter::sample(closure, incoming, u_lobe, rng.next_2d(), scatter::Lobes::all, true);
     if (!next) return;
     flux *= next->weight;
-    if (!next->delta) flux *= incident_correction(closure, incoming) * outgoing_correction(closure, next->wi);
+    if (!next->delta) flux *= scatter::shading_correction(closure, incoming, next->wi);
     const bool passes = next->delta && next->kind == LobeKind::delta_pass;
     if (!passes) ++depth;
     if (settings_.deepest >= 0 && depth > settings_.deepest) return;
