@@ -158,7 +158,7 @@ TEST(PlyReader, ReadsTheSameFromAllFormats) {
     EXPECT_FLOAT_EQ(mesh.colors[0].b, 0.2f);
     EXPECT_FLOAT_EQ(mesh.colors[1].g, 1);
     EXPECT_EQ(mesh.indices, (Indices{0, 1, 2, 0, 2, 3, 3, 2, 4})) << format;
-    EXPECT_EQ(mesh.notes, (std::vector<std::string>{"1 faces with fewer than 3 corners left out"}));
+    EXPECT_EQ(mesh.notes, (std::vector<std::string>{"1 face with fewer than 3 corners left out"}));
   }
 }
 

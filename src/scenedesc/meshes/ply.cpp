@@ -31,7 +31,7 @@ float color_scale(PlyType type) {
     case PlyType::uint16:
       return 1.0f / 65535;
     case PlyType::int32:
-      return 1.0f / 2147483647;
+      return 1.0f / 2147483648.0f;
     case PlyType::uint32:
       return 1.0f / 4294967295.0f;
     default:
@@ -145,7 +145,8 @@ void read_faces(const PlyElement& element, PlyBody& body, std::uint64_t vertices
     }
   }
   if (reader.small > 0)
-    mesh.notes.push_back(std::to_string(reader.small) + " faces with fewer than 3 corners left out");
+    mesh.notes.push_back(std::to_string(reader.small) + (reader.small == 1 ? " face" : " faces") +
+                         " with fewer than 3 corners left out");
   if (reader.large > 0)
     mesh.notes.push_back(std::to_string(reader.large) +
                          " polygons of more than 4 corners cut into fans (wrong where they are not convex)");
