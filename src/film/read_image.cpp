@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "film/exr_header.h"
 #include "film/file_end.h"
 #include "film/image_io.h"
 #include "film/pfm.h"
@@ -172,6 +173,7 @@ LoadedImage read_image(const std::string& filename, bool raw, std::size_t max_pi
     throw InputError(SourceLocation{filename, 0}, "this is not a file, let alone an image");
   if (starts_with_pfm_magic(filename)) return {read_pfm(filename, max_pixels), {}};
   require_file_end(filename);
+  require_sane_exr_header(filename, max_pixels);
   try {
     return Reader(filename, raw, max_pixels).read();
   } catch (const InputError&) {

@@ -284,6 +284,13 @@ TEST_F(ImageIo, AbsurdSizesFailBeforeTheMemoryIsTaken) {
     EXPECT_NE(message_of_reading(path("b.exr"), std::size_t{1} << 28), "") << size;
   }
 
+  // As high as the limit allows, but the file has no room for the table of its chunks.
+  const std::int32_t tall[4] = {0, 0, 0, (1 << 28) - 1};
+  bytes.replace(at + 21, 16, reinterpret_cast<const char*>(tall), 16);
+  write_bytes(path("b.exr"), bytes);
+  EXPECT_NE(message_of_reading(path("b.exr"), std::size_t{1} << 28).find("more than the file holds"),
+            std::string::npos);
+
   write_image(path("big.pfm"), {pattern(10, 10, 1), {}});
   EXPECT_NE(message_of_reading(path("big.pfm"), 99).find("10 x 10 pixels, more than the limit of 99"),
             std::string::npos);
