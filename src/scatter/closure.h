@@ -123,8 +123,8 @@ int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[
                         bool adjoint = false);
 
 // Directional albedo at wo (energy, so without the scaling of radiance), delta lobes included, at most 1:
-// exact for diffuse, plastic's base and delta lobes, by a rule of 55 fixed draws otherwise (to about 0.03).
-// For Russian roulette and AOVs.
+// exact for diffuse, plastic's base and delta lobes, otherwise by a table or a rule of 55 fixed draws (to
+// about 0.03). For Russian roulette and AOVs.
 Rgb albedo(const Closure& closure, Vec3f wo);
 
 // Factor by which a particle's throughput must be multiplied beside sample(…, adjoint)'s weight where the

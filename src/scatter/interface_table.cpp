@@ -173,10 +173,20 @@ InterfaceCoefficients InterfaceTable::lookup(float alpha, float eta) const {
   return out;
 }
 
+namespace {
+
+// A table each, so that a scene pays (a sixth of a second) only for the distribution that it has.
+template <NormalDistribution Distribution>
+const InterfaceTable& table_of() {
+  static const InterfaceTable table(Distribution);
+  return table;
+}
+
+}  // namespace
+
 const InterfaceTable& interface_table(NormalDistribution distribution) {
-  static const InterfaceTable beckmann(NormalDistribution::beckmann);
-  static const InterfaceTable ggx(NormalDistribution::ggx);
-  return distribution == NormalDistribution::ggx ? ggx : beckmann;
+  return distribution == NormalDistribution::ggx ? table_of<NormalDistribution::ggx>()
+                                                 : table_of<NormalDistribution::beckmann>();
 }
 
 }  // namespace lumirank::scatter

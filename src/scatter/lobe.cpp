@@ -2,6 +2,7 @@
 #include "scatter/lobe.h"
 
 #include "base/warp.h"
+#include "scatter/albedo_table.h"
 #include "scatter/fresnel.h"
 #include "scatter/interface.h"
 
@@ -127,6 +128,10 @@ Rgb lobe_albedo(LobeView view, Vec3f wo) {
     Rgb coefficient;
     return delta_direction(view, wo, wi, coefficient) ? coefficient : Rgb(0);
   }
+  // Total internal reflection is no matter of Schlick's curve: the table is for the outside.
+  if (lobe.kind == LobeKind::microfacet_reflect && lobe.alpha_u == lobe.alpha_v && lobe.alpha_u <= 1 &&
+      (lobe.fresnel != FresnelKind::dielectric || view.eta > 1))
+    return microfacet_reflect_albedo(view, wo.z);
   return quadrature_albedo(view, wo);
 }
 

@@ -23,7 +23,8 @@ inline LobeView view_from(const Lobe& lobe, bool outside) {
 Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi);
 float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi);
 bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
-// Albedo at cosine wo.z: exact for the diffuse kinds, else by a fixed rule of 55 draws.
+// Albedo at cosine wo.z: exact for diffuse and plastic's base, from a table for isotropic microfacets, else
+// by a fixed rule of 55 draws.
 Rgb lobe_albedo(LobeView view, Vec3f wo);
 // Cheap estimate of the albedo's mean over channels, to choose among lobes; positive for every lobe not
 // black.

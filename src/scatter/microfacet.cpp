@@ -27,14 +27,14 @@ double sample_beckmann_slope(double cos_theta, double sin_theta, double u) {
   };
   double lo = -6, hi = std::min(6.0, cos_theta / std::max(sin_theta, 1e-9));
   const double target = u * mass_below(hi);
-  double s = 0.5 * (lo + hi);
+  double s = std::min(0.0, 0.5 * (lo + hi));
   for (int i = 0; i < 60 && hi - lo > 1e-9; ++i) {
     const double excess = mass_below(s) - target;
     (excess > 0 ? hi : lo) = s;
     const double slope = 2 * inv_2_sqrt_pi * (cos_theta - s * sin_theta) * std::exp(-s * s);
     double next = s - excess / slope;
     if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
-    if (std::abs(next - s) < 1e-8) return next;
+    if (std::abs(next - s) < 1e-7) return next;
     s = next;
   }
   return s;
