@@ -36,8 +36,9 @@ void add_compare(CLI::App& app, Action& action) {
   add_setting_options(*command, options->common, {});
   command->remove_option(command->get_option("--time"));
   command->add_option("--methods", options->methods, "names, separated by commas");
-  command->add_option("--reference", options->settings.reference,
-                      "FILE.exr, brute-force (all columns) or path");
+  command->add_option(
+      "--reference", options->settings.reference,
+      "FILE.exr, path, brute-force (all columns) or brute-force:N (all columns at N receivers)");
   command
       ->add_option("--reference-time", options->settings.reference_time,
                    "seconds for --reference path (default 60)")

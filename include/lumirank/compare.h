@@ -11,9 +11,10 @@ namespace lumirank {
 struct CompareSettings {
   RenderSettings base;
   std::vector<std::string> methods;
-  std::string reference = "path";  // a file, "brute-force" or "path"
-  double reference_time = 60;      // seconds for "path"
-  std::vector<double> times;       // --times: one run per budget
+  std::string reference =
+      "path";  // a file, "path", "brute-force", or "brute-force:N" (all columns at N receivers)
+  double reference_time = 60;  // seconds for "path"
+  std::vector<double> times;   // --times: one run per budget
   // --sweep KEY=V1,V2 with KEY a parameter METHOD.KEY, "lights" or "spp"; METHOD.a:b=1:2,3:4 sweeps two
   // together.
   struct Sweep {

@@ -1,8 +1,10 @@
 // Runs the plan of a comparison on one prepared scene, and writes every result as soon as it exists.
 #include "lumirank/compare.h"
 
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -16,6 +18,7 @@
 #include "render/compare_plan.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
+#include "render/sampled_truth.h"
 
 namespace lumirank {
 namespace {
@@ -86,6 +89,14 @@ class Comparison {
 
   void make_reference() {
     const Timer timer;
+    if (const std::size_t count = sampled_receivers(); count > 0) {
+      truth_ = std::make_unique<SampledTruth>(*setup_.matrix, setup_.receivers.weight, count,
+                                              settings_.base.seed, sinks_);
+      results_.reference_kind = "all " + std::to_string(setup_.matrix->columns()) + " columns at " +
+                                std::to_string(truth_->count()) + " stratified receivers";
+      results_.reference_seconds = timer.seconds();
+      return;
+    }
     if (settings_.reference == "brute-force") {
       std::vector<matrix::ScaledColumn> columns(setup_.matrix->columns());
       for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
@@ -118,6 +129,19 @@ class Comparison {
     results_.reference_image = "reference.png";
     save("reference.png", reference_);
     save("reference.exr", reference_);
+  }
+
+  // "brute-force:4096": exact sums at so many receivers of the full-size render; 0 for other references.
+  std::size_t sampled_receivers() const {
+    constexpr std::string_view kPrefix = "brute-force:";
+    if (!settings_.reference.starts_with(kPrefix)) return 0;
+    const std::string text = settings_.reference.substr(kPrefix.size());
+    std::size_t count = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (status != std::errc{} || end != text.data() + text.size() || count < 64)
+      throw InputError("'" + settings_.reference + "' is not a reference",
+                       "write brute-force:N with N at least 64");
+    return count;
   }
 
   // Methods without a clock of their own get as many columns as fit into the budget, by the pace of a few.
@@ -182,11 +206,18 @@ class Comparison {
         result.settings[key] = std::to_string(static_cast<long long>(value));
 
     const film::Image image = image_of(estimate.sums);
-    result.error = film::compare(image, reference_);
     const std::string stem = "run_" + std::to_string(results_.runs.size());
-    result.image_file = stem + ".png", result.error_image_file = stem + "_error.png";
+    result.image_file = stem + ".png";
     save(result.image_file, image);
-    save(result.error_image_file, film::false_color_error(image, reference_));
+    if (truth_) {
+      const auto sampled = truth_->error_of(estimate.sums);
+      result.error = sampled.metrics;
+      result.settings["relative_l2 ±95 %"] = std::to_string(sampled.l2_half_width);
+    } else {
+      result.error = film::compare(image, reference_);
+      result.error_image_file = stem + "_error.png";
+      save(result.error_image_file, film::false_color_error(image, reference_));
+    }
     results_.runs.push_back(std::move(result));
     return true;
   }
@@ -207,8 +238,8 @@ class Comparison {
     const auto rows = pick(kRows, setup_.matrix->rows(), settings_.base.seed, 1);
     const auto columns = pick(kColumns, setup_.matrix->columns(), settings_.base.seed, 2);
     std::vector<Rgb> block(rows.size() * columns.size());
-    setup_.matrix->block(rows, columns, block);
-    std::vector<double> scalar(block.size());
+    setup_.matrix->block(rows, columns, block, matrix::Part::value);
+    std::vector<float> scalar(block.size());
     for (std::size_t k = 0; k < block.size(); ++k) scalar[k] = norm2(block[k]);
     results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
   }
@@ -263,6 +294,7 @@ class Comparison {
   std::uint64_t lights_seed_ = 0;
   double columns_per_second_ = 0;
   film::Image reference_;
+  std::unique_ptr<SampledTruth> truth_;  // instead of reference_
   CompareResults results_;
 };
 

@@ -8,7 +8,7 @@
 #include "film/atomic_file.h"
 #include "render/compare_page.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 using nlohmann::json;
@@ -119,4 +119,4 @@ void write_results_csv(const std::string& folder, const CompareResults& results)
   film::write_whole_file(folder + "/results.csv", out);
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

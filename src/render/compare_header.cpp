@@ -3,7 +3,7 @@
 #include "render/compare_sections.h"
 #include "render/html_text.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 std::string fact(const std::string& term, const std::string& value) {
@@ -53,4 +53,4 @@ std::string header_section(const CompareResults& results, const CompareSummary& 
   return out + "</header>\n";
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -10,7 +10,7 @@
 #include "render/compare_sections.h"
 #include "render/html_text.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 struct Choice {
@@ -111,4 +111,4 @@ std::string image_section(const CompareResults& results, const CompareSummary& s
          "</script></section>\n";
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -5,7 +5,7 @@
 #include "render/compare_sections.h"
 #include "render/html_text.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 void write_compare_page(const std::string& folder, const CompareResults& results) {
   const CompareSummary summary = summarize(results);
@@ -28,4 +28,4 @@ void write_compare_page(const std::string& folder, const CompareResults& results
   film::write_whole_file(folder + "/index.html", page);
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

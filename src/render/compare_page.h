@@ -6,7 +6,7 @@
 
 #include "render/compare_results.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 // Write results.json and results.csv into `folder`, whole or not at all; throw InputError if they cannot be
 // written. Numbers read back as the same bits; those that are not finite are null in JSON and empty in CSV.
@@ -17,4 +17,4 @@ void write_results_csv(const std::string& folder, const CompareResults& results)
 // Writes `folder`/index.html. The images that the results name lie, or will lie, beside it.
 void write_compare_page(const std::string& folder, const CompareResults& results);
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

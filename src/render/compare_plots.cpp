@@ -6,7 +6,7 @@
 #include "render/html_text.h"
 #include "render/svg_plot.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 using Value = std::function<double(const CompareRun&)>;
@@ -116,4 +116,4 @@ std::string singular_value_section(const CompareResults& results) {
          svg_plot(plot) + "</figure></div></section>\n";
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -8,7 +8,7 @@
 
 #include "film/metrics.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 // One run of one method with one seed.
 struct CompareRun {
@@ -39,4 +39,4 @@ struct CompareResults {
   double error_full_scale = 0.5;  // error over the reference's mean at the yellow end of the error images
 };
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -1,6 +1,6 @@
 #include "render/compare_assets.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 // Everything on the page but sorting, hiding, tooltips and the slider works without this script.
 const char* const kCompareScript = R"js(
@@ -97,4 +97,4 @@ if (stage) {
 }
 )js";
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

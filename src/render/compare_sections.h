@@ -6,7 +6,7 @@
 #include "render/compare_results.h"
 #include "render/compare_summary.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 // What was compared, against what, and how good that is.
 std::string header_section(const CompareResults& results, const CompareSummary& summary);
@@ -20,4 +20,4 @@ std::string phase_section(const CompareSummary& summary);
 // Hašan, Pellacini, Bala 2007, Figure 3.
 std::string singular_value_section(const CompareResults& results);
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -1,6 +1,6 @@
 #include "render/compare_assets.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 // Eight hues of about one lightness per scheme, so that no curve stands out by accident.
 const char* const kCompareStyle = R"css(
@@ -103,4 +103,4 @@ a { color: var(--accent) }
 @media print { section { break-inside: avoid } }
 )css";
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 double CompareGroup::mean(const std::function<double(const CompareRun&)>& value) const {
   double sum = 0;
@@ -38,4 +38,4 @@ CompareSummary summarize(const CompareResults& results) {
   return summary;
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -6,7 +6,7 @@
 
 #include "render/compare_results.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 struct CompareGroup {
   std::vector<const CompareRun*> runs;  // at least one, in the order of the results
@@ -27,4 +27,4 @@ struct CompareSummary {
 
 CompareSummary summarize(const CompareResults& results);
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

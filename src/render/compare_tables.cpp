@@ -7,7 +7,7 @@
 #include "render/html_text.h"
 #include "render/svg_plot.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 std::string sort_key(double value) {
@@ -105,4 +105,4 @@ std::string phase_section(const CompareSummary& summary) {
   return out + "</tbody></table></div></section>\n";
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 std::string escape_html(std::string_view text) {
   std::string out;
@@ -89,4 +89,4 @@ std::string show_percent(double value) {
 
 std::string show_seconds(double value) { return std::isfinite(value) ? show_number(value) + " s" : "–"; }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

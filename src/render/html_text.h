@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 // & < > " ' as entities; control characters that XML forbids become U+FFFD.
 std::string escape_html(std::string_view text);
@@ -16,4 +16,4 @@ std::string show_count(double value);    // 1.23 M, 456 k, 789
 std::string show_percent(double value);  // of a ratio: 0.0123 → 1.23 %
 std::string show_seconds(double value);
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

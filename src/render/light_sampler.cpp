@@ -55,8 +55,12 @@ Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f dire
                      std::uint64_t key) {
   const Vec3f origin = world::World::offset_origin(from, ng, direction);
   geometry::Ray ray{origin, direction, 0, kInfinity};
-  // The far end stays open: the lamp itself must not block.
-  if (std::isfinite(distance)) ray.t_max = distance * (1 - 1e-4f);
+  if (std::isfinite(distance)) {
+    // Aimed anew from the moved origin, which may be farther off the surface than the open end is long; the lamp
+    // itself must not block.
+    ray.direction = from + direction * distance - origin;
+    ray.t_max = 1 - 1e-4f;
+  }
   if (world.rays().occluded(ray, key)) return Rgb{0};
   return world.rays().has_smooth() ? world.rays().transmittance(ray) : Rgb{1};
 }

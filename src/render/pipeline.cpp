@@ -123,6 +123,7 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   ls.max_depth = setup.view.max_depth;
   ls.direct = settings.only != "indirect";
   ls.indirect = settings.only != "direct";
+  ls.receivers = &setup.receivers;
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
   setup.seconds["lights"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();

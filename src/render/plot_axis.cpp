@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 // The shortest form of a round number; small and large powers of ten as such.
@@ -102,4 +102,4 @@ std::vector<Tick> Scale::linear_ticks() const {
   return ticks;
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

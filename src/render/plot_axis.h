@@ -6,7 +6,7 @@
 
 #include "render/svg_plot.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 struct Tick {
   double at = 0;     // place on the axis
@@ -35,4 +35,4 @@ class Scale {
   double from_ = 0, to_ = 1;
 };
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -8,7 +8,7 @@
 #include "render/html_text.h"
 #include "render/plot_axis.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 constexpr double kWidth = 600, kHeight = 400, kLeft = 68, kRight = 18, kTop = 14, kBottom = 52;
@@ -183,4 +183,4 @@ std::string svg_swatch(int series) {
          "</g></svg>";
 }
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 
 struct PlotPoint {
   double x = 0, y = 0;
@@ -48,4 +48,4 @@ std::string svg_plot(const Plot& plot);
 // The mark of series k as an <svg> of its own, for a legend.
 std::string svg_swatch(int series);
 
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering
