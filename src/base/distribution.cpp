@@ -17,8 +17,7 @@ Distribution1D::Sample Distribution1D::sample(float u) const {
   while (i > 0 && cdf_[i + 1] == cdf_[i]) --i;
   const double width = cdf_[i + 1] - cdf_[i];
   const double inside = width > 0 ? (target - cdf_[i]) / width : 0.0;
-  return {i, static_cast<float>(width / total()),
-          static_cast<float>(std::clamp(inside, 0.0, 0x1.fffffep-1))};
+  return {i, static_cast<float>(width / total()), static_cast<float>(std::clamp(inside, 0.0, 0x1.fffffep-1))};
 }
 
 float Distribution1D::pmf(std::size_t i) const {

@@ -10,7 +10,8 @@ namespace lumirank {
 class Distribution1D {
  public:
   Distribution1D() = default;
-  // Weights must be finite and not negative. All zero is allowed: then `total()` is 0 and nothing may be sampled.
+  // Weights must be finite and not negative. All zero is allowed: then `total()` is 0 and nothing may be
+  // sampled.
   explicit Distribution1D(std::span<const float> weights);
 
   struct Sample {

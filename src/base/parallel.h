@@ -1,5 +1,5 @@
-// Parallel loops whose results do not depend on the number of threads: the pieces are fixed by the caller's grain,
-// and what is reduced is reduced in the order of the pieces.
+// Parallel loops whose results do not depend on the number of threads: the pieces are fixed by the caller's
+// grain, and what is reduced is reduced in the order of the pieces.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,10 @@
 
 namespace lumirank {
 
-// Calls body(begin, end) for the pieces [k·grain, min(n, (k+1)·grain)), in any order, on all threads of the arena.
-// An exception from a piece is rethrown here. Loops nest.
-void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+// Calls body(begin, end) for the pieces [k·grain, min(n, (k+1)·grain)), in any order, on all threads of the
+// arena. An exception from a piece is rethrown here. Loops nest.
+void parallel_for(std::size_t n, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body);
 
 // Runs `work` with at most `threads` threads (0: all that the machine has).
 void with_threads(int threads, const std::function<void()>& work);

@@ -63,7 +63,8 @@ class Rng {
   }
   // Uniform in [0, n); n > 0.
   std::uint64_t next_below(std::uint64_t n) {
-    return static_cast<std::uint64_t>((static_cast<unsigned __int128>(next_bits()) * n) >> 64);
+    __extension__ using Wide = unsigned __int128;  // g++ and clang have it; ISO C++ does not
+    return static_cast<std::uint64_t>((static_cast<Wide>(next_bits()) * n) >> 64);
   }
   // Standard normal deviate.
   double next_gaussian();

@@ -22,10 +22,22 @@ Transform Transform::rotate(double x, double y, double z, double degrees) {
   const double a = degrees * 3.14159265358979323846 / 180.0;
   const double c = std::cos(a), s = std::sin(a), k = 1 - c;
   Transform t;
-  t.m = {c + x * x * k,     x * y * k - z * s, x * z * k + y * s, 0,  //
-         y * x * k + z * s, c + y * y * k,     y * z * k - x * s, 0,  //
-         z * x * k - y * s, z * y * k + x * s, c + z * z * k,     0,  //
-         0,                 0,                 0,                 1};
+  t.m = {c + x * x * k,
+         x * y * k - z * s,
+         x * z * k + y * s,
+         0,  //
+         y * x * k + z * s,
+         c + y * y * k,
+         y * z * k - x * s,
+         0,  //
+         z * x * k - y * s,
+         z * y * k + x * s,
+         c + z * z * k,
+         0,  //
+         0,
+         0,
+         0,
+         1};
   return t;
 }
 

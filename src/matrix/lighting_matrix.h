@@ -1,8 +1,10 @@
-// The lighting matrix: one row per receiver, one column per virtual light, entries on demand and in bulk only.
+// The lighting matrix: one row per receiver, one column per virtual light, entries on demand and in bulk
+// only.
 //
-// A(i,j) = E(i,j)·V(i,j): E the unoccluded contribution (RGB), V the visibility (0 or 1 between surfaces). An entry is a
-// pure function of (seed, receiver id, light id): the same number whether it comes in a row, a column, a block or a list.
-// Implemented by transport's SceneMatrix and by the synthetic matrices of the tests; methods see nothing else.
+// A(i,j) = E(i,j)·V(i,j): E the unoccluded contribution (RGB), V the visibility (0 or 1 between surfaces). An
+// entry is a pure function of (seed, receiver id, light id): the same number whether it comes in a row, a
+// column, a block or a list. Implemented by transport's SceneMatrix and by the synthetic matrices of the
+// tests; methods see nothing else.
 #pragma once
 
 #include <atomic>
@@ -37,9 +39,10 @@ struct RowFeatures {
 // Plain numbers about columns. Arrays of length columns(); may be empty if unknown.
 struct ColumnFeatures {
   std::span<const Vec3f> position;
-  std::span<const Vec3f> normal;    // zero for omni lights
-  std::span<const float> power;     // scalar, ≥ 0; proportional to the light's emitted power
-  std::span<const std::uint16_t> group;  // clusters never cross groups; all 0 unless the image is split by light
+  std::span<const Vec3f> normal;  // zero for omni lights
+  std::span<const float> power;   // scalar, ≥ 0; proportional to the light's emitted power
+  std::span<const std::uint16_t>
+      group;  // clusters never cross groups; all 0 unless the image is split by light
   std::span<const std::uint8_t> indirect;  // 0: stands for an emitter; 1: particle-traced
 };
 
@@ -59,7 +62,8 @@ class LightingMatrix {
   virtual std::size_t rows() const = 0;
   virtual std::size_t columns() const = 0;
 
-  // Entries of one row for all columns: out[j], j < columns(). Part::visibility fills all three channels with 0 or 1.
+  // Entries of one row for all columns: out[j], j < columns(). Part::visibility fills all three channels with
+  // 0 or 1.
   virtual void row(Index i, std::span<Rgb> out, Part part = Part::value) const = 0;
   // Entries of one column for all rows.
   virtual void column(Index j, std::span<Rgb> out, Part part = Part::value) const = 0;
@@ -69,8 +73,9 @@ class LightingMatrix {
   // Single entries: out[k] = A(rows[k], columns[k]).
   virtual void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                        Part part = Part::value) const = 0;
-  // sums[i] += Σ_k scale_k · A(i, column_k), without storing a column. The order of the sum is the order of `columns`.
-  // Most of a render's time is spent here. Checks `sinks.cancel` and reports progress between blocks.
+  // sums[i] += Σ_k scale_k · A(i, column_k), without storing a column. The order of the sum is the order of
+  // `columns`. Most of a render's time is spent here. Checks `sinks.cancel` and reports progress between
+  // blocks.
   virtual void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                           const Sinks& sinks = {}) const = 0;
 

@@ -56,8 +56,8 @@ Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f dire
   const Vec3f origin = world::World::offset_origin(from, ng, direction);
   geometry::Ray ray{origin, direction, 0, kInfinity};
   if (std::isfinite(distance)) {
-    // Aimed anew from the moved origin, which may be farther off the surface than the open end is long; the lamp
-    // itself must not block.
+    // Aimed anew from the moved origin, which may be farther off the surface than the open end is long; the
+    // lamp itself must not block.
     ray.direction = from + direction * distance - origin;
     ray.t_max = 1 - 1e-4f;
   }

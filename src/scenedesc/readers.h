@@ -22,11 +22,12 @@ SceneDesc read_scene(const std::string& filename, const ReadOptions& options = {
 // Mitsuba XML, 0.6 and 3.x (by the version attribute).
 SceneDesc read_mitsuba(const std::string& filename, const ReadOptions& options = {});
 // The same from memory (tests, fuzzing); relative names are taken from the folder of `filename`.
-SceneDesc parse_mitsuba(const std::string& text, const std::string& filename, const ReadOptions& options = {});
+SceneDesc parse_mitsuba(const std::string& text, const std::string& filename,
+                        const ReadOptions& options = {});
 
 MeshData read_mesh(const MeshFileDesc& file);
-// From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are an
-// error, degenerate triangles are left out and noted.
+// From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are
+// an error, degenerate triangles are left out and noted.
 MeshData parse_obj(const std::string& bytes, const std::string& filename);
 MeshData parse_ply(const std::string& bytes, const std::string& filename);
 MeshData parse_serialized(const std::string& bytes, const std::string& filename, int shape_index);

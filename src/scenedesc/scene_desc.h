@@ -1,6 +1,6 @@
-// What a scene file says, after parsing and before anything is built: plain values, printable, rewritable, and the same
-// for every file format. Names are resolved to indices; files are named (absolute paths) but not opened, except that
-// a reader may check that they exist.
+// What a scene file says, after parsing and before anything is built: plain values, printable, rewritable,
+// and the same for every file format. Names are resolved to indices; files are named (absolute paths) but not
+// opened, except that a reader may check that they exist.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,8 @@ namespace lumirank::scenedesc {
 
 inline constexpr int kNone = -1;  // "no index"
 
-// ---------------------------------------------------------------------------------------------------- textures
+// ----------------------------------------------------------------------------------------------------
+// textures
 
 // 2×3 affine map from mesh uv to texture uv.
 struct UvTransform {
@@ -38,14 +39,16 @@ struct FloatInput {
 enum class FilterMode { nearest, bilinear };
 enum class WrapMode { repeat, mirror, clamp };
 
-// Texture coordinates: (u, v) = (0, 0) is the lower left corner of the picture, so v runs up and row 0 of the file is at
-// v = 1. `to_uv` maps the surface's coordinates to these. Formats whose v runs down (Mitsuba: v = 0 is the top row) have
-// that flip at the end of each bitmap's `to_uv`, after the format's own uv transform; surfaces, built-in shapes and meshes
-// alike, keep the coordinates of their format (MeshFileDesc::flip_tex_coords). So wraps, scales, checkerboards and the
-// uv of rectangles and spheres stay exact.
+// Texture coordinates: (u, v) = (0, 0) is the lower left corner of the picture, so v runs up and row 0 of the
+// file is at v = 1. `to_uv` maps the surface's coordinates to these. Formats whose v runs down (Mitsuba: v =
+// 0 is the top row) have that flip at the end of each bitmap's `to_uv`, after the format's own uv transform;
+// surfaces, built-in shapes and meshes alike, keep the coordinates of their format
+// (MeshFileDesc::flip_tex_coords). So wraps, scales, checkerboards and the uv of rectangles and spheres stay
+// exact.
 struct BitmapTextureDesc {
   std::string filename;
-  // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear anyway).
+  // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear
+  // anyway).
   bool raw = false;
   FilterMode filter = FilterMode::bilinear;
   WrapMode wrap_u = WrapMode::repeat, wrap_v = WrapMode::repeat;
@@ -68,7 +71,8 @@ struct TextureDesc {
   std::variant<BitmapTextureDesc, CheckerboardTextureDesc, ScaleTextureDesc, VertexColorTextureDesc> kind;
 };
 
-// ------------------------------------------------------------------------------------------------------- BSDFs
+// -------------------------------------------------------------------------------------------------------
+// BSDFs
 
 enum class Distribution { beckmann, ggx };
 
@@ -86,7 +90,7 @@ struct ConductorDesc {  // smooth if alpha_u and alpha_v are the constant 0
   Distribution distribution = Distribution::beckmann;
   FloatInput alpha_u{0}, alpha_v{0};
 };
-struct DielectricDesc {  // smooth if alpha_u and alpha_v are the constant 0
+struct DielectricDesc {             // smooth if alpha_u and alpha_v are the constant 0
   float eta = 1.5046f / 1.000277f;  // interior index over exterior index
   ColorInput specular_reflectance{Rgb(1)}, specular_transmittance{Rgb(1)};
   Distribution distribution = Distribution::beckmann;
@@ -115,8 +119,8 @@ struct WardDesc {
 };
 struct PrincipledDesc {  // Mitsuba 3's "principled" and "principledthin" without their thin-film lobes
   ColorInput base_color{Rgb(0.5f)};
-  FloatInput roughness{0.5f}, anisotropic{0}, metallic{0}, spec_trans{0}, spec_tint{0}, sheen{0}, sheen_tint{0},
-      clearcoat{0}, clearcoat_gloss{0}, flatness{0};
+  FloatInput roughness{0.5f}, anisotropic{0}, metallic{0}, spec_trans{0}, spec_tint{0}, sheen{0},
+      sheen_tint{0}, clearcoat{0}, clearcoat_gloss{0}, flatness{0};
   float eta = 1.5f;
 };
 struct MaskDesc {  // opacity 1: the nested BSDF; 0: nothing there
@@ -153,17 +157,19 @@ struct BsdfDesc {
       kind;
 };
 
-// ------------------------------------------------------------------------------------------------------ shapes
+// ------------------------------------------------------------------------------------------------------
+// shapes
 
 enum class MeshFormat { obj, ply, serialized };
 
 struct MeshFileDesc {
   MeshFormat format = MeshFormat::obj;
   std::string filename;
-  int shape_index = 0;              // serialized only
-  bool face_normals = false;        // ignore the file's normals
-  // v → 1 - v of what the mesh file states, in place of the stated value. Mitsuba, 0.6 and 3.x alike: true by default for
-  // OBJ (whose v runs up), false for PLY and serialized; the bitmap's own flip (see BitmapTextureDesc) comes on top.
+  int shape_index = 0;        // serialized only
+  bool face_normals = false;  // ignore the file's normals
+  // v → 1 - v of what the mesh file states, in place of the stated value. Mitsuba, 0.6 and 3.x alike: true by
+  // default for OBJ (whose v runs up), false for PLY and serialized; the bitmap's own flip (see
+  // BitmapTextureDesc) comes on top.
   bool flip_tex_coords = false;
   std::optional<float> max_smooth_angle;  // degrees; normals are made anew
 };
@@ -199,11 +205,13 @@ struct ShapeDesc {
   int bsdf = kNone;  // kNone: the default diffuse BSDF
   std::optional<AreaEmitterDesc> emitter;
   bool in_group = false;  // a member of a shape group: not in the world by itself
-  std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, ShapeGroupDesc, InstanceDesc>
+  std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, ShapeGroupDesc,
+               InstanceDesc>
       kind;
 };
 
-// ---------------------------------------------------------------------------------------------------- emitters
+// ----------------------------------------------------------------------------------------------------
+// emitters
 
 struct PointLightDesc {
   Vec3f position;
@@ -212,7 +220,7 @@ struct PointLightDesc {
 struct SpotLightDesc {  // at the origin of to_world, along its +z
   Transform to_world;
   Rgb intensity{1};
-  float cutoff_angle = 20;            // degrees: no light beyond
+  float cutoff_angle = 20;              // degrees: no light beyond
   float beam_width = 20 * 3.0f / 4.0f;  // degrees: full intensity within
 };
 struct DirectionalLightDesc {
@@ -239,18 +247,20 @@ struct SunSkyDesc {  // the models "sun", "sky" and "sunsky"
 struct EmitterDesc {
   std::string id;
   SourceLocation where;
-  std::variant<PointLightDesc, SpotLightDesc, DirectionalLightDesc, ConstantEnvironmentDesc, EnvironmentMapDesc,
-               SunSkyDesc>
+  std::variant<PointLightDesc, SpotLightDesc, DirectionalLightDesc, ConstantEnvironmentDesc,
+               EnvironmentMapDesc, SunSkyDesc>
       kind;
 };
 
-// ------------------------------------------------------------------------------------- sensor, film, integrator
+// ------------------------------------------------------------------------------------- sensor, film,
+// integrator
 
 enum class FilterKind { box, tent, gaussian, mitchell, catmullrom, lanczos };
 
 struct FilterDesc {
   FilterKind kind = FilterKind::box;
-  float radius = 0;  // in pixels; 0: the kind's default (box 0.5, tent 1, gaussian 4σ, mitchell/catmullrom 2, lanczos = lobes)
+  float radius = 0;  // in pixels; 0: the kind's default (box 0.5, tent 1, gaussian 4σ, mitchell/catmullrom 2,
+                     // lanczos = lobes)
   float stddev = 0.5f;
   float b = 1.0f / 3, c = 1.0f / 3;
   int lobes = 3;
@@ -265,14 +275,14 @@ struct SensorDesc {
   std::string id;
   SourceLocation where;
   SensorKind kind = SensorKind::perspective;
-  Transform to_world;          // camera looks along +z, +y up, +x left
-  float fov_x = 39.6f;         // degrees, across the width of the image (readers convert other axes)
-  float aperture_radius = 0;   // thinlens
+  Transform to_world;         // camera looks along +z, +y up, +x left
+  float fov_x = 39.6f;        // degrees, across the width of the image (readers convert other axes)
+  float aperture_radius = 0;  // thinlens
   float focus_distance = 1;
   float near_clip = 1e-2f, far_clip = 1e4f;
   Vec2f principal_point_offset;  // in fractions of the film
   FilmDesc film;
-  int samples_per_pixel = 0;     // 0: not stated
+  int samples_per_pixel = 0;  // 0: not stated
 };
 
 struct Warning {

@@ -23,8 +23,8 @@ struct Placed {
 // One per shape and per member of an instance's group, in the order of the scene.
 std::vector<Placed> place_shapes(const scenedesc::SceneDesc& desc, MeshStore& store, Notes& notes);
 
-// What the ray scene is made of. Meshes that are placed once or shine are moved into world space for good; the others are shared
-// by their placements (whether the tracer then flattens copies is its own affair).
+// What the ray scene is made of. Meshes that are placed once or shine are moved into world space for good;
+// the others are shared by their placements (whether the tracer then flattens copies is its own affair).
 struct Geometry {
   std::vector<geometry::TriangleMesh> meshes;
   std::vector<geometry::Placement> placements;  // as `placed`, without its materials and emitters

@@ -1,4 +1,5 @@
-// The scene, built and immutable: geometry, materials, emitters and the camera, ready for queries from any thread.
+// The scene, built and immutable: geometry, materials, emitters and the camera, ready for queries from any
+// thread.
 #pragma once
 
 #include <memory>
@@ -31,7 +32,7 @@ struct SurfaceHit {
   geometry::Hit hit;
   scatter::SurfacePoint point;
   int material = 0;
-  int emitter = -1;      // index into emitters(), -1: does not shine
+  int emitter = -1;  // index into emitters(), -1: does not shine
 };
 
 class World {
@@ -45,7 +46,8 @@ class World {
   const geometry::RayScene& rays() const;
   const scatter::MaterialSet& materials() const;
   const std::vector<emitters::Emitter>& emitters() const;
-  // The emitter that fills the background, or -1. At most one EnvironmentEmitter exists (sky and map are merged or warned about).
+  // The emitter that fills the background, or -1. At most one EnvironmentEmitter exists (sky and map are
+  // merged or warned about).
   int environment() const;
   const Bounds3f& bounds() const;
   const WorldInfo& info() const;
@@ -55,16 +57,20 @@ class World {
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   // Radiance leaving an emitting hit towards wo (0 on the dark side), texture included.
   Rgb emitted(const SurfaceHit& at, Vec3f wo) const;
-  // Radiance that arrives along a ray that leaves the scene (environment; delta directional light contributes nothing).
+  // Radiance that arrives along a ray that leaves the scene (environment; delta directional light contributes
+  // nothing).
   Rgb background(Vec3f direction) const;
-  // Radiance of the discs of suns (directional emitters with a half angle) in a direction. Suns are sampled as delta lights, so
-  // this counts only where a ray leaves the scene after nothing but specular events from the eye.
+  // Radiance of the discs of suns (directional emitters with a half angle) in a direction. Suns are sampled
+  // as delta lights, so this counts only where a ray leaves the scene after nothing but specular events from
+  // the eye.
   Rgb sun_disc(Vec3f direction) const;
-  // Direct samples of an area emitter read the texture here; for other emitters as in emitters::sample_direct.
+  // Direct samples of an area emitter read the texture here; for other emitters as in
+  // emitters::sample_direct.
   emitters::DirectSample sample_direct(int emitter, Vec3f point, float u1, Vec2f u2) const;
   emitters::Emission sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const;
 
-  // Where a ray from `p` should start so that it does not meet its own surface: offset along ng to the side of `direction`.
+  // Where a ray from `p` should start so that it does not meet its own surface: offset along ng to the side
+  // of `direction`.
   static Vec3f offset_origin(Vec3f p, Vec3f ng, Vec3f direction);
 
  private:
