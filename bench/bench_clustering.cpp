@@ -89,7 +89,8 @@ void cluster_columns(benchmark::State& state) {
     for (std::uint32_t j = 0; j < lights; ++j)
       if (!sketch.is_zero(j)) lit.push_back(j);
     const auto splitter = linalg::cluster(points, norms, lit, {}, settings);
-    const auto chosen = methods::choose_representatives(splitter.partition(), sketch, {});
+    const auto chosen = methods::choose_representatives(splitter.partition(), sketch,
+                                                        methods::selection_weights(lit, sketch, {}, 0.1), {});
     benchmark::DoNotOptimize(chosen.columns.data());
     cost = splitter.cost();
   }

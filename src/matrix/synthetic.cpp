@@ -69,13 +69,16 @@ DenseMatrix low_rank_matrix(const SyntheticSize& size, std::size_t rank, std::si
     Rng rng(size.seed, Stage::test, 4, k);
     const float cx = rng.next_float(), cy = rng.next_float(), centre = rng.next_float();
     const float radius = log_uniform(rng, 0.1f, 0.5f), spread = log_uniform(rng, 0.05f, 0.3f);
+    std::vector<Rgb> over_columns(size.columns);
+    for (std::size_t j = 0; j < size.columns; ++j) {
+      const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(size.columns) - centre;
+      over_columns[j] = colour[j] * std::exp(-t * t / (2 * spread * spread));
+    }
     for (std::size_t i = 0; i < size.rows; ++i) {
       const float dx = pixel[i].x / width - cx, dy = pixel[i].y / width - cy;
       const float over_image = std::exp(-(dx * dx + dy * dy) / (2 * radius * radius));
-      for (std::size_t j = 0; j < size.columns; ++j) {
-        const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(size.columns) - centre;
-        entries[i * size.columns + j] += colour[j] * (over_image * std::exp(-t * t / (2 * spread * spread)));
-      }
+      for (std::size_t j = 0; j < size.columns; ++j)
+        entries[i * size.columns + j] += over_columns[j] * over_image;
     }
   }
   DenseMatrix m(size.rows, size.columns, std::move(entries));

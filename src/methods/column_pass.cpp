@@ -57,6 +57,14 @@ PassResult render_columns(const matrix::LightingMatrix& matrix, std::span<const 
   return result;
 }
 
+void mix_in(std::vector<matrix::ScaledColumn>& combination, std::span<const matrix::ScaledColumn> columns,
+            float gain, float share) {
+  if (share >= 1) combination.clear();
+  for (auto& c : combination) c.scale *= 1 - share;
+  combination.reserve(combination.size() + columns.size());
+  for (const auto& c : columns) combination.push_back({c.column, c.scale * (gain * share)});
+}
+
 std::vector<Rgb> scaled_sums(std::span<const Rgb> sums, float a) {
   std::vector<Rgb> out(sums.size());
   parallel_for(sums.size(), kGrain, [&](std::size_t b, std::size_t e) {

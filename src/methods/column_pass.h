@@ -30,6 +30,10 @@ struct PassResult {
 PassResult render_columns(const matrix::LightingMatrix& matrix, std::span<const matrix::ScaledColumn> columns,
                           const PassControl& control, std::span<Rgb> sums);
 
+// The estimate as a combination of columns: combination ← (1 − share)·combination + share·gain·columns.
+void mix_in(std::vector<matrix::ScaledColumn>& combination, std::span<const matrix::ScaledColumn> columns,
+            float gain, float share);
+
 // out = a·sums; parallel.
 std::vector<Rgb> scaled_sums(std::span<const Rgb> sums, float a);
 // ‖a − b‖₂ / ‖b‖₂ over all rows and channels, in double precision; 0 if both are zero.

@@ -114,9 +114,14 @@ TEST(Planner, WeighsRowsAgainstColumns) {
   // Rows that saved 500 columns before will not save more now.
   EXPECT_FALSE(more_rows_pay_for_target(curve, {0.02, 600, 1e9, 3000}, {1, 1}));
   EXPECT_TRUE(more_rows_pay_for_target(curve, {0.02, 400, 1e9, 3000}, {1, 1}));
-  // 1000 to spend: now 1/√1000 = 0.0316; with 500 rows more √(1/500 · 1/√500) = 0.0095.
-  EXPECT_TRUE(more_rows_pay_for_budget(curve, 1000, 500, {1, 1}));
-  EXPECT_FALSE(more_rows_pay_for_budget(curve, 1000, 990, {1, 1}));
+  // 1000 to spend: now 1/√1000 = 0.0316; with 100 rows more 900^(−3/8 − 1/4) = 0.0142.
+  EXPECT_TRUE(more_rows_pay_for_budget(curve, 1000, 100, {1, 1}));
+  // 250 rows more leave 750 columns beside 500 rows: too many rows.
+  EXPECT_FALSE(more_rows_pay_for_budget(curve, 1000, 250, {1, 1}));
+  // Where unseen rows show what seen ones do, there is nothing to learn: (1/900) against (1/1000).
+  ErrorCurve learned;
+  for (double c : {32.0, 64.0, 128.0}) learned.points.push_back({c, 1 / c, 1 / c});
+  EXPECT_FALSE(more_rows_pay_for_budget(learned, 1000, 100, {1, 1}));
 }
 
 }  // namespace

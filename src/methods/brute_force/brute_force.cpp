@@ -46,11 +46,14 @@ Estimate sum_all_columns(const matrix::LightingMatrix& matrix, const RunOptions&
       options.on_estimate(scaled_sums(sums, static_cast<float>(n) / static_cast<float>(done)));
     };
   const PassResult pass = render_columns(matrix, columns, control, estimate.sums);
+  float gain = 1;
   if (pass.done < n) {
     const double scale = pass.done > 0 ? static_cast<double>(n) / static_cast<double>(pass.done) : 0.0;
-    estimate.sums = scaled_sums(estimate.sums, static_cast<float>(scale));
+    gain = static_cast<float>(scale);
+    estimate.sums = scaled_sums(estimate.sums, gain);
     estimate.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
   }
+  mix_in(estimate.combination, std::span(columns).first(pass.done), gain, 1);
   estimate.interrupted = pass.cancelled;
   estimate.trace.numbers["seconds.columns"] = pass.seconds;
   estimate.trace.numbers["rows"] = 0;

@@ -73,16 +73,19 @@ class PowerSampling final : public Method {
       seconds += pass.seconds;
       rendered += pass.done;
       for (std::size_t k = 0; k < pass.done; ++k) distinct.insert(drawn[k].column);
+      float gain = 1;
       if (pass.done < drawn.size()) {
         estimate.interrupted = pass.cancelled;
         estimate.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
         if (pass.done == 0) break;
         // What was done of the round is a fair sample of it.
-        sums = scaled_sums(sums, static_cast<float>(drawn.size()) / static_cast<float>(pass.done));
+        gain = static_cast<float>(drawn.size()) / static_cast<float>(pass.done);
+        sums = scaled_sums(sums, gain);
         count = std::max<std::size_t>(1, count * pass.done / drawn.size());
       }
       if (draws == count) numbers["predicted_error"] = 0.5 * relative_difference(sums, estimate.sums);
       add_round(estimate.sums, draws, sums, count);
+      mix_in(estimate.combination, std::span(drawn).first(pass.done), gain, share_of_round(draws, count));
       draws += count;
       if (options.on_estimate) options.on_estimate(estimate.sums);
       if (estimate.interrupted || pass.out_of_time || !open_ended) break;
@@ -99,9 +102,12 @@ class PowerSampling final : public Method {
   }
 
  private:
+  static float share_of_round(std::size_t old_draws, std::size_t draws) {
+    return static_cast<float>(draws) / static_cast<float>(draws + old_draws);
+  }
   static void add_round(std::span<Rgb> mean, std::size_t old_draws, std::span<const Rgb> sums,
                         std::size_t draws) {
-    const float share = static_cast<float>(draws) / static_cast<float>(draws + old_draws);
+    const float share = share_of_round(old_draws, draws);
     parallel_for(mean.size(), 16384, [&](std::size_t b, std::size_t e) {
       for (std::size_t i = b; i < e; ++i) mean[i] = old_draws == 0 ? sums[i] : lerp(mean[i], sums[i], share);
     });

@@ -12,7 +12,10 @@ constexpr std::size_t kFirstRows = 100;
 constexpr std::size_t kMostRows = 4096;
 constexpr std::size_t kPilotColumns = 48;
 constexpr std::size_t kMostPasses = 5;
-constexpr double kDefaultTarget = 0.02;
+// Without a target or a time the run is for a picture in seconds: it ends at an error that is hard to see, or
+// at as many columns as a patient person's picture takes. A target, if given, is pursued to the end.
+constexpr double kDefaultTarget = 0.05;
+constexpr std::size_t kMostColumnsUnasked = 3000;
 // Held-out rows measure one draw of a random error on few rows: only clearly more than the target is a
 // disagreement.
 constexpr double kDisagreement = 1.5;
@@ -35,12 +38,13 @@ bool RowColumnRun::target_met() {
          unseen_.measured_error(blend_.sums()) <= kDisagreement * target_;
 }
 
-ErrorCurve RowColumnRun::error_curve(const ColumnsKnown& known, double until_error) {
+ErrorCurve RowColumnRun::error_curve(ColumnsKnown& known, double until_error) {
   ErrorCurve curve;
-  const std::size_t most = std::max<std::size_t>(64, std::min<std::size_t>(columns_ / 2, 16384));
+  const std::size_t most = std::max<std::size_t>(64, std::min<std::size_t>(columns_ / 2, 8192));
   linalg::Splitter clusters = known.cluster(1, linalg::ClusteringAlgorithm::splitting);
   for (std::size_t c = 32; c <= most; c *= 2) {
     const bool more = clusters.split_to(c);
+    if (c == 256) known.tune_power_share(clusters, unseen_);
     curve.points.push_back(
         {static_cast<double>(c), known.expected_error(clusters), known.expected_error(clusters, unseen_)});
     if (!more || (until_error > 0 && curve.points.back().unseen <= until_error)) break;
@@ -53,7 +57,7 @@ void RowColumnRun::more_rows_while_they_pay(double needed) {
   double columns_before = 0;
   while (!stopped() && settings_.rows == 0 && rows_read() < std::min(kMostRows, rows_ / 4)) {
     const double start = timer_.seconds();
-    const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+    ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
     const ErrorCurve curve = error_curve(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
     bool pay = true;
@@ -77,13 +81,19 @@ void RowColumnRun::more_rows_while_they_pay(double needed) {
   }
 }
 
-linalg::Splitter RowColumnRun::cluster_for(const ColumnsKnown& known, double needed) {
+linalg::Splitter RowColumnRun::cluster_for(ColumnsKnown& known, double needed) {
   std::size_t most = settings_.columns > 0 ? settings_.columns : columns_;
+  const bool asked = options_.target_error > 0 || options_.time_seconds > 0;
+  if (settings_.columns == 0 && !asked) most = std::min(most, kMostColumnsUnasked);
   if (options_.time_seconds > 0 && settings_.columns == 0) {
     const double affordable = kPlannedTime * time_left() / costs().column / (1 + settings_.zero_share);
     most = std::min(most, static_cast<std::size_t>(std::max(affordable, 1.0)));
   }
-  if (settings_.columns > 0 || needed <= 0) return known.cluster(most, settings_.clustering);
+  if (settings_.columns > 0 || needed <= 0) {
+    linalg::Splitter all = known.cluster(most, settings_.clustering);
+    known.tune_power_share(all, unseen_);
+    return all;
+  }
 
   // Splitting alone is quick and gives a first guess; the clustering that is used needs fewer columns.
   const ErrorCurve curve = error_curve(known, needed);
@@ -92,6 +102,7 @@ linalg::Splitter RowColumnRun::cluster_for(const ColumnsKnown& known, double nee
   };
   std::size_t c = bounded(0.7 * curve.columns_for_unseen(needed));
   linalg::Splitter clusters = known.cluster(c, settings_.clustering);
+  known.tune_power_share(clusters, unseen_);
   for (int round = 0; round < 6; ++round) {
     const double error = known.expected_error(clusters, unseen_);
     if (error <= needed && (error >= 0.93 * needed || round >= 3)) break;
@@ -127,7 +138,7 @@ Estimate RowColumnRun::automatic() {
     more_rows_while_they_pay(needed);
     if (stopped()) break;
     const double start = timer_.seconds();
-    const ColumnsKnown known(matrix_, seen_, settings_, options_.seed + passes_);
+    ColumnsKnown known(matrix_, seen_, settings_, options_.seed + passes_);
     const linalg::Splitter clusters = cluster_for(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
     if (clusters.clusters() * 2 > columns_ && settings_.columns == 0) {
@@ -135,7 +146,7 @@ Estimate RowColumnRun::automatic() {
       break;
     }
     if (!pass(known, clusters, known.expected_error(clusters, unseen_))) break;
-    if (settings_.columns > 0) break;
+    if (settings_.columns > 0 || (options_.target_error <= 0 && options_.time_seconds <= 0)) break;
     if (options_.time_seconds > 0 && time_left() < 0.15 * options_.time_seconds) break;
     if (settings_.rows == 0 && !target_met())
       explore(sampler_.next_by_density(rows_read() / 2, blend_.disagreement()), false,

@@ -17,6 +17,9 @@ class Blend {
   // What add() would give, leaving this as it is.
   std::vector<Rgb> with(std::span<const Rgb> sums, double expected_error) const;
 
+  // The weight that such a pass would get beside those before it: 1 for the first.
+  double share_of(double expected_error) const;
+
   bool empty() const { return precision_ == 0; }
   std::vector<Rgb>& sums() { return sums_; }
   double expected_error() const;
@@ -24,8 +27,6 @@ class Blend {
   std::span<const float> disagreement() const { return disagreement_; }
 
  private:
-  double share_of(double expected_error) const;
-
   std::vector<Rgb> sums_;
   std::vector<float> disagreement_;
   double precision_ = 0;  // Σ 1/error²

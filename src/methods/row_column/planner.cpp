@@ -61,8 +61,10 @@ bool more_rows_pay_for_target(const ErrorCurve& curve, const TargetQuestion& que
 bool more_rows_pay_for_budget(const ErrorCurve& curve, double budget, std::size_t rows, const Costs& costs) {
   const double now = budget / costs.column;
   const double later = (budget - static_cast<double>(rows) * costs.row) / costs.column;
-  if (later < 16) return false;
-  return std::sqrt(curve.unseen(later) * curve.seen(later)) < 0.97 * curve.unseen(now);
+  // Not more than a third for all rows: the paper's ratios of rows to columns, 1:2 to 1:3.
+  if (later * costs.column < 2 * 2 * static_cast<double>(rows) * costs.row) return false;
+  const double hoped = std::pow(curve.unseen(later), 0.75) * std::pow(curve.seen(later), 0.25);
+  return hoped < 0.97 * curve.unseen(now);
 }
 
 }  // namespace lumirank::methods

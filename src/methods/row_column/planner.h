@@ -40,7 +40,8 @@ struct TargetQuestion {
 };
 bool more_rows_pay_for_target(const ErrorCurve& curve, const TargetQuestion& question, const Costs& costs);
 // With `budget` (in the unit of the costs) to spend: does the error fall further by reading as many rows
-// again (taken to close half of the gap in the logarithm of the error) than by spending all on columns?
+// again than by spending all on columns? They are taken to close a quarter of the gap in the logarithm of the
+// error, and all rows together may not cost more than half of what is left for columns.
 bool more_rows_pay_for_budget(const ErrorCurve& curve, double budget, std::size_t rows, const Costs& costs);
 
 }  // namespace lumirank::methods

@@ -14,18 +14,21 @@ namespace {
 constexpr double kNoColour = 1e-3;  // of the scalar norm: less than that is no colour to scale
 constexpr double kLargestGain = 4;  // of a channel over the scalar factor
 
-Rgb averaged_scale(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members,
-                   std::uint32_t j, double scalar) {
-  Rgb scale;
+// The cluster's colour over the representative's, per channel.
+Rgb colour_gain(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members, std::uint32_t j) {
+  const double own = static_cast<double>(sketch.norm(j));
+  double all = 0;
+  for (std::uint32_t k : members) all += static_cast<double>(sketch.norm(k));
+  Rgb gain(1);
   for (std::size_t c = 0; c < 3; ++c) {
-    double total = 0;
-    for (std::uint32_t k : members) total += static_cast<double>(sketch.channel_norm(k, c));
-    const double own = static_cast<double>(sketch.channel_norm(j, c));
-    const bool has_colour = own > kNoColour * static_cast<double>(sketch.norm(j));
-    const double factor = has_colour ? std::min(total / own, kLargestGain * scalar) : scalar;
-    scale[static_cast<int>(c)] = static_cast<float>(factor);
+    const double own_channel = static_cast<double>(sketch.channel_norm(j, c));
+    if (own_channel <= kNoColour * own) continue;
+    double all_channel = 0;
+    for (std::uint32_t k : members) all_channel += static_cast<double>(sketch.channel_norm(k, c));
+    gain[static_cast<int>(c)] =
+        static_cast<float>(std::min((all_channel / own_channel) / (all / own), kLargestGain));
   }
-  return scale;
+  return gain;
 }
 
 template <typename T>
@@ -38,7 +41,25 @@ void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
 
 }  // namespace
 
+std::vector<float> selection_weights(std::span<const matrix::Index> lit, const linalg::ColumnSketch& sketch,
+                                     std::span<const float> power, double share) {
+  std::vector<float> weights(sketch.columns(), 0.0f);
+  double norms = 0, powers = 0;
+  const auto power_of = [&](matrix::Index j) { return power.empty() ? 1.0 : static_cast<double>(power[j]); };
+  for (matrix::Index j : lit) {
+    norms += static_cast<double>(sketch.norm(j));
+    powers += power_of(j);
+  }
+  if (powers == 0) share = 0;
+  for (matrix::Index j : lit) {
+    const double by_power = share > 0 ? share * power_of(j) / powers : 0.0;
+    weights[j] = static_cast<float>((1 - share) * static_cast<double>(sketch.norm(j)) / norms + by_power);
+  }
+  return weights;
+}
+
 Representatives choose_representatives(const linalg::Partition& clusters, const linalg::ColumnSketch& sketch,
+                                       std::span<const float> weights,
                                        const RepresentativeSettings& settings) {
   Representatives r;
   r.columns.resize(clusters.clusters());
@@ -46,24 +67,27 @@ Representatives choose_representatives(const linalg::Partition& clusters, const 
   parallel_for(clusters.clusters(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto members = clusters.members(k);
-      double s = 0;
-      for (std::uint32_t j : members) s += static_cast<double>(sketch.norm(j));
+      double s = 0, energy = 0;
+      for (std::uint32_t j : members) {
+        s += static_cast<double>(weights[j]);
+        energy += static_cast<double>(sketch.norm(j));
+      }
       Rng rng(settings.seed, Stage::representatives, settings.round, k);
       const double target = rng.next_double() * s;
       double running = 0;
       std::uint32_t chosen = members.back();
       for (std::uint32_t j : members) {
-        running += static_cast<double>(sketch.norm(j));
+        running += static_cast<double>(weights[j]);
         if (running > target) {
           chosen = j;
           break;
         }
       }
-      const double scalar = s / static_cast<double>(sketch.norm(chosen));
-      r.energy[k] = s;
+      r.energy[k] = energy;
+      const auto scalar = static_cast<float>(s / static_cast<double>(weights[chosen]));
       r.columns[k] = {chosen, settings.colour == ColourMode::scalar
-                                  ? Rgb(static_cast<float>(scalar))
-                                  : averaged_scale(sketch, members, chosen, scalar)};
+                                  ? Rgb(scalar)
+                                  : colour_gain(sketch, members, chosen) * scalar};
     }
   });
   std::vector<std::uint32_t> order(r.columns.size());

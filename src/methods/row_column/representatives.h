@@ -24,10 +24,19 @@ struct RepresentativeSettings {
   std::uint64_t round = 0;  // rounds are independent of each other
 };
 
-// One member of each cluster, with probability ‖ρ_j‖/s, s = Σ‖ρ‖ over the cluster. scalar: scaled by s/‖ρ_j‖,
-// unbiased. averaged: channel c is scaled by Σ‖ρᶜ‖/‖ρᶜ_j‖. Where the representative has (next to) none of
-// that channel the scalar factor is taken, and no channel's factor exceeds 4 scalar factors.
+// How likely a column is to stand for its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both
+// sums over `lit`; 0 elsewhere. share = 0 is the paper's choice. Any other is as unbiased, and bounds the
+// factor of a column that is all but zero on the sampled rows and not elsewhere, which would otherwise be
+// drawn rarely and then scaled up without limit.
+std::vector<float> selection_weights(std::span<const matrix::Index> lit, const linalg::ColumnSketch& sketch,
+                                     std::span<const float> power, double share);
+
+// One member of each cluster, with probability q_j/s, s = Σq over the cluster. scalar: scaled by s/q_j,
+// unbiased. averaged: channel c is scaled by (s/q_j)·g_c with g_c = (Σ‖ρᶜ‖/‖ρᶜ_j‖) / (Σ‖ρ‖/‖ρ_j‖), the
+// paper's Σ‖ρᶜ‖/‖ρᶜ_j‖ where q is ‖ρ‖. g_c is at most 4, and 1 where the representative has (next to) none of
+// that channel.
 Representatives choose_representatives(const linalg::Partition& clusters, const linalg::ColumnSketch& sketch,
+                                       std::span<const float> weights,
                                        const RepresentativeSettings& settings);
 
 // Adds `count` draws, by power, from the columns `zero`, which vanish on all rows that were read. That set is

@@ -60,12 +60,17 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
   double total = 0;
   for (double e : chosen.energy) total += e;
   // The part that is done stands for all, by energy; its error is taken to fall with the number of columns.
-  const auto so_far = [&](std::span<const Rgb> sums, std::size_t done) {
+  const auto gain_of = [&](std::size_t done) {
     double energy = 0;
     for (std::size_t k = 0; k < done; ++k) energy += chosen.energy[k];
-    const double missing = static_cast<double>(chosen.columns.size()) / static_cast<double>(done);
-    return blend_.with(scaled_sums(sums, energy > 0 ? static_cast<float>(total / energy) : 1.0f),
-                       std::max(expected_error, 1e-4) * missing);
+    return energy > 0 ? static_cast<float>(total / energy) : 1.0f;
+  };
+  const auto error_of = [&](std::size_t done) {
+    return std::max(expected_error, 1e-4) * static_cast<double>(chosen.columns.size()) /
+           static_cast<double>(done);
+  };
+  const auto so_far = [&](std::span<const Rgb> sums, std::size_t done) {
+    return blend_.with(scaled_sums(sums, gain_of(done)), error_of(done));
   };
   std::vector<Rgb> sums(rows_, Rgb(0));
   PassControl control{options_, timer_, options_.time_seconds, {}};
@@ -79,15 +84,20 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
   trace_.numbers["clusters"] = static_cast<double>(clusters.clusters());
   trace_.numbers["zero_columns"] = static_cast<double>(known.zero().size());
   trace_.numbers["zero_columns_drawn"] += static_cast<double>(chosen.zero_columns);
+  trace_.numbers["power_share"] = known.power_share();
   trace_.numbers["predicted_error_seen"] = known.expected_error(clusters);
   for (std::size_t k = 0; k < result.done; ++k) rendered_.insert(chosen.columns[k].column);
   rendered_count_ += result.done;
   cancelled_ = cancelled_ || result.cancelled;
   out_of_time_ = out_of_time_ || result.out_of_time;
+  const std::span<const matrix::ScaledColumn> done(chosen.columns.data(), result.done);
   if (result.done == chosen.columns.size()) {
+    mix_in(combination_, done, 1, static_cast<float>(blend_.share_of(expected_error)));
     blend_.add(sums, expected_error);
     ++passes_;
   } else if (result.done > 0) {
+    mix_in(combination_, done, gain_of(result.done),
+           static_cast<float>(blend_.share_of(error_of(result.done))));
     blend_.sums() = so_far(sums, result.done);
   }
   if (options_.on_estimate && !blend_.sums().empty()) options_.on_estimate(blend_.sums());
@@ -97,7 +107,8 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
 void RowColumnRun::pass_over_all_columns() {
   RunOptions rest = options_;
   if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-3);
-  const Estimate all = sum_all_columns(matrix_, rest);
+  Estimate all = sum_all_columns(matrix_, rest);
+  combination_ = std::move(all.combination);
   rendered_count_ += static_cast<std::size_t>(all.trace.numbers.at("columns"));
   for (matrix::Index j = 0; j < columns_; ++j) rendered_.insert(j);
   trace_.numbers["seconds.columns"] += all.trace.numbers.at("seconds.columns");
@@ -140,6 +151,7 @@ Estimate RowColumnRun::finish() {
   if (cancelled_) trace_.notes["stopped"] = "cancelled";
   if (out_of_time_ && !cancelled_) trace_.notes["stopped"] = "time budget";
   estimate.sums = blend_.sums().empty() ? std::vector<Rgb>(rows_, Rgb(0)) : std::move(blend_.sums());
+  estimate.combination = std::move(combination_);
   estimate.trace = std::move(trace_);
   estimate.interrupted = cancelled_;
   return estimate;

@@ -41,8 +41,8 @@ class RowColumnRun {
   void pass_over_all_columns();
   void pilot();
   void more_rows_while_they_pay(double needed);
-  linalg::Splitter cluster_for(const ColumnsKnown& known, double needed);
-  ErrorCurve error_curve(const ColumnsKnown& known, double until_error);
+  linalg::Splitter cluster_for(ColumnsKnown& known, double needed);
+  ErrorCurve error_curve(ColumnsKnown& known, double until_error);
   double needed_error() const;  // of the next pass, for the blend to meet the target; 0: no target
   bool target_met();
   double time_left() const;  // seconds; a large number without a budget
@@ -60,6 +60,7 @@ class RowColumnRun {
   RowSampler sampler_;
   Exploration seen_, unseen_;
   Blend blend_;
+  std::vector<matrix::ScaledColumn> combination_;  // whose sums are the blend's
   Trace trace_;
   std::set<matrix::Index> rendered_;
   std::size_t rendered_count_ = 0;

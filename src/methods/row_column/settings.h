@@ -19,6 +19,7 @@ struct RowColumnSettings {
   ColourMode colour = ColourMode::averaged;
   ZeroColumns zero_columns = ZeroColumns::sample;
   double zero_share = 0.02;
+  double power_share = 0;
 };
 
 const Fields<RowColumnSettings>& row_column_fields();
