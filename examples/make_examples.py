@@ -220,15 +220,15 @@ def lamps():
 
 def courtyard():
     s = Scene("A courtyard with arcades under sun and sky: most of what is seen lies in shade.",
-              ((-1.2, 1.7, 9.2), (0.6, 2.3, 0), 64), depth=16)
+              ((-2.6, 1.7, 5.6), (0.6, 2.2, -2), 74), depth=16)
     s.diffuse("stone", 0.58, 0.52, 0.43)
     s.diffuse("plaster", 0.72, 0.62, 0.48)
     s.diffuse("paving", 0.42, 0.40, 0.37)
     s.diffuse("tile", 0.45, 0.19, 0.11)
     s.diffuse("leaf", 0.12, 0.25, 0.07)
     s.diffuse("earth", 0.2, 0.14, 0.09)
-    s.add('<emitter type="sunsky"><float name="turbidity" value="3"/><vector name="sun_direction" value="-0.55, 0.72, 0.42"/>'
-          '<float name="scale" value="0.05"/></emitter>')
+    s.add('<emitter type="sunsky"><float name="turbidity" value="3"/><float name="scale" value="5"/><vector name="sun_direction" value="0.62, 0.66, 0.12"/>'
+          '<transform name="to_world"><rotate x="1" angle="-90"/></transform></emitter>')
     s.rect("paving", (0, 0, 0), (30, 0, 0), (0, 0, -30))
     # Four wings around the court [-6, 6] × [-6, 6]; each has a gallery of pillars, a back wall, a ceiling and a storey above.
     for turn in range(4):

@@ -1,6 +1,7 @@
 #include "render/aovs.h"
 
 #include <functional>
+#include <map>
 
 #include "base/error.h"
 
@@ -31,20 +32,20 @@ film::Image first_hit_image(const Setup& setup, const std::vector<T>& values, F&
   return develop(setup, rgb);
 }
 
-// Names of the lights that `which` means ("*": all), each once.
-std::vector<std::string> matching_lights(const world::World& world, const std::string& which) {
-  std::vector<std::string> names;
+// Names of the lights that `which` means ("*": all), one for each group: emitters that share an id are one
+// light.
+std::map<std::uint16_t, std::string> matching_groups(const world::World& world, const std::string& which) {
+  std::map<std::uint16_t, std::string> groups;
   for (const auto& e : world.emitters())
-    if ((which == "*" || e.name == which) && std::find(names.begin(), names.end(), e.name) == names.end())
-      names.push_back(e.name);
-  return names;
+    if (which == "*" || e.name == which) groups.try_emplace(e.group, e.name);
+  return groups;
 }
 
 void add_lights(Picture& picture, const Setup& setup, const std::string& which,
                 const methods::Estimate& estimate, const Sinks& sinks) {
-  for (const std::string& name : matching_lights(*setup.world, which)) {
+  for (const auto& [group, name] : matching_groups(*setup.world, which)) {
     const auto from_it = [&](matrix::Index j) {
-      return setup.world->emitters()[setup.lights.emitter[j]].name == name;
+      return setup.world->emitters()[setup.lights.emitter[j]].group == group;
     };
     add_plane(picture, "light:" + name, part_image(setup, estimate, from_it, false, sinks));
   }
@@ -63,7 +64,7 @@ void check_aovs(const world::World& world, const RenderSettings& settings) {
     if (traced_roughness(settings) > 0)
       throw InputError("'" + aov + "' needs all light in the matrix", "leave out --direct traced");
     const std::string which = aov.substr(6);
-    if (!matching_lights(world, which).empty()) continue;
+    if (!matching_groups(world, which).empty()) continue;
     std::string known;
     for (std::size_t e = 0; e < emitters.size() && e < 20; ++e) known += (e ? ", " : "") + emitters[e].name;
     if (emitters.size() > 20) known += ", …";

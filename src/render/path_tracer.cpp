@@ -67,9 +67,12 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
     emitted = world_.emitted(*hit, -direction);
     if (!walk.specular && !is_black(emitted)) light_pdf = lights_.pdf_hit(*hit, direction, walk.travelled);
   } else {
-    if (world_.environment() < 0) return;
-    emitted = world_.background(direction);
-    if (!walk.specular) light_pdf = lights_.pdf_background(direction);
+    if (world_.environment() >= 0) {
+      emitted = world_.background(direction);
+      if (!walk.specular) light_pdf = lights_.pdf_background(direction);
+    }
+    // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
+    if (walk.specular) emitted += world_.sun_disc(direction);
   }
   if (is_black(emitted)) return;
   const float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + light_pdf);

@@ -176,8 +176,8 @@ const std::vector<Row>& table() {
                      "longest path, 1: emission only, 2: direct light; 0: as the scene says; -1: unlimited"},
                     &S::max_depth, -1, 1e6));
     t.push_back(number<double>(
-        {"clamp", "", "1", "0 … 1e9", "", "bound on a_j·G·(π f_x)(π f_y) of one entry; 0: off"}, &S::clamp, 0,
-        1e9));
+        {"clamp", "", "0.03", "0 … 1e9", "", "bound on a_j·G·(π f_x)(π f_y) of one entry; 0: off"}, &S::clamp,
+        0, 1e9));
     t.push_back(choice({"only", "", "all", "", "", "leave out the other part"}, &S::only,
                        {"all", "direct", "indirect"}));
     t.push_back(number<std::uint64_t>({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"},

@@ -94,7 +94,7 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, s
     pending_.pop_back();
     const auto hit = world_.intersect(s.ray);
     if (!hit) {
-      emission += s.weight * world_.background(s.ray.direction);
+      emission += s.weight * (world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
       continue;
     }
     const Vec3f wo = -s.ray.direction;
