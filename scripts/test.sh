@@ -1,30 +1,41 @@
 #!/bin/bash
-# Every check, cheapest first: formatting, layers, the tests, the sanitizers, the fuzzers. Ends with ctest's summary.
+# Every check, cheapest first: formatting, layers, the build with warnings as errors, the fuzzers, the sanitizers, and all
+# tests. The first failure ends it. The last lines are ctest's summary of the whole suite.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-jobs=${1:-$(nproc)}
-step() { printf '\n== %s\n' "$*"; }
+jobs=${1:-$(scripts/jobs.sh)}
+step() { printf '\n== %s (after %d s)\n' "$*" "$SECONDS"; }
+quiet_build() { cmake --preset "$1" > /dev/null && cmake --build --preset "$1" -j "$jobs" "${@:2}" -- --quiet; }
+# sanitized PRESET ROOM...: the rooms' tests in that build; all output if one fails, else the summary.
+sanitized() {
+  local preset=$1 log=build/$1/tests.log; shift
+  quiet_build "$preset" $(printf -- '-t test_%s ' "$@")
+  local rooms; rooms=$(IFS='|'; echo "^($*)$")
+  ctest --test-dir "build/$preset" -L "$rooms" -j "$jobs" --output-on-failure --no-tests=error > "$log" 2>&1 || { cat "$log"; return 1; }
+  grep "tests passed" "$log"
+}
 
 step "Formatting"
-git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format --dry-run --Werror
 step "Layers"
 python3 cmake/check_layers.py
-step "Build"
-cmake --preset ci
-cmake --build --preset ci -j "$jobs"
+
+step "Build, warnings are errors"
+quiet_build ci
+
 step "Fuzz targets, briefly"
-cmake --preset fuzz
-cmake --build --preset fuzz -j "$jobs"
+quiet_build fuzz
 scripts/fuzz.sh build/fuzz 10
-step "Fast tests under the address and undefined-behaviour sanitizers"
-cmake --preset asan
-cmake --build --preset asan -j "$jobs" -t test_base -t test_linalg -t test_matrix -t test_scenedesc -t test_film -t test_methods
-# Embree, OpenBLAS and oneTBB keep pools until exit; leaks are looked for in the readers, which use none of them.
-ctest --test-dir build/asan -L 'base|linalg|matrix|scenedesc|film|methods' -j "$jobs" --output-on-failure --no-tests=error
+
+# OpenBLAS keeps to one thread: its own threads are not instrumented.
+export OPENBLAS_NUM_THREADS=1
+export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
+export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
+step "The readers' and the algebra's tests under the address and undefined-behaviour sanitizers"
+sanitized asan base linalg matrix scenedesc film methods
 step "Threaded tests under the thread sanitizer"
-cmake --preset tsan
-cmake --build --preset tsan -j "$jobs" -t test_base -t test_methods
-TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp" \
-  ctest --test-dir build/tsan -L 'base|methods' -j "$jobs" --output-on-failure --no-tests=error
-step "Tests"
+sanitized tsan base methods
+unset OPENBLAS_NUM_THREADS
+
+step "All tests"
 ctest --test-dir build/release -j "$jobs" --output-on-failure --no-tests=error

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Writes the seed corpora of the fuzz targets: small good files that reach every branch of the readers once."""
+import pathlib
+import struct
+import zlib
+
+HERE = pathlib.Path(__file__).resolve().parent / "corpus"
+
+
+def write(target, name, data):
+    (HERE / target).mkdir(parents=True, exist_ok=True)
+    (HERE / target / name).write_bytes(data if isinstance(data, bytes) else data.encode())
+
+
+def obj():
+    write("obj", "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    write("obj", "full.obj", "# corners of every form\nmtllib a.mtl\no part\ng group\nusemtl m\ns 1\nv 0 0 0\nv 1 0 0 1\nv 0 1 0\n"
+          "vt 0 0\nvt 1 0 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1//1 2//1 3//1\nf 1/1 2/2 3/3\nf -3 -2 \\\n-1\n")
+
+
+def ply():
+    head = "ply\nformat {} 1.0\ncomment seed\nelement vertex 3\n"
+    xyz = "property float x\nproperty float y\nproperty float z\n"
+    rest = xyz + "property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\nproperty uchar red\n"
+    faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    write("ply", "ascii.ply", head.format("ascii") + xyz + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    for order, name in (("<", "binary_little_endian"), (">", "binary_big_endian")):
+        body = b"".join(struct.pack(order + "8fB", *c, 0, 0, 1, c[0], c[1], 200) for c in corners)
+        body += struct.pack(order + "B3i", 3, 0, 1, 2)
+        write("ply", name + ".ply", (head.format(name) + rest + faces).encode() + body)
+
+
+def mesh(version, flags, real):
+    """One mesh of one triangle: the file's header and the deflated body."""
+    body = struct.pack("<I", flags)
+    if version == 4:
+        body += b"seed\0"
+    body += struct.pack("<QQ", 3, 1)
+    body += struct.pack("<9" + real, 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    if flags & 0x1:
+        body += struct.pack("<9" + real, *[0, 0, 1] * 3)
+    if flags & 0x2:
+        body += struct.pack("<6" + real, 0, 0, 1, 0, 0, 1)
+    if flags & 0x8:
+        body += struct.pack("<9" + real, *[0.5] * 9)
+    body += struct.pack("<3I", 0, 1, 2)
+    return struct.pack("<HH", 0x041C, version) + zlib.compress(body)
+
+
+def serialized():
+    files = {
+        "single.serialized": (4, [mesh(4, 0x1000, "f")]),
+        "double.serialized": (4, [mesh(4, 0x2000 | 0x1 | 0x2 | 0x8, "d")]),
+        "version3.serialized": (3, [mesh(3, 0x1000 | 0x2, "f")]),
+        "three.serialized": (4, [mesh(4, 0x1000 | 0x10, "f"), mesh(4, 0x1000, "f"), mesh(4, 0x2000, "d")]),
+    }
+    for name, (version, meshes) in files.items():
+        offsets, at = [], 0
+        for m in meshes:
+            offsets.append(at)
+            at += len(m)
+        table = struct.pack("<%d%s" % (len(meshes), "Q" if version == 4 else "I"), *offsets)
+        # The target takes the mesh's index from the size of the file, modulo 3.
+        padding = b"\0" * (-(at + len(table) + 4) % 3 if len(meshes) == 1 else 0)
+        data = b"".join(meshes) + padding + table + struct.pack("<I", len(meshes))
+        write("serialized", name, data)
+
+
+SCENES = {
+    "modern.xml": """<scene version="3.0.0">
+<default name="w" value="8"/>
+<integrator type="path"><integer name="max_depth" value="5"/></integrator>
+<sensor type="perspective" id="eye"><float name="fov" value="45"/><string name="fov_axis" value="x"/>
+<transform name="to_world"><lookat origin="0,1,5" target="0 1 0" up="0,1,0"/></transform>
+<film type="hdrfilm"><integer name="width" value="$w"/><integer name="height" value="6"/><rfilter type="gaussian"/></film>
+<sampler type="independent"><integer name="sample_count" value="4"/></sampler></sensor>
+<bsdf type="twosided" id="b"><bsdf type="diffuse"><rgb name="reflectance" value="0.5 0.4 0.3"/></bsdf></bsdf>
+<texture type="checkerboard" id="t"><rgb name="color0" value="0.1"/><transform name="to_uv"><scale x="4" y="4"/></transform></texture>
+<bsdf type="principled" id="p"><ref name="base_color" id="t"/><float name="roughness" value="0.3"/></bsdf>
+<bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="roughconductor"><string name="material" value="Au"/></bsdf></bsdf>
+<shape type="sphere"><point name="center" x="0" y="1" z="0"/><float name="radius" value="0.5"/><ref id="b"/></shape>
+<shape type="cube"><transform name="to_world"><rotate y="1" angle="30"/><translate value="1,2,3"/></transform>
+<bsdf type="roughdielectric"><float name="alpha" value="0.2"/><string name="int_ior" value="bk7"/></bsdf></shape>
+<shape type="rectangle"><emitter type="area"><spectrum name="radiance" value="400:1, 500:2, 700:3"/></emitter></shape>
+<emitter type="constant"><rgb name="radiance" value="#ff8000"/></emitter>
+</scene>
+""",
+    "older.xml": """<?xml version="1.0" encoding="utf-8"?>
+<scene version="0.6.0">
+<sensor type="thinlens"><string name="fovAxis" value="smaller"/><float name="fov" value="50"/><float name="apertureRadius" value="0.1"/>
+<float name="focusDistance" value="3"/><transform name="toWorld"><matrix value="1 0 0 0 0 1 0 0 0 0 1 4 0 0 0 1"/></transform>
+<film type="ldrfilm"><integer name="width" value="4"/><integer name="height" value="4"/><boolean name="banner" value="false"/></film></sensor>
+<shape type="shapegroup" id="g"><shape type="cylinder"><float name="radius" value="0.2"/><bsdf type="phong"><float name="exponent" value="30"/></bsdf></shape></shape>
+<shape type="instance"><ref id="g"/><transform name="toWorld"><translate x="1"/></transform></shape>
+<shape type="disk"><bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="ward"/><bsdf type="plastic"><srgb name="diffuseReflectance" value="#336699"/></bsdf></bsdf>
+<emitter type="area"><blackbody name="radiance" temperature="5000K"/></emitter></shape>
+<emitter type="sunsky"><float name="turbidity" value="3"/><vector name="sunDirection" x="0" y="1" z="0.5"/></emitter>
+<emitter type="spot"><spectrum name="intensity" value="2"/><float name="cutoffAngle" value="20"/></emitter>
+<emitter type="point"><point name="position" x="0" y="2" z="0"/></emitter>
+<emitter type="directional"><vector name="direction" x="0" y="-1" z="0"/></emitter>
+</scene>
+""",
+}
+
+
+def main():
+    obj()
+    ply()
+    serialized()
+    for name, text in SCENES.items():
+        write("mitsuba", name, text)
+
+
+main()
