@@ -35,12 +35,13 @@ const Fields<RowColumnSettings>& row_column_fields() {
       number_field<S>(
           {"zero-share", "of columns", "How many of them are drawn, as a share of `columns`; at least one."},
           &S::zero_share, 0, 1),
-      number_field<S>({"power-share", "",
-                       "Share of a representative's probability that follows its light's power instead of "
-                       "its effect on the "
-                       "sampled rows; 0: none, as in the paper. Guards against lights that matter only "
-                       "between sampled rows."},
-                      &S::power_share, 0, 1)};
+      number_field<S>(
+          {"power-share", "",
+           "Share of a representative's probability that follows its light's power instead of "
+           "its effect on the "
+           "sampled rows; 0: none, as in the paper. Guards against lights that matter only "
+           "between sampled rows. Where rows or columns are automatic, held-out rows may choose another."},
+          &S::power_share, 0, 1)};
   return fields;
 }
 
