@@ -1,0 +1,53 @@
+// Every method's estimate is a sum of columns, and says of which: that sum splits a picture by light.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/method.h"
+
+namespace lumirank::methods {
+namespace {
+
+// All entries are positive, so n additions in single precision in two orders differ by less than 2·n·2⁻²⁴
+// relative; n is the number of columns, met at most once in each of up to five passes.
+void expect_same_sums(const matrix::LightingMatrix& m, const Estimate& e, const char* what) {
+  ASSERT_FALSE(e.combination.empty()) << what;
+  std::vector<Rgb> sums(m.rows());
+  m.accumulate(e.combination, sums);
+  const double allowed = 2 * 5 * static_cast<double>(m.columns()) / (1 << 24);
+  EXPECT_LT(relative_difference(sums, e.sums), allowed) << what;
+}
+
+class Combination : public testing::TestWithParam<std::string> {};
+
+TEST_P(Combination, ItsColumnsGiveTheSums) {
+  const auto m = matrix::sparse_matrix({600, 900, 1}, 0.3);
+  const auto method = find_method(GetParam()).make({});
+  RunOptions options;
+  expect_same_sums(m, method->run(m, options), "by default");
+  options.target_error = 0.02;  // several rounds or passes
+  expect_same_sums(m, method->run(m, options), "with a target");
+}
+
+TEST_P(Combination, AlsoOfAPartThatWasCutShort) {
+  const auto m = matrix::sparse_matrix({600, 900, 1}, 0.3);
+  std::atomic<bool> cancel{false};
+  RunOptions options;
+  options.sinks.cancel = &cancel;
+  options.on_estimate = [&](std::span<const Rgb>) { cancel = true; };  // after the first block of columns
+  const Estimate e = find_method(GetParam()).make({})->run(m, options);
+  EXPECT_TRUE(e.interrupted);
+  expect_same_sums(m, e, "cut short");
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> n;
+  for (const MethodInfo& m : all_methods()) n.push_back(m.name);
+  return n;
+}
+INSTANTIATE_TEST_SUITE_P(Methods, Combination, testing::ValuesIn(names()));
+
+}  // namespace
+}  // namespace lumirank::methods
