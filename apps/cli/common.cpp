@@ -89,7 +89,8 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
       ->allow_extra_args(false);
   command.add_option("--report", outputs.report, "JSON file for times, counts and settings");
   command.add_option("--preview", outputs.preview, "PNG file that is rewritten while the estimate improves");
-  command.add_option("--exposure", outputs.display.exposure, "stops, for PNG (default 0)");
+  command.add_option("--exposure", outputs.display.exposure, "stops, for PNG (default 0)")
+      ->check(CLI::Range(-100.0, 100.0));
   command.add_option("--tonemap", outputs.display.tonemap, "for PNG: none, reinhard or agx (default none)")
       ->check(CLI::IsMember({"none", "reinhard", "agx"}));
 }
@@ -97,7 +98,7 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
 void check_outputs(const OutputOptions& outputs) {
   for (const auto& file : outputs.images) check_writable(file);
   if (!outputs.preview.empty()) check_writable(outputs.preview);
-  if (!outputs.report.empty()) write_text(outputs.report, "{}\n");
+  if (!outputs.report.empty()) check_text_writable(outputs.report);
 }
 
 PreviewCallback preview_writer(const OutputOptions& outputs) {

@@ -34,7 +34,9 @@ void add_compare(CLI::App& app, Action& action) {
                    "folder for results.json, results.csv, images and index.html")
       ->required();
   add_setting_options(*command, options->common, {});
-  command->remove_option(command->get_option("--time"));
+  // What a comparison sets by itself, or has no use for.
+  for (const char* other : {"--time", "--method", "--aov"})
+    command->remove_option(command->get_option(other));
   command->add_option("--methods", options->methods, "names, separated by commas");
   command->add_option(
       "--reference", options->settings.reference,

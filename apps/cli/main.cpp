@@ -2,6 +2,7 @@
 // 130 interrupted.
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "commands.h"
 
@@ -19,6 +20,27 @@ int main(int argc, char** argv) {
   cli::add_error(app, action);
   cli::add_info(app, action);
   cli::add_methods(app, action);
+  app.footer(
+      "Examples:\n"
+      "  lumirank render room.xml -o room.png\n"
+      "  lumirank render --help\n");
+  if (argc < 2) {
+    std::fputs(app.help().c_str(), stderr);
+    return 2;
+  }
+  if (argv[1][0] != '-') {
+    bool known = false;
+    std::string commands;
+    for (const CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+      known = known || command->get_name() == argv[1];
+      commands += (commands.empty() ? "" : ", ") + command->get_name();
+    }
+    if (!known) {
+      std::fprintf(stderr, "lumirank: there is no command '%s'; the commands are %s\n", argv[1],
+                   commands.c_str());
+      return 2;
+    }
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -31,13 +53,13 @@ int main(int argc, char** argv) {
   try {
     return action();
   } catch (const InputError& e) {
-    std::fprintf(stderr, "\nlumirank: %s\n", e.what());
+    std::fprintf(stderr, "lumirank: %s\n", e.what());
     return 2;
   } catch (const Cancelled&) {
-    std::fprintf(stderr, "\nlumirank: interrupted before anything was finished; nothing was written\n");
+    std::fprintf(stderr, "lumirank: interrupted before anything was finished; nothing was written\n");
     return 130;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "\nlumirank: internal error: %s\n", e.what());
+    std::fprintf(stderr, "lumirank: internal error: %s\n", e.what());
     return 1;
   }
 }

@@ -118,6 +118,7 @@ void add_methods(CLI::App& app, Action& action) {
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("methods", "the methods with their parameters, defaults and papers");
   command->add_flag("--json", *json, "as JSON");
+  command->footer("Example:\n  lumirank methods --json\n");
   command->callback([json, &action] {
     action = [json] {
       std::fputs((*json ? methods_json() : methods_text()).c_str(), stdout);

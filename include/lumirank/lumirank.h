@@ -71,6 +71,8 @@ void write_picture(const std::string& filename, const Picture& picture, const Di
 void check_writable(const std::string& filename);
 // A small text file (report, settings), written to a temporary name and renamed.
 void write_text(const std::string& filename, const std::string& text);
+// Throws InputError if write_text could not write there; leaves nothing behind.
+void check_text_writable(const std::string& filename);
 
 // Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
 std::string error_json(const std::string& image_file, const std::string& reference_file);

@@ -51,6 +51,45 @@ void add_lights(Picture& picture, const Setup& setup, const std::string& which,
   }
 }
 
+bool is_split(const std::string& aov) {
+  return aov == "direct" || aov == "indirect" || aov.starts_with("light:");
+}
+
+void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const RenderSettings& settings,
+             const methods::Estimate& estimate, const Sinks& sinks) {
+  const auto& receivers = setup.receivers;
+  const auto depth_of = [](float d) { return Rgb(std::isfinite(d) ? d : 0.0f); };
+  const auto vector_of = [](Vec3f v) { return Rgb(v.x, v.y, v.z); };
+  if (is_split(aov) && estimate.combination.empty() && setup.lights.size() > 0)
+    throw InputError("the method '" + settings.method + "' cannot split its picture by light",
+                     "choose a method whose estimate is a sum of columns");
+  if (aov == "direct") {
+    add_plane(picture, aov,
+              part_image(
+                  setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] == 0; }, true, sinks));
+  } else if (aov == "indirect") {
+    add_plane(picture, aov,
+              part_image(
+                  setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] > 0; }, false, sinks));
+  } else if (aov.starts_with("light:")) {
+    add_lights(picture, setup, aov.substr(6), estimate, sinks);
+  } else if (aov == "emission") {
+    add_plane(picture, aov, develop(setup, receivers.emission));
+  } else if (aov == "albedo") {
+    add_plane(picture, aov, develop(setup, receivers.first_albedo));
+  } else if (aov == "normal") {
+    add_plane(picture, aov, first_hit_image(setup, receivers.first_normal, vector_of));
+  } else if (aov == "position") {
+    add_plane(picture, aov, first_hit_image(setup, receivers.first_position, vector_of));
+  } else if (aov == "depth") {
+    add_plane(picture, aov, first_hit_image(setup, receivers.first_distance, depth_of));
+  } else if (aov == "samples") {
+    std::vector<Rgb> count(receivers.samples());
+    for (std::size_t i = 0; i < receivers.size(); ++i) count[receivers.sample[i]] += Rgb(1);
+    add_plane(picture, aov, develop(setup, count));
+  }
+}
+
 }  // namespace
 
 FilmParts wanted_parts(const RenderSettings& settings) {
@@ -72,44 +111,20 @@ void check_aovs(const world::World& world, const RenderSettings& settings) {
   }
 }
 
-void add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,
+bool add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,
               const methods::Estimate& estimate, const Sinks& sinks) {
-  const auto& receivers = setup.receivers;
-  const auto depth_of = [](float d) { return Rgb(std::isfinite(d) ? d : 0.0f); };
-  const auto vector_of = [](Vec3f v) { return Rgb(v.x, v.y, v.z); };
+  std::string left_out;
   for (const std::string& aov : settings.aovs) {
-    const bool splits = aov == "direct" || aov == "indirect" || aov.starts_with("light:");
-    if (splits && estimate.combination.empty() && setup.lights.size() > 0)
-      throw InputError("the method '" + settings.method + "' cannot split its picture by light",
-                       "choose a method whose estimate is a sum of columns");
-    if (aov == "direct") {
-      add_plane(
-          picture, aov,
-          part_image(
-              setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] == 0; }, true, sinks));
-    } else if (aov == "indirect") {
-      add_plane(
-          picture, aov,
-          part_image(
-              setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] > 0; }, false, sinks));
-    } else if (aov.starts_with("light:")) {
-      add_lights(picture, setup, aov.substr(6), estimate, sinks);
-    } else if (aov == "emission") {
-      add_plane(picture, aov, develop(setup, receivers.emission));
-    } else if (aov == "albedo") {
-      add_plane(picture, aov, develop(setup, receivers.first_albedo));
-    } else if (aov == "normal") {
-      add_plane(picture, aov, first_hit_image(setup, receivers.first_normal, vector_of));
-    } else if (aov == "position") {
-      add_plane(picture, aov, first_hit_image(setup, receivers.first_position, vector_of));
-    } else if (aov == "depth") {
-      add_plane(picture, aov, first_hit_image(setup, receivers.first_distance, depth_of));
-    } else if (aov == "samples") {
-      std::vector<Rgb> count(receivers.samples());
-      for (std::size_t i = 0; i < receivers.size(); ++i) count[receivers.sample[i]] += Rgb(1);
-      add_plane(picture, aov, develop(setup, count));
+    try {
+      if (is_split(aov) && sinks.cancelled()) throw Cancelled();
+      add_aov(picture, aov, setup, settings, estimate, sinks);
+    } catch (const Cancelled&) {
+      left_out += (left_out.empty() ? "" : ", ") + aov;
     }
   }
+  if (left_out.empty()) return true;
+  sinks.warn("interrupted: the picture has no layer " + left_out);
+  return false;
 }
 
 }  // namespace lumirank::rendering

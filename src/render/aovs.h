@@ -13,8 +13,8 @@ FilmParts wanted_parts(const RenderSettings& settings);
 void check_aovs(const world::World& world, const RenderSettings& settings);
 
 // Appends the planes that settings.aovs names. Throws InputError where a method's estimate cannot be split by
-// light.
-void add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,
+// light. Cancelled, it leaves out those that are still to be computed from columns, warns, and returns false.
+bool add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,
               const methods::Estimate& estimate, const Sinks& sinks);
 
 }  // namespace lumirank::rendering

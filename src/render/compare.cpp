@@ -40,10 +40,16 @@ class Comparison {
     results_.scene = fs::path(scene.impl().desc.source_file).filename().string();
     results_.version = version();
     results_.width = setup_.view.width, results_.height = setup_.view.height;
+    if (is_file()) read_reference();
   }
 
   bool run() {
     prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    // Not before: a comparison that is refused leaves nothing behind.
+    std::error_code code;
+    fs::create_directories(folder_, code);
+    if (code)
+      throw InputError({folder_, 0}, "the folder cannot be made: " + code.message(), "choose another place");
     try {
       make_reference();
       for (std::size_t k = 0; k < plan_.size(); ++k) {
@@ -116,19 +122,26 @@ class Comparison {
       results_.reference_kind =
           "path tracing, " + std::to_string(traced.spp) + " paths per pixel, paths that columns carry";
     } else {
-      reference_ = film::read_image(settings_.reference).color;
-      if (reference_.width != setup_.view.width || reference_.height != setup_.view.height)
-        throw InputError({settings_.reference, 0},
-                         "the reference has " + std::to_string(reference_.width) + "x" +
-                             std::to_string(reference_.height) + " pixels, the render " +
-                             std::to_string(setup_.view.width) + "x" + std::to_string(setup_.view.height),
-                         "give --size or another reference");
       results_.reference_kind = fs::path(settings_.reference).filename().string();
     }
     results_.reference_seconds = timer.seconds();
     results_.reference_image = "reference.png";
     save("reference.png", reference_);
     save("reference.exr", reference_);
+  }
+
+  bool is_file() const {
+    return settings_.reference != "path" && settings_.reference != "brute-force" && sampled_receivers() == 0;
+  }
+
+  void read_reference() {
+    reference_ = film::read_image(settings_.reference).color;
+    if (reference_.width != setup_.view.width || reference_.height != setup_.view.height)
+      throw InputError({settings_.reference, 0},
+                       "the reference has " + std::to_string(reference_.width) + "x" +
+                           std::to_string(reference_.height) + " pixels, the render " +
+                           std::to_string(setup_.view.width) + "x" + std::to_string(setup_.view.height),
+                       "give --size or another reference");
   }
 
   // "brute-force:4096": exact sums at so many receivers of the full-size render; 0 for other references.
@@ -303,10 +316,6 @@ class Comparison {
 bool compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
              const Sinks& sinks) {
   validate(settings.base);
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code)
-    throw InputError({folder, 0}, "the folder cannot be made: " + code.message(), "choose another place");
   bool whole = false;
   with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
   return whole;

@@ -1,16 +1,12 @@
 // The public façade: loading, rendering, the reference, and files.
 #include "lumirank/lumirank.h"
 
-#include <unistd.h>
-
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "film/atomic_file.h"
 #include "film/image_io.h"
 #include "film/metrics.h"
 #include "render/aovs.h"
@@ -205,13 +201,22 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
       ReferenceSettings rest;
       rest.paths = "rest";
       rest.spp = std::max(16, settings.spp);
-      const auto traced = rendering::path_trace(world, setup.view, settings, rest, sinks);
-      // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
-      for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += traced.image.pixels[p];
-      result.interrupted = traced.interrupted;
+      try {
+        const auto traced = rendering::path_trace(world, setup.view, settings, rest, sinks);
+        // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
+        for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += traced.image.pixels[p];
+        result.interrupted = traced.interrupted;
+      } catch (const Cancelled&) {  // what the matrix gave is kept
+        result.interrupted = true;
+      }
     }
     result.picture = rendering::to_picture(image);
-    rendering::add_aovs(result.picture, setup, settings, estimate, sinks);
+    // The report counts what the method looked at; layers look at the chosen columns once more.
+    auto& counters = setup.matrix->counters();
+    const auto evaluated = counters.entries_evaluated.load(), culled = counters.entries_culled.load(),
+               rays = counters.rays_shadow.load();
+    if (!rendering::add_aovs(result.picture, setup, settings, estimate, sinks)) result.interrupted = true;
+    counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
     setup.seconds["film"] = film_timer.seconds();
     result.report_json = rendering::make_report(setup, settings, info, estimate, timer.seconds(), count);
   });
@@ -221,6 +226,9 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
 RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
                        const Sinks& sinks, const PreviewCallback& on_preview) {
   validate(settings);
+  for (const auto& aov : settings.aovs)
+    if (aov != "direct" && aov != "indirect" && aov != "emission")
+      throw InputError("the reference has no AOV '" + aov + "'", "it has direct, indirect and emission");
   RenderResult result;
   with_threads(settings.threads, [&] {
     const Timer timer;
@@ -235,13 +243,10 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     result.interrupted = traced.interrupted;
     result.picture = rendering::to_picture(traced.image);
     for (const auto& aov : settings.aovs) {
-      const film::Image* plane = aov == "direct"     ? &traced.direct
-                                 : aov == "indirect" ? &traced.indirect
-                                 : aov == "emission" ? &traced.emission
-                                                     : nullptr;
-      if (!plane)
-        throw InputError("the reference has no AOV '" + aov + "'", "it has direct, indirect and emission");
-      result.picture.planes.push_back({aov, rendering::to_picture(*plane).planes[0].rgb});
+      const film::Image& plane = aov == "direct"     ? traced.direct
+                                 : aov == "indirect" ? traced.indirect
+                                                     : traced.emission;
+      result.picture.planes.push_back({aov, rendering::to_picture(plane).planes[0].rgb});
     }
     nlohmann::ordered_json json;
     json["method"] = "reference";
@@ -268,23 +273,10 @@ void write_picture(const std::string& filename, const Picture& picture, const Di
 void check_writable(const std::string& filename) { film::check_writable(filename); }
 
 void write_text(const std::string& filename, const std::string& text) {
-  const std::string temporary = filename + ".tmp" + std::to_string(getpid());
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) {
-      std::remove(temporary.c_str());
-      throw InputError({filename, 0}, "cannot be written", "does its folder exist, and is there space?");
-    }
-  }
-  std::error_code code;
-  std::filesystem::rename(temporary, filename, code);
-  if (code) {
-    std::remove(temporary.c_str());
-    throw InputError({filename, 0}, "cannot be written: " + code.message(), "choose another place");
-  }
+  film::write_whole_file(filename, text);
 }
+
+void check_text_writable(const std::string& filename) { const film::AtomicFile probe(filename); }
 
 std::string error_json(const std::string& image_file, const std::string& reference_file) {
   const auto image = film::read_image(image_file), reference_image = film::read_image(reference_file);

@@ -15,9 +15,11 @@ const scenedesc::SensorDesc& find_sensor(const scenedesc::SceneDesc& desc, const
   std::string known;
   for (const auto& sensor : desc.sensors) {
     if (sensor.id == name) return sensor;
-    known += (known.empty() ? "'" : ", '") + sensor.id + "'";
+    if (!sensor.id.empty()) known += (known.empty() ? "'" : ", '") + sensor.id + "'";
   }
-  throw InputError({desc.source_file, 0}, "there is no camera '" + name + "'", "the cameras are " + known);
+  throw InputError({desc.source_file, 0}, "there is no camera '" + name + "'",
+                   known.empty() ? "none of the scene's cameras has an id; the first is the default"
+                                 : "the cameras are " + known);
 }
 
 }  // namespace
