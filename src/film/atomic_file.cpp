@@ -22,7 +22,7 @@ std::string reason(int code) { return std::strerror(code); }
 // Where a write to `filename` lands: the end of a chain of links, or the name itself.
 fs::path resolve(const std::string& filename) {
   std::error_code error;
-  const fs::path path(filename);
+  fs::path path(filename);
   if (!fs::is_symlink(path, error)) return path;
   const fs::path resolved = fs::weakly_canonical(path, error);
   return error ? path : resolved;

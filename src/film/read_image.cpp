@@ -57,7 +57,7 @@ Channels choose_channels(const OIIO::ImageSpec& spec) {
 // Encoded to linear for integer files; 8-bit ones by a table.
 class Decoder {
  public:
-  Decoder(OIIO::TypeDesc format, bool raw) : decode_(!raw && !format.is_floating_point()) {
+  Decoder(const OIIO::TypeDesc& format, bool raw) : decode_(!raw && !format.is_floating_point()) {
     if (format.basetype == OIIO::TypeDesc::UINT8)
       for (int i = 0; i < 256; ++i) table_.push_back(srgb_decode(static_cast<float>(i) / 255.0f));
   }

@@ -19,7 +19,7 @@ std::string extension_of(const std::string& filename) {
 }
 
 std::string require_known_extension(const std::string& filename) {
-  const std::string extension = extension_of(filename);
+  std::string extension = extension_of(filename);
   if (extension != ".exr" && extension != ".pfm" && extension != ".png")
     throw InputError(SourceLocation{filename, 0},
                      extension.empty() ? "an image's file name needs an extension"
@@ -29,7 +29,7 @@ std::string require_known_extension(const std::string& filename) {
 }
 
 void write_with_oiio(const std::string& filename, const char* format, const OIIO::ImageSpec& spec,
-                     OIIO::TypeDesc type, const void* data) {
+                     const OIIO::TypeDesc& type, const void* data) {
   AtomicFile file(filename);
   const auto fail = [&](const std::string& why) {
     throw InputError(SourceLocation{filename, 0}, "cannot write the image: " + why);

@@ -44,8 +44,9 @@ std::map<std::uint16_t, std::string> matching_groups(const world::World& world, 
 void add_lights(Picture& picture, const Setup& setup, const std::string& which,
                 const methods::Estimate& estimate, const Sinks& sinks) {
   for (const auto& [group, name] : matching_groups(*setup.world, which)) {
+    const std::uint16_t wanted = group;  // clang before 16 cannot capture a structured binding
     const auto from_it = [&](matrix::Index j) {
-      return setup.world->emitters()[setup.lights.emitter[j]].group == group;
+      return setup.world->emitters()[setup.lights.emitter[j]].group == wanted;
     };
     add_plane(picture, "light:" + name, part_image(setup, estimate, from_it, false, sinks));
   }

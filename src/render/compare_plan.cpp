@@ -74,10 +74,10 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
     base.lights = settings.base.lights;
     base.spp = settings.base.spp;
     // --set is for the methods that have the parameter.
-    for (const auto& [key, value] : settings.base.method_settings)
+    for (const auto& setting : settings.base.method_settings)
       if (std::any_of(info.parameters.begin(), info.parameters.end(),
-                      [&](const auto& p) { return p.key == key; }))
-        base.method_settings[key] = value;
+                      [&](const auto& p) { return p.key == setting.first; }))
+        base.method_settings.insert_or_assign(setting.first, setting.second);
 
     // Every sweep of this method is a curve of its own: sweeps are not multiplied with each other.
     std::vector<PlannedRun> points;
