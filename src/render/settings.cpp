@@ -63,7 +63,7 @@ Row number(Field field, T RenderSettings::*member, double low, double high) {
           }};
 }
 
-Row choice(Field field, std::string RenderSettings::*member, std::vector<std::string> values) {
+Row choice(Field field, std::string RenderSettings::*member, const std::vector<std::string>& values) {
   field.type = "choice";
   for (const auto& v : values) field.range += (field.range.empty() ? "" : "|") + v;
   const std::string key = field.key, range = field.range;
