@@ -73,7 +73,7 @@ const Element& Reader::resolve(const Element& element) const {
 
 std::string Reader::existing_file(const std::string& name, const SourceLocation& where,
                                   const std::string& kind) {
-  const std::string filename = resolve_path(name, where.file);
+  std::string filename = resolve_path(name, where.file);
   if (found_files_.count(filename)) return filename;
   std::error_code error;
   const auto status = std::filesystem::status(filename, error);
