@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -89,13 +90,14 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
       ->allow_extra_args(false);
   command.add_option("--report", outputs.report, "JSON file for times, counts and settings");
   command.add_option("--preview", outputs.preview, "PNG file that is rewritten while the estimate improves");
-  command.add_option("--exposure", outputs.display.exposure, "stops, for PNG (default 0)")
-      ->check(CLI::Range(-100.0, 100.0));
+  command.add_option("--exposure", outputs.display.exposure, "stops, for PNG (default 0)");
   command.add_option("--tonemap", outputs.display.tonemap, "for PNG: none, reinhard or agx (default none)")
       ->check(CLI::IsMember({"none", "reinhard", "agx"}));
 }
 
 void check_outputs(const OutputOptions& outputs) {
+  if (!(std::abs(outputs.display.exposure) <= 100))  // also what is not a number
+    throw InputError("--exposure must lie between -100 and 100 stops");
   for (const auto& file : outputs.images) check_writable(file);
   if (!outputs.preview.empty()) check_writable(outputs.preview);
   if (!outputs.report.empty()) check_text_writable(outputs.report);

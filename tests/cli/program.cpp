@@ -1,0 +1,176 @@
+#include "program.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+namespace lumirank::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A running program with its two streams in files: no pipe can fill up and stall it.
+class Process {
+ public:
+  Process(const Arguments& arguments, const std::string& folder) {
+    std::vector<std::string> words = {LUMIRANK_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    const std::string out = files_ / "out", err = files_ / "err";
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
+    if (!folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+    const int failed = posix_spawn(&pid_, LUMIRANK_PROGRAM, &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) throw std::runtime_error("the program could not be started");
+  }
+  ~Process() {
+    if (!ended_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, &status_, 0);
+    }
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  bool running() {
+    if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    return !ended_;
+  }
+  void interrupt() const { kill(pid_, SIGINT); }
+  Outcome wait() {
+    if (!ended_) waitpid(pid_, &status_, 0);
+    ended_ = true;
+    Outcome outcome;
+    outcome.code = WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+    outcome.out = read_text(files_ / "out");
+    outcome.err = read_text(files_ / "err");
+    return outcome;
+  }
+
+ private:
+  TemporaryFolder files_;
+  pid_t pid_ = -1;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Outcome lumirank(const Arguments& arguments, const std::string& folder) {
+  return Process(arguments, folder).wait();
+}
+
+Outcome interrupted(const Arguments& arguments, const std::function<bool()>& when) {
+  Process process(arguments, {});
+  while (!when()) {
+    if (!process.running()) {
+      ADD_FAILURE() << "the program ended before it was interrupted";
+      return process.wait();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  process.interrupt();
+  return process.wait();
+}
+
+std::string example(const std::string& name) { return std::string(LUMIRANK_EXAMPLES) + "/" + name + ".xml"; }
+
+std::string data_file(const std::string& name) { return std::string(LUMIRANK_TEST_DATA) + "/" + name; }
+
+std::string read_text(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string write_scene(const TemporaryFolder& folder, const std::string& body, const std::string& name) {
+  const std::string file = folder / name;
+  std::ofstream(file) << "<scene version=\"3.0.0\">\n" << body << "</scene>\n";
+  return file;
+}
+
+nlohmann::json read_json(const std::string& file) {
+  auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+  EXPECT_FALSE(json.is_discarded()) << file << " is not JSON";
+  return json;
+}
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Pixels read_pixels(const std::string& file) {
+  Pixels pixels;
+  const auto input = OIIO::ImageInput::open(file);
+  if (!input) {
+    ADD_FAILURE() << file << " cannot be opened: " << OIIO::geterror();
+    return pixels;
+  }
+  const OIIO::ImageSpec& spec = input->spec();
+  pixels.width = spec.width, pixels.height = spec.height;
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  const std::size_t count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  std::vector<float> data(channels * count);
+  EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, data.data())) << file;
+  for (std::size_t c = 0; c < channels; ++c) {
+    auto& plane = pixels.channels[spec.channelnames[c]];
+    plane.resize(count);
+    for (std::size_t p = 0; p < count; ++p) plane[p] = data[p * channels + c];
+  }
+  return pixels;
+}
+
+double mean(const Pixels& pixels) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const char* name : {"R", "G", "B"})
+    for (const float v : pixels.channels.at(name)) sum += static_cast<double>(v), ++count;
+  return sum / static_cast<double>(count);
+}
+
+bool all_finite(const Pixels& pixels) {
+  for (const auto& [name, values] : pixels.channels)
+    for (const float v : values)
+      if (!std::isfinite(v)) return false;
+  return true;
+}
+
+std::string small_room(const std::string& more) {
+  return "<integrator type=\"path\"><integer name=\"max_depth\" value=\"6\"/></integrator>\n" +
+         point_camera("0,0,3.5", "0,0,0", 16, 50) +
+         "<shape type=\"cube\"><boolean name=\"flip_normals\" value=\"true\"/><transform name=\"to_world\">"
+         "<scale value=\"2,2,4\"/></transform><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.6, "
+         "0.5, 0.4\"/></bsdf></shape>\n"
+         "<shape type=\"sphere\" id=\"lamp\"><point name=\"center\" x=\"0.8\" y=\"1.2\" z=\"0\"/><float "
+         "name=\"radius\" value=\"0.2\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"9, 8, "
+         "7\"/></emitter></shape>\n" +
+         more;
+}
+
+void expect_refused(const Outcome& outcome, const std::string& phrase, const std::string& what) {
+  EXPECT_EQ(outcome.code, 2) << what << outcome.err;
+  EXPECT_EQ(outcome.out, "") << what;
+  EXPECT_NE(outcome.err.find(phrase), std::string::npos) << what << " says: " << outcome.err;
+}
+
+}  // namespace lumirank::test
