@@ -123,23 +123,23 @@ def interior():
     s.diffuse("dark", 0.08, 0.07, 0.07)
     s.metal("brass", "Au", 0.25)
     s.rough_plastic("ceramic", 0.10, 0.24, 0.45, 0.15)
-    s.room("plaster", "oak", "plaster", (-3, 0, -3), (3, 2.8, 3))
-    s.box("accent", (-3, 0, -2.99), (3, 2.3, -2.95))
+    s.room("plaster", "oak", "plaster", (-3, 0, -3), (3, 3.0, 3))
+    s.box("accent", (-3, 0, -2.99), (3, 2.1, -2.95))
     # Coves: a shelf along two walls hides strips of lamps that face the ceiling.
-    for k in range(10):
-        x = -2.6 + k * 0.578
-        s.rect("dark", (x, 2.42, -2.86), (0.22, 0, 0), (0, 0, -0.04), emit=(58, 47, 33), name=f"cove_back_{k}")
-    s.box("plaster", (-3, 2.32, -2.95), (3, 2.40, -2.72))
-    s.box("plaster", (-3, 2.40, -2.74), (3, 2.55, -2.72))
-    for k in range(10):
-        z = -2.6 + k * 0.578
-        s.rect("dark", (-2.93, 2.42, z), (0, 0, 0.22), (0.04, 0, 0), emit=(40, 44, 52), name=f"cove_left_{k}")
-    s.box("plaster", (-3, 2.32, -2.72), (-2.82, 2.40, 3))
-    s.box("plaster", (-2.84, 2.40, -2.72), (-2.82, 2.55, 3))
+    for k in range(8):
+        x = -2.45 + k * 0.7
+        s.rect("dark", (x, 2.2, -2.82), (0.3, 0, 0), (0, 0, -0.1), emit=(20, 16.5, 12), name=f"cove_back_{k}")
+    s.box("plaster", (-3, 2.1, -2.95), (3, 2.18, -2.62))
+    s.box("plaster", (-3, 2.18, -2.64), (3, 2.42, -2.62))
+    for k in range(8):
+        z = -2.3 + k * 0.7
+        s.rect("dark", (-2.86, 2.2, z), (0, 0, 0.3), (0.1, 0, 0), emit=(14, 15.4, 18), name=f"cove_left_{k}")
+    s.box("plaster", (-3, 2.1, -2.62), (-2.66, 2.18, 3))
+    s.box("plaster", (-2.68, 2.18, -2.62), (-2.66, 2.42, 3))
     # Uplight: a bowl on a pole.
     s.cylinder("brass", (2.35, 0, -2.2), (2.35, 1.75, -2.2), 0.02)
     s.cylinder("brass", (2.35, 1.75, -2.2), (2.35, 1.95, -2.2), 0.16)
-    s.rect("dark", (2.35, 1.78, -2.2), (0.1, 0, 0), (0, 0, -0.1), emit=(170, 120, 66), name="uplight")
+    s.rect("dark", (2.35, 1.78, -2.2), (0.1, 0, 0), (0, 0, -0.1), emit=(120, 85, 47), name="uplight")
     s.cylinder("brass", (2.35, 0, -2.2), (2.35, 0.03, -2.2), 0.18)
     # Sofa, table, shelf, rug, things.
     s.box("linen", (-2.2, 0.005, -1.1), (0.9, 0.012, 1.5))
@@ -172,8 +172,8 @@ def interior():
             z += thick + 0.004
     s.box("lacquer", (2.55, 0, -1.2), (2.98, 0.8, 1.2))
     s.sphere("lacquer", (2.76, 0.98, -0.6), 0.18)
-    s.box("dark", (-2.0, 1.3, -2.95), (0.1, 2.0, -2.92))
-    s.box("linen", (-1.94, 1.36, -2.925), (0.04, 1.94, -2.915))
+    s.box("dark", (-2.0, 1.2, -2.95), (0.1, 1.9, -2.92))
+    s.box("linen", (-1.94, 1.26, -2.925), (0.04, 1.84, -2.915))
     s.write("interior")
 
 
