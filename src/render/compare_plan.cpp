@@ -66,6 +66,10 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
     if (sweep.values.empty()) throw InputError("the sweep of '" + sweep.key + "' has no values");
   }
 
+  for (const double time : settings.times)
+    if (!(time > 0 && time <= 1e7))  // also what is not a number
+      throw InputError("a time budget of --times is not positive", "give seconds, --times 1,2,4");
+
   std::vector<PlannedRun> runs;
   for (const std::string& name : settings.methods) {
     const methods::MethodInfo& info = methods::find_method(name);

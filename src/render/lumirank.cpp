@@ -151,8 +151,10 @@ std::string Scene::info_text(const Sinks& sinks) const {
     }
     text += "  " + e["name"].get<std::string>() + "  " + e["power"].dump() + " W\n";
   }
-  text += "warnings: " + std::to_string(json["warnings"].size()) + "\n";
-  for (const auto& w : json["warnings"]) text += "  " + w.get<std::string>() + "\n";
+  // The description above has listed the reader's own.
+  const std::size_t read = impl_->desc.warnings.size(), all = json["warnings"].size();
+  text += "warnings while building: " + std::to_string(all - read) + "\n";
+  for (std::size_t w = read; w < all; ++w) text += "  " + json["warnings"][w].get<std::string>() + "\n";
   return text;
 }
 

@@ -100,7 +100,7 @@ TEST(ErrorCommand, RefusesWhatCannotBeCompared) {
   broken.color.pixels[3].g = std::numeric_limits<float>::infinity();
   const std::string a = folder / "a.exr", w = folder / "wide.exr", b = folder / "broken.pfm";
   film::write_image(a, image), film::write_image(w, wide), film::write_image(b, broken);
-  expect_refused(lumirank({"error", a, w}), "2x2");
+  expect_refused(lumirank({"error", a, w}), "2 x 2 pixels and the reference 3 x 2");
   expect_refused(lumirank({"error", b, a}), "2 ");
   expect_refused(lumirank({"error", a, b}), "2 ");
   expect_refused(lumirank({"error", a, folder / "none.exr"}), "none.exr");
@@ -139,7 +139,8 @@ TEST(Info, ListsWhatWasReplacedWithItsLine) {
   EXPECT_NE(text.out.find("scene.xml:4"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("velvet"), std::string::npos);
   bool found = false;
-  for (const auto& warning : nlohmann::json::parse(json.out).at("warnings"))
+  const auto info = nlohmann::json::parse(json.out);
+  for (const auto& warning : info.at("warnings"))
     found = found || warning.get<std::string>().find("scene.xml:4") != std::string::npos;
   EXPECT_TRUE(found);
   expect_refused(lumirank({"info", scene, "--strict"}), "scene.xml:4");

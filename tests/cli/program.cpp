@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -54,6 +55,7 @@ class Process {
     if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
     return !ended_;
   }
+  pid_t pid() const { return pid_; }
   void interrupt() const { kill(pid_, SIGINT); }
   Outcome wait() {
     if (!ended_) waitpid(pid_, &status_, 0);
@@ -78,9 +80,9 @@ Outcome lumirank(const Arguments& arguments, const std::string& folder) {
   return Process(arguments, folder).wait();
 }
 
-Outcome interrupted(const Arguments& arguments, const std::function<bool()>& when) {
+Outcome interrupted(const Arguments& arguments, const std::function<bool(pid_t)>& when) {
   Process process(arguments, {});
-  while (!when()) {
+  while (!when(process.pid())) {
     if (!process.running()) {
       ADD_FAILURE() << "the program ended before it was interrupted";
       return process.wait();
@@ -89,6 +91,25 @@ Outcome interrupted(const Arguments& arguments, const std::function<bool()>& whe
   }
   process.interrupt();
   return process.wait();
+}
+
+bool catches_interrupts(pid_t program) {
+  std::ifstream status("/proc/" + std::to_string(program) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("SigCgt:")) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1)) & 1;
+  return false;
+}
+
+std::vector<Outcome> lumirank_each(const std::vector<Arguments>& runs) {
+  std::vector<Outcome> outcomes(runs.size());
+  std::atomic<std::size_t> next{0};
+  std::vector<std::jthread> workers;
+  for (unsigned k = 0; k < std::clamp(std::thread::hardware_concurrency(), 1u, 4u); ++k)
+    workers.emplace_back([&] {
+      for (std::size_t i = next++; i < runs.size(); i = next++) outcomes[i] = lumirank(runs[i]);
+    });
+  workers.clear();
+  return outcomes;
 }
 
 std::string example(const std::string& name) { return std::string(LUMIRANK_EXAMPLES) + "/" + name + ".xml"; }

@@ -26,7 +26,12 @@ using Arguments = std::vector<std::string>;
 Outcome lumirank(const Arguments& arguments, const std::string& folder = {});
 
 // Runs the program and sends it SIGINT as soon as `when` holds; fails if it ends before that.
-Outcome interrupted(const Arguments& arguments, const std::function<bool()>& when);
+Outcome interrupted(const Arguments& arguments, const std::function<bool(pid_t)>& when);
+// The program has come so far that it would not simply be killed.
+bool catches_interrupts(pid_t program);
+
+// The same for every argument list, a few at a time: the program's start is most of a small run.
+std::vector<Outcome> lumirank_each(const std::vector<Arguments>& runs);
 
 std::string example(const std::string& name);  // of examples/
 std::string data_file(const std::string& name);

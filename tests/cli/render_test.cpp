@@ -138,6 +138,29 @@ TEST_F(Render, SizeAndReceiversPerPixel) {
   EXPECT_EQ(read_json(folder_ / "r.json")["receivers"], 7 * 5 * 9);
 }
 
+// Samples are keyed by their pixel: a window sees what the whole sees there.
+TEST_F(Render, ACropIsAWindowOfTheWhole) {
+  const auto expect_window = [](const Pixels& whole, const Pixels& window, const std::string& channel) {
+    ASSERT_EQ(window.width, 5) << channel;
+    ASSERT_EQ(window.height, 4) << channel;
+    for (std::size_t y = 0; y < 4; ++y)
+      for (std::size_t x = 0; x < 5; ++x)
+        EXPECT_EQ(window.channels.at(channel)[5 * y + x], whole.channels.at(channel)[12 * (y + 2) + x + 6])
+            << channel << " at " << x << "," << y;
+  };
+  const Arguments eye = {
+      "--aov", "albedo,normal,depth,position,samples,emission", "--direct", "traced", "--only", "direct"};
+  const Pixels whole = render(eye), window = render(eye + Arguments{"--crop", "6,2,5,4"});
+  for (const auto& [channel, values] : whole.channels) expect_window(whole, window, channel);
+
+  const std::string file = folder_ / "reference.exr";
+  const Arguments reference = {"reference", scene_, "-o", file, "--size", "12x10", "--spp", "4"};
+  EXPECT_SUCCESS(lumirank(reference));
+  const Pixels truth = read_pixels(file);
+  EXPECT_SUCCESS(lumirank(reference + Arguments{"--crop", "6,2,5,4"}));
+  for (const char* c : {"R", "G", "B"}) expect_window(truth, read_pixels(file), c);
+}
+
 TEST_F(Render, ExposureDoublesThePng) {
   const Pixels exr = render({}), dark = render({"--exposure", "-4"}, "dark.png"),
                darker = render({"--exposure", "-5"}, "darker.png");
