@@ -1,5 +1,8 @@
 #include "base/parallel.h"
 
+#if defined(__SANITIZE_THREAD__)
+#include "base/plain_threads.h"
+#endif
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -14,6 +17,9 @@ void parallel_for(std::size_t n, std::size_t grain,
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t pieces = (n + grain - 1) / grain;
   if (pieces == 1) return body(0, n);
+#if defined(__SANITIZE_THREAD__)
+  return plain_threads::run(pieces, [&](std::size_t k) { body(k * grain, std::min(n, (k + 1) * grain)); });
+#endif
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pieces, 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
