@@ -15,7 +15,7 @@
 #include "render/html_text.h"
 #include "render/svg_plot.h"
 
-namespace lumirank::render {
+namespace lumirank::rendering {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -279,4 +279,4 @@ TEST(HtmlText, NumbersForPeople) {
 }
 
 }  // namespace
-}  // namespace lumirank::render
+}  // namespace lumirank::rendering
