@@ -22,7 +22,7 @@ struct RenderSettings {
   int width = 0, height = 0;  // pixels; 0: as the scene says
   int spp = 4;                // receivers per pixel
   int max_depth = 0;          // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
-  double clamp = 0.03;           // X of docs/conventions; 0: off
+  double clamp = 0.03;        // X of docs/conventions; 0: off
   std::string only = "all";   // all, direct, indirect
   std::uint64_t seed = 1;
   std::uint64_t method_seed = 0;  // other choices of the method on the same lights and receivers; 0: the seed
