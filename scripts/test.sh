@@ -29,7 +29,7 @@ mapfile -t algebra < <(git ls-files 'src/base/*.cpp' 'src/linalg/*.cpp' 'src/mat
 JOBS=$jobs scripts/tidy.sh build/release "${algebra[@]}"
 
 step "Fuzz targets, briefly"
-quiet_build fuzz
+quiet_build fuzz -t fuzzers
 scripts/fuzz.sh build/fuzz 10
 
 # OpenBLAS keeps to one thread: its own threads are not instrumented.
