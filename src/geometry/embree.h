@@ -32,10 +32,12 @@ inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
   rtcOccluded1(scene, &ray, &arguments);
 }
 
-inline void occluded16_coherent(const int* valid, RTCScene scene, Context& context, RTCRay16& rays) {
+// `coherent` packets are faster, but must not meet instances: inside of them Embree 3.13's coherent traversal
+// can loop for ever (seen with a filter that accepts hits).
+inline void occluded16(const int* valid, RTCScene scene, Context& context, RTCRay16& rays, bool coherent) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   arguments.context = &context;
   rtcOccluded16(valid, scene, &rays, &arguments);
 }
@@ -50,8 +52,8 @@ inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
 
 inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) { rtcOccluded1(scene, &context, &ray); }
 
-inline void occluded16_coherent(const int* valid, RTCScene scene, Context& context, RTCRay16& rays) {
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+inline void occluded16(const int* valid, RTCScene scene, Context& context, RTCRay16& rays, bool coherent) {
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded16(valid, scene, &context, &rays);
 }
 #endif

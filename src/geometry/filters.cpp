@@ -35,6 +35,7 @@ void filter_cutout(const RTCFilterFunctionNArguments* arguments) {
 void filter_smooth(const RTCFilterFunctionNArguments* arguments) {
   const RTCFilterFunctionNArguments& a = *arguments;
   const auto& query = *reinterpret_cast<const QueryContext*>(a.context);
+  if (!query.crossed) return;  // asked only whether there is anything: let the hit count
   for (unsigned lane = 0; lane < a.N; ++lane) {
     if (!a.valid[lane]) continue;
     query.crossed->push_back(hit_of(a, lane, *query.scene));

@@ -52,6 +52,37 @@ void closest(RTCScene scene, RTCRayHit& best) {
   embree::intersect1(scene, context, best);
 }
 
+// Bit k: segment k of the packet meets nothing in `scene` that its filters let count.
+std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryContext& context) {
+  RTCRay16 rays;
+  alignas(64) int valid[16];
+  std::memcpy(rays.org_x, packet.ox, sizeof packet.ox);
+  std::memcpy(rays.org_y, packet.oy, sizeof packet.oy);
+  std::memcpy(rays.org_z, packet.oz, sizeof packet.oz);
+  std::memcpy(rays.dir_x, packet.dx, sizeof packet.dx);
+  std::memcpy(rays.dir_y, packet.dy, sizeof packet.dy);
+  std::memcpy(rays.dir_z, packet.dz, sizeof packet.dz);
+  for (unsigned k = 0; k < 16; ++k) {
+    rays.tnear[k] = kShadowEpsilon;
+    rays.tfar[k] = packet.t_far[k] * (1 - kShadowEpsilon);
+    rays.time[k] = 0;
+    rays.mask[k] = 0xffffffffu;
+    rays.id[k] = k;
+    rays.flags[k] = 0;
+    // Bitwise, so that the loop becomes a few vector instructions.
+    const bool good = (std::abs(packet.ox[k]) <= kLargest) & (std::abs(packet.oy[k]) <= kLargest) &
+                      (std::abs(packet.oz[k]) <= kLargest) & (std::abs(packet.dx[k]) <= kLargest) &
+                      (std::abs(packet.dy[k]) <= kLargest) & (std::abs(packet.dz[k]) <= kLargest) &
+                      (rays.tfar[k] >= kShadowEpsilon);
+    valid[k] = good ? packet.valid[k] : 0;
+  }
+  embree::occluded16(valid, scene, context.embree, rays, context.scene->parts.empty());
+  unsigned visible = 0;
+  for (unsigned k = 0; k < 16; ++k)
+    visible |= static_cast<unsigned>((valid[k] != 0) & (rays.tfar[k] >= 0)) << k;
+  return static_cast<std::uint16_t>(visible);
+}
+
 }  // namespace
 
 RayScene::RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements,
@@ -101,33 +132,7 @@ bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
 std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
   QueryContext context = context_for(*impl_);
   context.keys = packet.key;
-  RTCRay16 rays;
-  alignas(64) int valid[16];
-  std::memcpy(rays.org_x, packet.ox, sizeof packet.ox);
-  std::memcpy(rays.org_y, packet.oy, sizeof packet.oy);
-  std::memcpy(rays.org_z, packet.oz, sizeof packet.oz);
-  std::memcpy(rays.dir_x, packet.dx, sizeof packet.dx);
-  std::memcpy(rays.dir_y, packet.dy, sizeof packet.dy);
-  std::memcpy(rays.dir_z, packet.dz, sizeof packet.dz);
-  for (unsigned k = 0; k < 16; ++k) {
-    rays.tnear[k] = kShadowEpsilon;
-    rays.tfar[k] = packet.t_far[k] * (1 - kShadowEpsilon);
-    rays.time[k] = 0;
-    rays.mask[k] = 0xffffffffu;
-    rays.id[k] = k;
-    rays.flags[k] = 0;
-    // Bitwise, so that the loop becomes a few vector instructions.
-    const bool good = (std::abs(packet.ox[k]) <= kLargest) & (std::abs(packet.oy[k]) <= kLargest) &
-                      (std::abs(packet.oz[k]) <= kLargest) & (std::abs(packet.dx[k]) <= kLargest) &
-                      (std::abs(packet.dy[k]) <= kLargest) & (std::abs(packet.dz[k]) <= kLargest) &
-                      (rays.tfar[k] >= kShadowEpsilon);
-    valid[k] = good ? packet.valid[k] : 0;
-  }
-  embree::occluded16_coherent(valid, impl_->blocking.get(), context.embree, rays);
-  unsigned visible = 0;
-  for (unsigned k = 0; k < 16; ++k)
-    visible |= static_cast<unsigned>((valid[k] != 0) & (rays.tfar[k] >= 0)) << k;
-  return static_cast<std::uint16_t>(visible);
+  return unblocked16(impl_->blocking.get(), packet, context);
 }
 
 Rgb RayScene::transmittance(const Ray& ray) const {
@@ -155,7 +160,13 @@ Rgb RayScene::transmittance(const Ray& ray) const {
 }
 
 void RayScene::transmittance16(const ShadowPacket& packet, Rgb out[16]) const {
-  for (int k = 0; k < 16; ++k) out[k] = packet.valid[k] ? transmittance(segment(packet, k)) : Rgb(1);
+  std::fill_n(out, 16, Rgb(1));
+  if (!impl_->smooth) return;
+  // Most segments meet no smooth surface, and one packet tells which.
+  QueryContext context = context_for(*impl_);
+  const unsigned clear = unblocked16(impl_->smooth.get(), packet, context);
+  for (int k = 0; k < 16; ++k)
+    if (packet.valid[k] && !(clear >> k & 1)) out[k] = transmittance(segment(packet, k));
 }
 
 }  // namespace lumirank::geometry

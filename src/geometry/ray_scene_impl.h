@@ -41,7 +41,7 @@ struct QueryContext {
   const RayScene::PassageCallbacks* callbacks = nullptr;
   const RayScene::Impl* scene = nullptr;
   const std::uint64_t* keys = nullptr;  // indexed by the ray's id
-  std::vector<Hit>* crossed = nullptr;  // smooth hits are noted here
+  std::vector<Hit>* crossed = nullptr;  // smooth hits are noted here; null: any of them ends the ray
 };
 
 // Lets a hit on a cut-out count with the probability of its opacity.

@@ -46,7 +46,7 @@ Met emission_along(const world::World& world, const LightSampler& lights, Vec3f 
 Rgb direct_at(const world::World& world, const LightSampler& lights, const transport::Receivers& receivers,
               std::size_t i, const TracedDirectSettings& settings) {
   using scatter::Lobes;
-  const scatter::Closure closure = receivers.closure_at(i);
+  const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
   Rng rng(settings.seed, Stage::traced_direct, i);
   const int n = settings.samples;

@@ -1,6 +1,6 @@
-// Direct light at glossy receivers by multiple importance sampling: point samples of a lamp seen in a narrow
-// lobe are spots, so these receivers take their direct light from traced samples instead of the matrix's
-// direct columns.
+// Direct light in sharp lobes by multiple importance sampling: point samples of a lamp seen in a narrow lobe
+// are spots, so these lobes take their direct light from traced samples instead of the matrix's direct
+// columns. The broad lobes of the same receivers stay in the matrix, free of noise.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ namespace lumirank::rendering {
 
 struct TracedDirectSettings {
   std::uint64_t seed = 1;
-  float below = 0.3f;  // receivers whose closure's roughness is below this are traced; > 1: all
+  float below = 0.3f;  // lobes with a roughness below this are traced; > 1: all
   int samples = 16;    // light samples and as many BSDF samples per receiver
   int max_depth = -1;
 };
 
-// Radiance towards the eye, one per receiver; zero for receivers that are not traced.
+// Radiance towards the eye, one per receiver; zero where no lobe is traced.
 std::vector<Rgb> trace_direct(const world::World& world, const transport::Receivers& receivers,
                               const TracedDirectSettings& settings, const Sinks& sinks = {});
 
-// Whether a receiver is traced: the same question as the matrix asks
+// Whether some lobe of a receiver is traced: the same question as the matrix asks
 // (SceneMatrixSettings::traced_direct_below).
 bool is_traced(const transport::Receivers& receivers, std::size_t i, float below);
 

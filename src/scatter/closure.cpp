@@ -132,29 +132,41 @@ bool Closure::is_lambertian() const {
   return smooth == 1;
 }
 
-float Closure::roughness() const {
-  if (!has_smooth()) return 0;
-  float least = 1;
-  for (int k = 0; k < count; ++k) {
-    const Lobe& lobe = lobes[k];
-    switch (lobe.kind) {
-      case LobeKind::microfacet_reflect:
-      case LobeKind::microfacet_transmit:
-      case LobeKind::ward:
-        least = std::min({least, lobe.alpha_u, lobe.alpha_v});
-        break;
-      case LobeKind::clearcoat:
-        least = std::min(least, lobe.alpha_u);
-        break;
-      case LobeKind::phong:
-        least = std::min(least, std::sqrt(2 / (lobe.alpha_u + 2)));
-        break;
-      default:
-        break;
-    }
+float lobe_roughness(const Lobe& lobe) {
+  switch (lobe.kind) {
+    case LobeKind::microfacet_reflect:
+    case LobeKind::microfacet_transmit:
+    case LobeKind::ward:
+      return std::min({1.0f, lobe.alpha_u, lobe.alpha_v});
+    case LobeKind::clearcoat:
+      return std::min(1.0f, lobe.alpha_u);
+    case LobeKind::phong:
+      return std::min(1.0f, std::sqrt(2 / (lobe.alpha_u + 2)));
+    default:
+      return is_delta(lobe.kind) ? 0.0f : 1.0f;
   }
+}
+
+float Closure::roughness() const {
+  float least = has_smooth() ? 1.0f : 0.0f;
+  for (int k = 0; k < count; ++k)
+    if (!is_delta(lobes[k].kind)) least = std::min(least, lobe_roughness(lobes[k]));
   return least;
 }
+
+namespace {
+Closure part(const Closure& closure, float limit, bool sharp) {
+  Closure kept = closure;
+  kept.count = 0;
+  for (int k = 0; k < closure.count; ++k)
+    if (!is_delta(closure.lobes[k].kind) && (lobe_roughness(closure.lobes[k]) < limit) == sharp)
+      kept.lobes[kept.count++] = closure.lobes[k];
+  return kept;
+}
+}  // namespace
+
+Closure sharp_part(const Closure& closure, float limit) { return part(closure, limit, true); }
+Closure broad_part(const Closure& closure, float limit) { return part(closure, limit, false); }
 
 Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint) {
   if (adjoint) std::swap(wo, wi);

@@ -66,6 +66,9 @@ struct Lobe {
 
 inline constexpr int kMaxLobes = 8;
 
+// Least roughness alpha of a lobe (Phong's exponent n → √(2/(n+2))); 1 for diffuse ones, 0 for delta lobes.
+float lobe_roughness(const Lobe& lobe);
+
 struct Closure {
   Frame frame;        // shading frame; frame.n on the outside (towards wo if two-sided)
   Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n
@@ -82,6 +85,10 @@ struct Closure {
   // if none is smooth.
   float roughness() const;
 };
+
+// The smooth lobes with roughness below `limit` (sharp) or the other smooth ones (broad).
+Closure sharp_part(const Closure& closure, float limit);
+Closure broad_part(const Closure& closure, float limit);
 
 // Which half of the closure a caller wants.
 enum class Lobes : std::uint8_t { smooth, delta, all };

@@ -69,7 +69,7 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   context.columns = &columns;
   context.row_scatter = {
       &receivers.closures, &row_forms, &receivers.closure, &receivers.normal, &receivers.ng,
-      &receivers.wo,       false};
+      &receivers.wo,       false,      settings.traced_direct_below};
   context.column_scatter = {&lights.closures, &column_forms, &lights.closure, &lights.normal, &lights.ng,
                             &lights.incoming, true};
   context.lights = &lights;
@@ -78,6 +78,8 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   context.clamp = settings.clamp > 0 ? settings.clamp : kInfinity;
   context.has_cutouts = has_cutouts(world.rays());
   context.has_smooth = world.rays().has_smooth();
+  context.has_directional =
+      std::find(lights.kind.begin(), lights.kind.end(), LightKind::directional) != lights.kind.end();
 
   row_pixel.resize(receivers.size());
   for (std::size_t i = 0; i < row_pixel.size(); ++i) row_pixel[i] = receivers.film[receivers.sample[i]];

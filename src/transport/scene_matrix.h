@@ -12,11 +12,12 @@ namespace lumirank::transport {
 
 struct SceneMatrixSettings {
   std::uint64_t seed = 1;
-  float clamp = 1;        // X of the conventions; 0: off
-  int max_depth = -1;     // Mitsuba's count; receiver depth + light depth + the connecting segment may not exceed it
+  float clamp = 1;  // X of the conventions; 0: off
+  int max_depth =
+      -1;  // Mitsuba's count; receiver depth + light depth + the connecting segment may not exceed it
   bool group_by_emitter = false;  // clusters may not cross emitters (for --aov light:NAME)
-  // Receivers whose direct light is traced instead (see render/traced_direct.h) get 0 from direct columns when their
-  // closure's roughness is below this.
+  // Lobes of receivers with a roughness below this get 0 from direct columns: their direct light is traced
+  // (render/traced_direct.h). Above 1: all lobes of all receivers.
   float traced_direct_below = 0;
 };
 
@@ -33,15 +34,15 @@ class SceneMatrix final : public matrix::LightingMatrix {
   void column(matrix::Index j, std::span<Rgb> out, matrix::Part part) const override;
   void block(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns, std::span<Rgb> out,
              matrix::Part part) const override;
-  void entries(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns, std::span<Rgb> out,
-               matrix::Part part) const override;
+  void entries(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns,
+               std::span<Rgb> out, matrix::Part part) const override;
   void accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
                   const Sinks& sinks) const override;
   matrix::RowFeatures row_features() const override;
   matrix::ColumnFeatures column_features() const override;
 
-  // Energy that clamping removed, over the entries evaluated so far: Σ(unclamped − clamped) / Σ unclamped, receivers
-  // weighted equally.
+  // Energy that clamping removed, over the entries evaluated so far: Σ(unclamped − clamped) / Σ unclamped,
+  // receivers weighted equally.
   double clamped_fraction() const;
 
  private:

@@ -14,11 +14,6 @@ constexpr std::uint32_t kRowTile = 2048;
 constexpr std::uint32_t kColumnTile = 4096;
 constexpr float kNoLimit = 1e9f;
 
-float roughness(const Receivers& receivers, std::size_t i) {
-  if (receivers.closure[i] == Receivers::kLambertian) return 1;
-  return receivers.closure_at(i).roughness();
-}
-
 template <typename Group>
 Group empty_group() {
   Group group;
@@ -67,8 +62,8 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
       } else if (some_transmit) {
         store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[i] - kRowScatter)].transmits;
       }
-      const bool direct_elsewhere =
-          settings.traced_direct_below > 0 && roughness(receivers, i) < settings.traced_direct_below;
+      // Lobes have a roughness of 1 at most: above it, all direct light is traced.
+      const bool direct_elsewhere = settings.traced_direct_below > 1;
       to[15 * 16] = direct_elsewhere ? 1.0f : 0.0f;
       to[16 * 16] = settings.max_depth < 0 ? kNoLimit
                                            : static_cast<float>(settings.max_depth) - 1.0f -

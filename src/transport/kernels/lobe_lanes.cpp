@@ -140,7 +140,7 @@ void prepare(ScatterGroup& group, LobeLanes* lobes) {
   }
 }
 
-Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi) {
+Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
   const ScatterForm& form = *group.form;
   const Lane cos_i = dot(group.n, wi);
   const LaneMask lit = group.answers & (cos_i > splat(kGrazing)) & (dot(group.ng, wi) > kZero);
@@ -167,7 +167,9 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi) {
       const Lane alpha2 = lobe.alpha_u * lobe.alpha_v;
       const Lane d = normals(kind.distribution, alpha2, cos_m, shrunk(group, m, lobe));
       const Lane g1 = masking(kind.distribution, safe_cos, stretched(group, i, lobe));
-      f = f + (lobe.color * fresnel(kind.fresnel, lobe, cos_d)) * (d * g1 / safe_cos);
+      Lane3 value = (lobe.color * fresnel(kind.fresnel, lobe, cos_d)) * (d * g1 / safe_cos);
+      if (group.some_traced) value = select(direct & lobe.traced, Lane3{kZero, kZero, kZero}, value);
+      f = f + value;
     }
   }
   return select(lit, f, Lane3{kZero, kZero, kZero});

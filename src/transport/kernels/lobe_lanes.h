@@ -11,6 +11,6 @@ namespace lumirank::transport {
 void prepare(ScatterGroup& group, LobeLanes* lobes);
 
 // Σ f(wo, wi) of a prepared group whose form has lane code.
-Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi);
+Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct);
 
 }  // namespace lumirank::transport

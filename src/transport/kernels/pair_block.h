@@ -24,6 +24,7 @@ struct PairContext {
   float clamp;       // X; infinite: off
   bool has_cutouts;  // rays need keys
   bool has_smooth;   // rays need transmittances
+  bool has_directional;
 };
 
 // What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.
@@ -89,9 +90,9 @@ class PairBlock {
   void resize(std::size_t places);
   void keep(std::size_t group, const PairResult& result);
   void collect_survivors();
-  std::uint32_t row_slot(std::uint32_t place) const;
-  std::uint32_t column_slot(std::uint32_t place) const;
   bool to_infinity(std::uint32_t column_slot) const;
+  void turn_ends(geometry::ShadowPacket& packet, const std::uint32_t* rows, const std::uint32_t* columns,
+                 float* tx, float* ty, float* tz) const;
   void fill(geometry::ShadowPacket& packet, const std::uint32_t* places, int count) const;
   void attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count);
 

@@ -80,9 +80,9 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
 
   Lane3 f = r.f, power = c.power;
   Lane clamp_area = c.clamp_area;
-  if constexpr (scattering_row) f = eval_f(*extras.row, w * inv_d);
+  if constexpr (scattering_row) f = eval_f(*extras.row, w * inv_d, c.depth < splat(0.5f));
   if constexpr (scattering_column) {
-    const Lane3 fy = eval_f(*extras.column, w * (-inv_d));
+    const Lane3 fy = eval_f(*extras.column, w * (-inv_d), LaneMask{});
     power = power * fy;
     clamp_area = clamp_area * (max_component(fy) * splat(kPi));
   }

@@ -8,62 +8,98 @@
 namespace lumirank::transport {
 namespace {
 
-constexpr int kOrigin = 9 * 16, kTarget = 9 * 16;  // fields of RowGroup and ColumnGroup
-constexpr int kPosition = 0, kGeometricNormal = 6 * 16;
+// Fields of RowGroup and ColumnGroup.
+constexpr int kOrigin = 9 * 16, kTarget = 9 * 16, kPosition = 0, kGeometricNormal = 6 * 16;
 
-}  // namespace
-
-std::uint32_t PairBlock::row_slot(std::uint32_t place) const {
-  switch (shape_) {
-    case BlockShape::column:
-      return first_slot_ + place;
-    case BlockShape::row:
-      return fixed_slot_;
-    default:
-      return row_list_[place];
+// Field `field` of 16 slots, as three arrays.
+template <typename Store>
+void gather(const Store& store, const std::uint32_t slots[16], int field, float* x, float* y, float* z) {
+  for (int k = 0; k < 16; ++k) {
+    const float* from = store.at(slots[k]) + field;
+    x[k] = from[0], y[k] = from[16], z[k] = from[32];
   }
 }
 
-std::uint32_t PairBlock::column_slot(std::uint32_t place) const {
-  switch (shape_) {
-    case BlockShape::column:
-      return fixed_slot_;
-    case BlockShape::row:
-      return first_slot_ + place;
-    default:
-      return column_list_[place];
+template <typename Store>
+void repeat(const Store& from, std::uint32_t slot, int field, float* x, float* y, float* z) {
+  const Vec3f v = read3(from.at(slot) + field);
+  store(x, splat(v.x)), store(y, splat(v.y)), store(z, splat(v.z));
+}
+
+}  // namespace
+
+// Where a surface shines through, the side from which a ray starts depends on its direction.
+void PairBlock::turn_ends(geometry::ShadowPacket& packet, const std::uint32_t* rows,
+                          const std::uint32_t* columns, float* tx, float* ty, float* tz) const {
+  const auto &row_turns = context_.rows->two_sided, &column_turns = context_.columns->two_sided;
+  for (int k = 0; k < 16; ++k) {
+    const bool row = !row_turns.empty() && row_turns[rows[k]];
+    const bool column = !column_turns.empty() && column_turns[columns[k]];
+    if (!row && !column) continue;
+    const float *r = context_.rows->at(rows[k]), *c = context_.columns->at(columns[k]);
+    const Vec3f p = read3(r + kPosition), y = read3(c + kPosition);
+    const Vec3f w = to_infinity(columns[k]) ? Vec3f{tx[k], ty[k], tz[k]} : y - p;
+    if (row) {
+      const Vec3f origin = world::World::offset_origin(p, read3(r + kGeometricNormal), w);
+      packet.ox[k] = origin.x, packet.oy[k] = origin.y, packet.oz[k] = origin.z;
+    }
+    if (column) {
+      const Vec3f target = world::World::offset_origin(y, read3(c + kGeometricNormal), -w);
+      tx[k] = target.x, ty[k] = target.y, tz[k] = target.z;
+    }
   }
+}
+
+void PairBlock::fill(geometry::ShadowPacket& packet, const std::uint32_t* places, int count) const {
+  alignas(64) std::uint32_t rows[16], columns[16];
+  alignas(64) float tx[16], ty[16], tz[16];
+  alignas(64) std::uint32_t padded[16];
+  if (count < 16) {
+    for (int k = 0; k < 16; ++k) padded[k] = places[k < count ? k : 0];
+    places = padded;
+  }
+  for (int k = 0; k < 16; ++k) packet.valid[k] = k < count ? -1 : 0;
+  for (int k = 0; k < 16; ++k) {
+    rows[k] = shape_ == BlockShape::column ? first_slot_ + places[k] : fixed_slot_;
+    columns[k] = shape_ == BlockShape::row ? first_slot_ + places[k] : fixed_slot_;
+  }
+  if (shape_ == BlockShape::list)
+    for (int k = 0; k < 16; ++k) rows[k] = row_list_[places[k]], columns[k] = column_list_[places[k]];
+
+  if (shape_ == BlockShape::row) {
+    repeat(*context_.rows, fixed_slot_, kOrigin, packet.ox, packet.oy, packet.oz);
+  } else {
+    gather(*context_.rows, rows, kOrigin, packet.ox, packet.oy, packet.oz);
+  }
+  if (shape_ == BlockShape::column) {
+    repeat(*context_.columns, fixed_slot_, kTarget, tx, ty, tz);
+  } else {
+    gather(*context_.columns, columns, kTarget, tx, ty, tz);
+  }
+  if (!context_.rows->two_sided.empty() || !context_.columns->two_sided.empty())
+    turn_ends(packet, rows, columns, tx, ty, tz);
+  for (int k = 0; k < 16; ++k) {
+    packet.dx[k] = tx[k] - packet.ox[k], packet.dy[k] = ty[k] - packet.oy[k],
+    packet.dz[k] = tz[k] - packet.oz[k];
+    packet.t_far[k] = 1;
+  }
+  if (context_.has_directional)
+    for (int k = 0; k < 16; ++k)
+      if (to_infinity(columns[k]))
+        packet.dx[k] = tx[k], packet.dy[k] = ty[k], packet.dz[k] = tz[k], packet.t_far[k] = kInfinity;
+  // The key only has to differ from pair to pair: whoever decides by it hashes it with the surface's ids.
+  const std::uint64_t keyed = mix64(context_.seed);
+  const std::uint32_t *row_items = context_.rows->plan.item.data(),
+                      *column_items = context_.columns->plan.item.data();
+  for (int k = 0; k < 16; ++k)
+    packet.key[k] =
+        context_.has_cutouts
+            ? keyed ^ (static_cast<std::uint64_t>(row_items[rows[k]]) << 32 | column_items[columns[k]])
+            : 0;
 }
 
 bool PairBlock::to_infinity(std::uint32_t slot) const {
   return context_.columns->plan.kind_of(slot) == kColumnDirectional;
-}
-
-void PairBlock::fill(geometry::ShadowPacket& packet, const std::uint32_t* places, int count) const {
-  for (int k = 0; k < 16; ++k) {
-    const std::uint32_t place = places[k < count ? k : 0];
-    const std::uint32_t i = row_slot(place), j = column_slot(place);
-    const float *row = context_.rows->at(i), *column = context_.columns->at(j);
-    Vec3f origin = read3(row + kOrigin), target = read3(column + kTarget);
-    const bool infinite = to_infinity(j);
-    const bool row_turns = !context_.rows->two_sided.empty() && context_.rows->two_sided[i];
-    const bool column_turns = !context_.columns->two_sided.empty() && context_.columns->two_sided[j];
-    if (row_turns || column_turns) {
-      const Vec3f p = read3(row + kPosition), y = read3(column + kPosition);
-      const Vec3f w = infinite ? target : y - p;
-      if (row_turns) origin = world::World::offset_origin(p, read3(row + kGeometricNormal), w);
-      if (column_turns) target = world::World::offset_origin(y, read3(column + kGeometricNormal), -w);
-    }
-    const Vec3f direction = infinite ? target : target - origin;
-    packet.ox[k] = origin.x, packet.oy[k] = origin.y, packet.oz[k] = origin.z;
-    packet.dx[k] = direction.x, packet.dy[k] = direction.y, packet.dz[k] = direction.z;
-    packet.t_far[k] = infinite ? kInfinity : 1.0f;
-    packet.valid[k] = k < count ? -1 : 0;
-    packet.key[k] = context_.has_cutouts
-                        ? hash_ids(context_.seed, Stage::opacity, context_.rows->plan.item[i],
-                                   context_.columns->plan.item[j])
-                        : 0;
-  }
 }
 
 void PairBlock::attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count) {

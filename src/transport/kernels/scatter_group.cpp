@@ -39,6 +39,9 @@ void read(ScatterGroup& group, LobeLanes* lobes, int lane, const ScatterSide& si
     lobes[k].eta[lane] = inverse ? 1 / lobe.eta : lobe.eta;
     put(lobes[k].a, lane, lobe.conductor_eta);
     put(lobes[k].b, lane, lobe.conductor_k);
+    const bool traced = scatter::lobe_roughness(lobe) < side.traced_below;
+    lobes[k].traced[lane] = traced ? -1 : 0;
+    group.some_traced = group.some_traced || traced;
   }
 }
 
@@ -62,6 +65,16 @@ LobeLanes* ScatterArena::new_lobes(std::size_t count) {
   return chunks_[chunk_].data() + (used_ - count);
 }
 
+void ScatterArena::keep(ScatterGroup& group, int lane, const ScatterSide& side, std::uint32_t item) {
+  group.closure[lane] = group.broad[lane] = nullptr;
+  if (item == kNoItem) return;
+  const scatter::Closure& whole = closures_.emplace_back(side.get(item));
+  group.closure[lane] = group.broad[lane] = &whole;
+  if (whole.roughness() >= side.traced_below) return;
+  group.broad[lane] = &closures_.emplace_back(scatter::broad_part(whole, side.traced_below));
+  group.some_traced = true;
+}
+
 ScatterGroup ScatterArena::fetch(const ScatterSide& side, const std::uint32_t items[16]) {
   ScatterGroup group;
   group.adjoint = side.adjoint;
@@ -69,7 +82,7 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, const std::uint32_t it
   group.form = &(*side.forms)[side.forms->of_recipe(side.pool->recipe((*side.closure)[first]))];
   if (!group.form->in_lanes) {
     for (int k = 0; k < 16; ++k) {
-      group.closure[k] = items[k] == kNoItem ? nullptr : &closures_.emplace_back(side.get(items[k]));
+      keep(group, k, side, items[k]);
       put(group.wo, k, items[k] == kNoItem ? Vec3f{} : (*side.wo)[items[k]]);
     }
     return group;
@@ -86,8 +99,11 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, std::uint32_t item) {
   group.adjoint = side.adjoint;
   group.form = &(*side.forms)[side.forms->of_recipe(side.pool->recipe((*side.closure)[item]))];
   if (!group.form->in_lanes) {
-    const scatter::Closure& closure = closures_.emplace_back(side.get(item));
-    for (int k = 0; k < 16; ++k) group.closure[k] = &closure, put(group.wo, k, (*side.wo)[item]);
+    keep(group, 0, side, item);
+    for (int k = 0; k < 16; ++k) {
+      group.closure[k] = group.closure[0], group.broad[k] = group.broad[0];
+      put(group.wo, k, (*side.wo)[item]);
+    }
     return group;
   }
   LobeLanes* lobes = new_lobes(group.form->lobes.size());
@@ -101,13 +117,14 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, std::uint32_t item) {
   return group;
 }
 
-Lane3 eval_f(const ScatterGroup& group, const Lane3& wi) {
-  if (group.form->in_lanes) return eval_lobes(group, wi);
+Lane3 eval_f(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
+  if (group.form->in_lanes) return eval_lobes(group, wi, direct);
   Lane3 f{};
   for (int k = 0; k < 16; ++k) {
     if (!group.closure[k]) continue;
     const Vec3f wo{group.wo.x[k], group.wo.y[k], group.wo.z[k]};
-    put(f, k, scatter::eval_f(*group.closure[k], wo, {wi.x[k], wi.y[k], wi.z[k]}, group.adjoint));
+    const scatter::Closure& closure = direct[k] ? *group.broad[k] : *group.closure[k];
+    put(f, k, scatter::eval_f(closure, wo, {wi.x[k], wi.y[k], wi.z[k]}, group.adjoint));
   }
   return f;
 }

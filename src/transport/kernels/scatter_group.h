@@ -21,6 +21,8 @@ struct ScatterSide {
   const std::vector<std::uint32_t>* closure;
   const std::vector<Vec3f>*normal, *ng, *wo;
   bool adjoint;  // light flows from wo, as at a virtual light
+  // Lobes with less roughness do not answer direct light (SceneMatrixSettings::traced_direct_below).
+  float traced_below = 0;
 
   scatter::Closure get(std::uint32_t item) const {
     return pool->get((*closure)[item], (*normal)[item], (*ng)[item]);
@@ -31,20 +33,23 @@ struct ScatterSide {
 struct LobeLanes {
   Lane3 color;  // diffuse: color/π; interfaced_diffuse: color·T(wo)/π; microfacet: color·G1(wo)/(4·wo.z)
   Lane alpha_u, alpha_v;
-  Lane eta;    // seen from wo's side
-  Lane3 a, b;  // conductor: eta and k; schlick: a is F0; interfaced_diffuse: the coefficients of T
+  Lane eta;         // seen from wo's side
+  LaneMask traced;  // of direct light, this lobe's part is traced elsewhere
+  Lane3 a, b;       // conductor: eta and k; schlick: a is F0; interfaced_diffuse: the coefficients of T
 };
 
 // All directions on the side of wo: n, ng and t are turned so that n·wo > 0.
 struct ScatterGroup {
   const ScatterForm* form = nullptr;
   bool adjoint = false;
+  bool some_traced = false;  // some lobe leaves direct light to tracing
   Lane3 n, ng, wo;
   Lane3 s, t;                        // anisotropic forms only
   LaneMask answers;                  // n and ng agree about the side of wo
   const LobeLanes* lobes = nullptr;  // form->lobes.size()
   // Forms without lane code: nullptr where padded.
   const scatter::Closure* closure[16];
+  const scatter::Closure* broad[16];  // if some_traced: without the lobes that leave direct light to tracing
 };
 
 // Keeps what ScatterGroups point to; clear() before the next tile.
@@ -57,6 +62,7 @@ class ScatterArena {
   void clear();
 
  private:
+  void keep(ScatterGroup& group, int lane, const ScatterSide& side, std::uint32_t item);
   LobeLanes* new_lobes(std::size_t count);
 
   std::deque<scatter::Closure> closures_;  // does not move its elements
@@ -64,7 +70,7 @@ class ScatterArena {
   std::size_t chunk_ = 0, used_ = 0;
 };
 
-// f(wo, wi) of scatter::eval_f, wi unit and away from the surface.
-Lane3 eval_f(const ScatterGroup& group, const Lane3& wi);
+// f(wo, wi) of scatter::eval_f, wi unit and away from the surface. `direct`: lanes whose light is direct.
+Lane3 eval_f(const ScatterGroup& group, const Lane3& wi, LaneMask direct);
 
 }  // namespace lumirank::transport
