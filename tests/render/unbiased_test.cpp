@@ -65,6 +65,47 @@ void expect_equal_means(const char* only) {
 TEST(Unbiased, BruteForceAgreesWithThePathTracerOnDirectLight) { expect_equal_means("direct"); }
 TEST(Unbiased, BruteForceAgreesWithThePathTracerOnIndirectLight) { expect_equal_means("indirect"); }
 
+// A lamp over a shining floor: however the direct light is divided between columns and traced samples, the
+// sum is the same.
+TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
+  const Scene scene = test::load_text(
+      test::point_camera("0,1,3", "0,0,0.5", 16, 20) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/><scale "
+      "value=\"4\"/>"
+      "</transform><bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.2\"/></bsdf></shape>"
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"60\"/><scale "
+      "value=\"0.4\"/>"
+      "<translate y=\"1.2\" z=\"-1.5\"/></transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"5, "
+      "6, 7\"/>"
+      "</emitter></shape>");
+  RenderSettings settings;
+  settings.only = "direct";
+  settings.method = "brute-force";
+  settings.clamp = 0;
+  settings.lights = 400;
+  ReferenceSettings how;
+  how.spp = 128;
+  constexpr int kSeeds = 32;
+  std::vector<double> truth;
+  for (std::uint64_t k = 0; k < kSeeds; ++k) {
+    settings.seed = 500 + k;
+    truth.push_back(mean_colour(reference(scene, settings, how).picture)[1]);
+  }
+  const auto expected = mean_of(truth);
+  for (const char* direct : {"matrix", "auto", "traced"}) {
+    settings.direct = direct;
+    std::vector<double> means;
+    for (std::uint64_t k = 0; k < kSeeds; ++k) {
+      settings.seed = 500 + k;
+      means.push_back(mean_colour(render(scene, settings).picture)[1]);
+    }
+    const auto m = mean_of(means);
+    const double error = std::hypot(m.standard_error, expected.standard_error);
+    EXPECT_NEAR(m.mean, expected.mean, student_quantile(kAlpha, 3, kSeeds - 1) * error) << direct;
+    EXPECT_LT(student_quantile(kAlpha, 3, kSeeds - 1) * error, 0.03 * expected.mean) << direct;
+  }
+}
+
 TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
   // Scalar representatives, zero columns sampled, fixed rows and columns: the estimator of section 3.3,
   // unbiased by construction. The lights stay the same; what varies is the method's own choices.
