@@ -68,7 +68,7 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   context.rows = &rows;
   context.columns = &columns;
   context.row_scatter = {
-      &receivers.closures, &row_forms, &receivers.closure, &receivers.normal, &receivers.ng,
+      &receivers.closures, &row_forms, &receivers.closure,          &receivers.normal, &receivers.ng,
       &receivers.wo,       false,      settings.traced_direct_below};
   context.column_scatter = {&lights.closures, &column_forms, &lights.closure, &lights.normal, &lights.ng,
                             &lights.incoming, true};
