@@ -82,7 +82,7 @@ double traced_roughness(const RenderSettings& settings) {
   // Traced light does not know its emitter.
   for (const auto& aov : settings.aovs)
     if (aov.starts_with("light:")) return 0;
-  return 0.35;
+  return 0.15;
 }
 
 void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
