@@ -4,7 +4,8 @@
 // one run, alternating. Also single rows.
 //
 //   bench_accumulate [scene file] [benchmark options]
-//   environment: LIGHTS (100000), COLUMNS (32), WIDTH (800), HEIGHT (600), SPP (4), THREADS (all)
+//   environment: BENCH_LIGHTS (100000), BENCH_COLUMNS (32), BENCH_WIDTH (800), BENCH_HEIGHT (600), BENCH_SPP
+//   (4), BENCH_THREADS (all)
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -120,7 +121,7 @@ BareResult trace_tile(const BareScene& bare, const BareReceivers& r, const BareL
     }
     geometry::embree::Context context;
     geometry::embree::initialise(context);
-    geometry::embree::occluded16_coherent(valid, bare.scene.get(), context, rays);
+    geometry::embree::occluded16(valid, bare.scene.get(), context, rays, true);
     for (int k = 0; k < count; ++k) result.visible += rays.tfar[k] >= 0;
   }
   return result;
@@ -164,8 +165,8 @@ struct Bench {
   explicit Bench(const std::string& file)
       : desc(read(file)),
         world(build(desc)),
-        receivers(
-            transport::trace_receivers(world, world::Camera(desc.sensors.at(0)), {1, setting("SPP", 4)})),
+        receivers(transport::trace_receivers(world, world::Camera(desc.sensors.at(0)),
+                                             {1, setting("BENCH_SPP", 4)})),
         lights(make_lights(world)),
         matrix(world, receivers, lights, {}),
         bare(world.rays()),
@@ -184,8 +185,8 @@ struct Bench {
 
   static scenedesc::SceneDesc read(const std::string& file) {
     scenedesc::SceneDesc desc = scenedesc::read_scene(file);
-    desc.sensors.at(0).film.width = setting("WIDTH", 800);
-    desc.sensors.at(0).film.height = setting("HEIGHT", 600);
+    desc.sensors.at(0).film.width = setting("BENCH_WIDTH", 800);
+    desc.sensors.at(0).film.height = setting("BENCH_HEIGHT", 600);
     return desc;
   }
   static world::World build(const scenedesc::SceneDesc& desc) {
@@ -194,13 +195,13 @@ struct Bench {
   }
   static transport::VirtualLights make_lights(const world::World& world) {
     transport::LightSettings settings;
-    settings.count = static_cast<std::size_t>(setting("LIGHTS", 100000));
+    settings.count = static_cast<std::size_t>(setting("BENCH_LIGHTS", 100000));
     return transport::trace_virtual_lights(world, settings);
   }
 
   std::vector<matrix::ScaledColumn> pick_columns() const {
     Rng rng(1, Stage::benchmark);
-    std::vector<matrix::ScaledColumn> columns(static_cast<std::size_t>(setting("COLUMNS", 32)));
+    std::vector<matrix::ScaledColumn> columns(static_cast<std::size_t>(setting("BENCH_COLUMNS", 32)));
     for (auto& c : columns) c.column = static_cast<matrix::Index>(rng.next_below(lights.size()));
     return columns;
   }
@@ -254,7 +255,7 @@ void rows(benchmark::State& state, const Bench& bench) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   const std::string file = argc > 1 ? argv[1] : std::string(LUMIRANK_EXAMPLES) + "/interior.xml";
-  lumirank::with_threads(setting("THREADS", 0), [&] {
+  lumirank::with_threads(setting("BENCH_THREADS", 0), [&] {
     const Bench bench(file);
     benchmark::RegisterBenchmark("columns",
                                  [&](benchmark::State& state) { columns_against_bare(state, bench); })
