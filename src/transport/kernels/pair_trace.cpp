@@ -119,7 +119,12 @@ void PairBlock::trace() {
     const std::uint32_t* places = places_.data() + 16 * p;
     fill(packet, places, count);
     packet_bits_[p] = context_.rays->visible16(packet);
-    if (context_.has_smooth && packet_bits_[p] != 0) attenuate(packet, places, count);
+    if (context_.has_smooth && packet_bits_[p] != 0) {
+      // What is hidden need not be attenuated.
+      for (int k = 0; k < count; ++k)
+        if (!(packet_bits_[p] >> k & 1)) packet.valid[k] = 0;
+      attenuate(packet, places, count);
+    }
   }
   packet_bits_[packets] = 0;
   std::size_t at = 0;  // bit of the next survivor
