@@ -159,7 +159,6 @@ class Comparison {
 
   // Methods without a clock of their own get as many columns as fit into the budget, by the pace of a few.
   void fit_to_time(PlannedRun& run, std::map<std::string, std::string>& method_settings) {
-    const methods::MethodInfo& info = methods::find_method(run.method);
     if (run.time <= 0 || (run.method != "instant-radiosity" && run.method != "power-sampling")) return;
     if (columns_per_second_ <= 0) {
       std::vector<matrix::ScaledColumn> few;
@@ -174,13 +173,13 @@ class Comparison {
       columns_per_second_ = 48 / timer.seconds();
     }
     const auto fitting = static_cast<std::size_t>(std::max(1.0, columns_per_second_ * run.time));
-    method_settings[info.lights_wanted ? "lights" : "columns"] = std::to_string(fitting);
+    method_settings[run.method == "instant-radiosity" ? "lights" : "columns"] = std::to_string(fitting);
   }
 
   bool run_one(PlannedRun run) {
     const methods::MethodInfo& info = methods::find_method(run.method);
     const bool new_lights =
-        settings_.reference != "brute-force";  // else all runs sample the reference's own matrix
+        !settings_.reference.starts_with("brute-force");  // else all runs sample the reference's own matrix
     prepare(run.lights, run.spp, new_lights ? run.seed : settings_.base.seed);
     auto method_settings = run.method_settings;
     fit_to_time(run, method_settings);

@@ -39,7 +39,7 @@ void apply(PlannedRun& run, const SweepKey& key, const std::string& value) {
                      std::to_string(key.keys.size()) + " parameters");
   for (std::size_t k = 0; k < values.size(); ++k) {
     const std::string& name = key.keys[k];
-    if (name == "lights" || name == "spp") {
+    if (key.method.empty()) {
       RenderSettings checked;
       set_field(checked, name, values[k]);
       if (name == "lights")
