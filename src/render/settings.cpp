@@ -197,7 +197,7 @@ const std::vector<Row>& table() {
     t.push_back(choice({"backend", "", "cpu", "", "", "who evaluates the matrix"}, &S::backend, {"cpu"}));
     t.push_back(choice({"direct", "", "auto", "", "",
                         "direct light at receivers: by columns, traced with multiple importance sampling, or "
-                        "traced where the receiver is glossy"},
+                        "traced in sharp lobes (roughness below 0.15) and by columns in the others"},
                        &S::direct, {"auto", "matrix", "traced"}));
     t.push_back(choice({"rest", "", "skip", "", "",
                         "paths that columns cannot carry: leave out, or add by path tracing (noisy)"},

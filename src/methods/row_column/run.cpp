@@ -108,14 +108,18 @@ void RowColumnRun::pass_over_all_columns() {
   RunOptions rest = options_;
   if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-3);
   Estimate all = sum_all_columns(matrix_, rest);
-  combination_ = std::move(all.combination);
-  rendered_count_ += static_cast<std::size_t>(all.trace.numbers.at("columns"));
-  for (matrix::Index j = 0; j < columns_; ++j) rendered_.insert(j);
+  const auto done = static_cast<std::size_t>(all.trace.numbers.at("columns"));
+  const bool whole = done == columns_;
+  rendered_count_ += done;
   trace_.numbers["seconds.columns"] += all.trace.numbers.at("seconds.columns");
   cancelled_ = cancelled_ || all.interrupted;
   out_of_time_ = out_of_time_ || all.trace.notes.contains("stopped");
+  // Columns in their own order, cut short, are a worse estimate than any pass over representatives.
+  if (!whole && passes_ > 0) return;
+  combination_ = std::move(all.combination);
+  for (const matrix::ScaledColumn& c : combination_) rendered_.insert(c.column);
   blend_ = Blend();
-  blend_.add(all.sums, 0);
+  blend_.add(all.sums, whole ? 0 : 1);
   ++passes_;
 }
 
