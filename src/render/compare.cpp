@@ -37,7 +37,8 @@ class Comparison {
         world_(world::World::build(scene.impl().desc, {scene.impl().options.strict}, warnings_, sinks)) {
     setup_.world = &world_;
     setup_.view = make_view(scene.impl().desc, settings.base);
-    results_.scene = fs::path(scene.impl().desc.source_file).filename().string();
+    const fs::path file = fs::absolute(scene.impl().desc.source_file);
+    results_.scene = (file.parent_path().filename() / file.filename()).string();
     results_.version = version();
     results_.width = setup_.view.width, results_.height = setup_.view.height;
     if (is_file()) read_reference();

@@ -93,7 +93,7 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
       for (const std::string& value : sweep.values) {
         PlannedRun run = base;
         apply(run, key, value);
-        if (own_sweeps > 1) run.series += " (" + std::to_string(own_sweeps) + ")";
+        if (own_sweeps > 1) run.series += " (" + sweep.values.front() + " …)";
         points.push_back(run);
       }
     }

@@ -141,7 +141,8 @@ Estimate RowColumnRun::automatic() {
     ColumnsKnown known(matrix_, seen_, settings_, options_.seed + passes_);
     const linalg::Splitter clusters = cluster_for(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
-    const bool all_fit = options_.time_seconds <= 0 || costs().column * static_cast<double>(columns_) < time_left();
+    const bool all_fit =
+        options_.time_seconds <= 0 || costs().column * static_cast<double>(columns_) < time_left();
     if (clusters.clusters() * 2 > columns_ && settings_.columns == 0 && all_fit) {
       pass_over_all_columns();
       break;
