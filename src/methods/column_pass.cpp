@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 
@@ -33,26 +34,34 @@ PassResult render_columns(const matrix::LightingMatrix& matrix, std::span<const 
   std::vector<Rgb> part(two_levels ? sums.size() : 0);
   const std::span<Rgb> target = two_levels ? std::span<Rgb>(part) : sums;
   std::size_t next_preview = kBlock;
+  TimedChoices* choices = choices_of(control.options);
+  const auto earlier =
+      choices ? choices->earlier("columns", static_cast<std::int64_t>(columns.size())) : std::nullopt;
   while (result.done < columns.size()) {
     const double now = control.timer.seconds();
     const double per_column = result.done > 0 ? (now - start) / static_cast<double>(result.done) : 0;
     const std::size_t count = std::min(kBlock, columns.size() - result.done);
     result.cancelled = control.options.sinks.cancelled();
-    result.out_of_time = control.deadline > 0 &&
-                         now + per_column * static_cast<double>(count) > control.deadline && result.done > 0;
+    if (earlier)
+      result.out_of_time = static_cast<std::int64_t>(result.done) >= *earlier;
+    else
+      result.out_of_time = control.deadline > 0 && result.done > 0 &&
+                           now + per_column * static_cast<double>(count) > control.deadline;
     if (result.cancelled || result.out_of_time) break;
     matrix.accumulate(columns.subspan(result.done, count), target);
     result.done += count;
     control.options.sinks.report("columns",
                                  static_cast<double>(result.done) / static_cast<double>(columns.size()));
-    const bool preview = control.on_block && result.done >= next_preview && result.done < columns.size();
+    // Also without a preview: the sums' bits must not depend on whether somebody looks.
+    const bool preview = result.done >= next_preview && result.done < columns.size();
     if (two_levels && (preview || result.done % kLevel < kBlock)) add_and_clear(sums, part);
     if (preview) {
-      control.on_block(sums, result.done);
+      if (control.on_block) control.on_block(sums, result.done);
       next_preview = std::max(result.done + kBlock, result.done * 5 / 4);
     }
   }
   if (two_levels) add_and_clear(sums, part);
+  if (choices) choices->record("columns", static_cast<std::int64_t>(result.done));
   result.seconds = control.timer.seconds() - start;
   return result;
 }

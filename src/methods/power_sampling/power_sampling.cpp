@@ -10,6 +10,7 @@
 #include "methods/column_pass.h"
 #include "methods/parameters.h"
 #include "methods/power_draws.h"
+#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 
@@ -54,9 +55,10 @@ class PowerSampling final : public Method {
     for (std::size_t round = 0;; ++round) {
       std::size_t count = !open_ended ? settings_.columns : std::max<std::size_t>(draws, 32);
       if (options.time_seconds > 0 && draws > 0) {
-        const double left = options.time_seconds - timer.seconds();
-        const auto affordable =
-            static_cast<std::size_t>(std::max(0.0, left * static_cast<double>(rendered) / seconds));
+        const auto affordable = timed_choice(options, "affordable_draws", INT64_MAX, [&] {
+          const double left = options.time_seconds - timer.seconds();
+          return static_cast<std::size_t>(std::max(0.0, left * static_cast<double>(rendered) / seconds));
+        });
         if (affordable == 0) break;
         // A last round that would be cut short is better made to fit.
         if (affordable < 2 * count || options.target_error <= 0) count = affordable;

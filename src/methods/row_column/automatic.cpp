@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "methods/row_column/run.h"
+#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 
@@ -48,7 +49,8 @@ ErrorCurve RowColumnRun::error_curve(ColumnsKnown& known, double until_error) {
     curve.points.push_back(
         {static_cast<double>(c), known.expected_error(clusters), known.expected_error(clusters, unseen_)});
     if (!more || (until_error > 0 && curve.points.back().unseen <= until_error)) break;
-    if (options_.time_seconds > 0 && static_cast<double>(c) * costs().column > time_left()) break;
+    const auto too_late = [&] { return static_cast<double>(c) * costs().column > time_left(); };
+    if (options_.time_seconds > 0 && timed_choice(options_, "curve_ends", 1, too_late)) break;
   }
   return curve;
 }
@@ -60,24 +62,28 @@ void RowColumnRun::more_rows_while_they_pay(double needed) {
     ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
     const ErrorCurve curve = error_curve(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
-    bool pay = true;
-    if (settings_.columns > 0) {
-      // The number of columns is given: rows pay while unseen rows show more error than seen ones, and cost
-      // less than columns.
-      const auto c = static_cast<double>(settings_.columns);
-      pay = curve.unseen(c) > 1.25 * curve.seen(c) &&
-            static_cast<double>(rows_read()) * costs().row < 0.5 * c * costs().column;
-    } else if (needed > 0) {
-      const auto most = static_cast<double>(columns_);
-      pay = more_rows_pay_for_target(curve, {needed, rows_read(), most, columns_before}, costs());
-      columns_before = std::min(curve.columns_for_unseen(needed), most);
-    }
-    if (options_.time_seconds > 0 && settings_.columns == 0)
-      pay = pay && more_rows_pay_for_budget(curve, kPlannedTime * time_left(), rows_read(), costs());
-    if (!pay) return;
+    const bool more = timed_choice(options_, "more_rows_pay", 1, [&] {
+      bool pay = true;
+      if (settings_.columns > 0) {
+        // The number of columns is given: rows pay while unseen rows show more error than seen ones, and cost
+        // less than columns.
+        const auto c = static_cast<double>(settings_.columns);
+        pay = curve.unseen(c) > 1.25 * curve.seen(c) &&
+              static_cast<double>(rows_read()) * costs().row < 0.5 * c * costs().column;
+      } else if (needed > 0) {
+        const auto most = static_cast<double>(columns_);
+        pay = more_rows_pay_for_target(curve, {needed, rows_read(), most, columns_before}, costs());
+        columns_before = std::min(curve.columns_for_unseen(needed), most);
+      }
+      if (options_.time_seconds > 0 && settings_.columns == 0)
+        pay = pay && more_rows_pay_for_budget(curve, kPlannedTime * time_left(), rows_read(), costs());
+      return pay;
+    });
+    if (!more) return;
     explore(sampler_.next(rows_read()), true,
             options_.time_seconds > 0 ? timer_.seconds() + 0.6 * time_left() : 0);
-    if (time_left() < 0.3 * options_.time_seconds) return;
+    if (timed_choice(options_, "rows_end", 1, [&] { return time_left() < 0.3 * options_.time_seconds; }))
+      return;
   }
 }
 
@@ -86,8 +92,10 @@ linalg::Splitter RowColumnRun::cluster_for(ColumnsKnown& known, double needed) {
   const bool asked = options_.target_error > 0 || options_.time_seconds > 0;
   if (settings_.columns == 0 && !asked) most = std::min(most, kMostColumnsUnasked);
   if (options_.time_seconds > 0 && settings_.columns == 0) {
-    const double affordable = kPlannedTime * time_left() / costs().column / (1 + settings_.zero_share);
-    most = std::min(most, static_cast<std::size_t>(std::max(affordable, 1.0)));
+    most = timed_choice(options_, "affordable_columns", static_cast<std::int64_t>(most), [&] {
+      const double affordable = kPlannedTime * time_left() / costs().column / (1 + settings_.zero_share);
+      return std::min(most, static_cast<std::size_t>(std::max(affordable, 1.0)));
+    });
   }
   if (settings_.columns > 0 || needed <= 0) {
     linalg::Splitter all = known.cluster(most, settings_.clustering);
@@ -141,15 +149,17 @@ Estimate RowColumnRun::automatic() {
     ColumnsKnown known(matrix_, seen_, settings_, options_.seed + passes_);
     const linalg::Splitter clusters = cluster_for(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
-    const bool all_fit =
-        options_.time_seconds <= 0 || costs().column * static_cast<double>(columns_) < time_left();
+    const bool all_fit = timed_choice(options_, "all_columns_fit", 1, [&] {
+      return options_.time_seconds <= 0 || costs().column * static_cast<double>(columns_) < time_left();
+    });
     if (clusters.clusters() * 2 > columns_ && settings_.columns == 0 && all_fit) {
       pass_over_all_columns();
       break;
     }
     if (!pass(known, clusters, known.expected_error(clusters, unseen_))) break;
     if (settings_.columns > 0 || (options_.target_error <= 0 && options_.time_seconds <= 0)) break;
-    if (options_.time_seconds > 0 && time_left() < 0.15 * options_.time_seconds) break;
+    if (timed_choice(options_, "passes_end", 1, [&] { return time_left() < 0.15 * options_.time_seconds; }))
+      break;
     if (settings_.rows == 0 && !target_met())
       explore(sampler_.next_by_density(rows_read() / 2, blend_.disagreement()), false,
               options_.time_seconds > 0 ? timer_.seconds() + 0.3 * time_left() : 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "methods/brute_force/brute_force.h"
+#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 
@@ -42,13 +43,20 @@ void RowColumnRun::explore(const std::vector<SampledRow>& rows, bool hold_out, d
   // Enough held-out rows for the error to expect; they are kept as they are, so their number is bounded.
   constexpr std::size_t kMostHeldOut = 64;
   const double start = timer_.seconds();
-  for (std::size_t k = 0; k < rows.size(); ++k) {
+  TimedChoices* choices = choices_of(options_);
+  const auto earlier =
+      choices ? choices->earlier("rows", static_cast<std::int64_t>(rows.size())) : std::nullopt;
+  std::size_t k = 0;
+  for (; k < rows.size(); ++k) {
     cancelled_ = cancelled_ || options_.sinks.cancelled();
-    if (cancelled_ || (until > 0 && timer_.seconds() > until && rows_read() >= 8)) break;
+    const bool enough = earlier ? static_cast<std::int64_t>(k) >= *earlier
+                                : until > 0 && timer_.seconds() > until && rows_read() >= 8;
+    if (cancelled_ || enough) break;
     const bool apart = hold_out && k % 5 == 2 && unseen_.rows() < kMostHeldOut;
     (apart ? unseen_ : seen_).read(rows[k]);
     options_.sinks.report("rows", static_cast<double>(k + 1) / static_cast<double>(rows.size()));
   }
+  if (choices) choices->record("rows", static_cast<std::int64_t>(k));
   trace_.numbers["seconds.rows"] += timer_.seconds() - start;
 }
 
