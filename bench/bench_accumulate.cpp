@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -92,37 +93,44 @@ struct BareLight {
 
 BareResult trace_tile(const BareScene& bare, const BareReceivers& r, const BareLight& light,
                       std::size_t begin, std::size_t end) {
-  std::uint32_t picked[BareReceivers::kTile + 16];
-  std::uint32_t* last = picked;
-  const Lane3 y = transport::splat(light.position), ny = transport::splat(light.normal);
+  // The survivors' origins, packed: looked up lane by lane they would cost a tenth of the loop.
+  alignas(64) float x[BareReceivers::kTile + 16], y[BareReceivers::kTile + 16], z[BareReceivers::kTile + 16];
+  std::size_t count = 0;
+  const Lane3 light_p = transport::splat(light.position), light_n = transport::splat(light.normal),
+              target = transport::splat(light.target);
   for (std::size_t i = begin; i < end; i += 16) {
     const Lane3 n{transport::load(&r.nx[i]), transport::load(&r.ny[i]), transport::load(&r.nz[i])};
     const Lane3 p{transport::load(&r.px[i]), transport::load(&r.py[i]), transport::load(&r.pz[i])};
-    const Lane3 w = light.far ? transport::splat(light.target) : y - p;
+    const Lane3 w = light.far ? target : light_p - p;
     auto keep = dot(n, w) > Lane{};
-    if (light.one_sided) keep &= dot(ny, w) < Lane{};
-    last = transport::append_set_bits(transport::bits(keep), static_cast<std::uint32_t>(i), last);
+    if (light.one_sided) keep &= dot(light_n, w) < Lane{};
+    const std::uint32_t alive = transport::bits(keep);
+    transport::append_lanes(alive, transport::load(&r.ox[i]), x + count);
+    transport::append_lanes(alive, transport::load(&r.oy[i]), y + count);
+    transport::append_lanes(alive, transport::load(&r.oz[i]), z + count);
+    count += static_cast<std::size_t>(__builtin_popcount(alive));
   }
   BareResult result;
-  result.rays = static_cast<std::uint64_t>(last - picked);
-  alignas(64) RTCRay16 rays;
+  result.rays = count;
+  for (float* v : {x, y, z}) std::fill_n(v + count, 15, count ? v[count - 1] : 0);
+  RTCRay16 rays;
   alignas(64) int valid[16];
-  for (const std::uint32_t* at = picked; at < last; at += 16) {
-    const auto count = static_cast<int>(std::min<std::ptrdiff_t>(16, last - at));
-    for (int k = 0; k < 16; ++k) {
-      const std::uint32_t i = at[k < count ? k : 0];
-      rays.org_x[k] = r.ox[i], rays.org_y[k] = r.oy[i], rays.org_z[k] = r.oz[i];
-      rays.dir_x[k] = light.far ? light.target.x : light.target.x - r.ox[i];
-      rays.dir_y[k] = light.far ? light.target.y : light.target.y - r.oy[i];
-      rays.dir_z[k] = light.far ? light.target.z : light.target.z - r.oz[i];
-      rays.tnear[k] = 1e-4f, rays.tfar[k] = light.far ? kInfinity : 1 - 1e-4f;
-      rays.time[k] = 0, rays.mask[k] = 0xffffffffu, rays.id[k] = 0, rays.flags[k] = 0;
-      valid[k] = k < count ? -1 : 0;
-    }
+  for (std::size_t at = 0; at < count; at += 16) {
+    const Lane3 o{transport::load(x + at), transport::load(y + at), transport::load(z + at)};
+    const Lane3 d = light.far ? target : target - o;
+    transport::store(rays.org_x, o.x), transport::store(rays.org_y, o.y), transport::store(rays.org_z, o.z);
+    transport::store(rays.dir_x, d.x), transport::store(rays.dir_y, d.y), transport::store(rays.dir_z, d.z);
+    transport::store(rays.tnear, transport::splat(1e-4f));
+    transport::store(rays.tfar, transport::splat(light.far ? kInfinity : 1 - 1e-4f));
+    transport::store(rays.time, Lane{});
+    std::fill_n(rays.mask, 16, 0xffffffffu), std::fill_n(rays.id, 16, 0u), std::fill_n(rays.flags, 16, 0u);
+    const transport::LaneMask inside = transport::kLaneNumbers < static_cast<int>(count - at);
+    std::memcpy(valid, &inside, sizeof inside);
     geometry::embree::Context context;
     geometry::embree::initialise(context);
     geometry::embree::occluded16(valid, bare.scene.get(), context, rays, true);
-    for (int k = 0; k < count; ++k) result.visible += rays.tfar[k] >= 0;
+    const std::uint32_t open = transport::bits(inside & (transport::load(rays.tfar) >= Lane{}));
+    result.visible += static_cast<std::uint64_t>(__builtin_popcount(open));
   }
   return result;
 }

@@ -26,7 +26,7 @@ void filter_cutout(const RTCFilterFunctionNArguments* arguments) {
     if (!a.valid[lane]) continue;
     const Hit hit = hit_of(a, lane, *query.scene);
     const std::uint64_t id = (static_cast<std::uint64_t>(hit.instance) << 32) | hit.triangle;
-    const std::uint64_t key = query.keys[RTCRayN_id(a.ray, a.N, lane)];
+    const std::uint64_t key = query.packet ? query.packet->key(RTCRayN_id(a.ray, a.N, lane)) : query.key;
     const float threshold = unit_float(hash_ids(0, Stage::opacity, key, id));
     if (!(threshold < query.callbacks->opacity(hit))) a.valid[lane] = 0;
   }

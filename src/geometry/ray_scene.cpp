@@ -122,7 +122,7 @@ std::optional<Hit> RayScene::intersect(const Ray& ray) const {
 
 bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
   QueryContext context = context_for(*impl_);
-  context.keys = &key;
+  context.key = key;
   RTCRay query = to_embree(ray);
   if (!can_trace(query)) return true;
   embree::occluded1(impl_->blocking.get(), context.embree, query);
@@ -131,7 +131,7 @@ bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
 
 std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
   QueryContext context = context_for(*impl_);
-  context.keys = packet.key;
+  context.packet = &packet;
   return unblocked16(impl_->blocking.get(), packet, context);
 }
 

@@ -55,8 +55,12 @@ inline constexpr float kShadowEpsilon = 1e-4f;
 // scene's size). Structure of arrays.
 struct alignas(64) ShadowPacket {
   float ox[16], oy[16], oz[16], dx[16], dy[16], dz[16], t_far[16];
-  std::uint64_t key[16];  // decides cut-outs; the same for the same (receiver, light)
-  int valid[16];          // -1: trace; 0: leave out
+  // Decide cut-outs: the same for the same (receiver, light). Apart and unhashed, because few rays need them.
+  std::uint32_t from[16], to[16];
+  std::uint64_t seed;
+
+  std::uint64_t key(unsigned k) const { return seed ^ (static_cast<std::uint64_t>(from[k]) << 32 | to[k]); }
+  int valid[16];  // -1: trace; 0: leave out
 };
 
 class RayScene {

@@ -40,8 +40,9 @@ struct QueryContext {
   embree::Context embree;
   const RayScene::PassageCallbacks* callbacks = nullptr;
   const RayScene::Impl* scene = nullptr;
-  const std::uint64_t* keys = nullptr;  // indexed by the ray's id
-  std::vector<Hit>* crossed = nullptr;  // smooth hits are noted here; null: any of them ends the ray
+  const ShadowPacket* packet = nullptr;  // with the ray's id as the place in it
+  std::uint64_t key = 0;                 // of a single ray, if there is no packet
+  std::vector<Hit>* crossed = nullptr;   // smooth hits are noted here; null: any of them ends the ray
 };
 
 // Lets a hit on a cut-out count with the probability of its opacity.

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "transport/scene_matrix_impl.h"
 
 namespace lumirank::transport {
@@ -74,12 +75,13 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
                             &lights.incoming, true};
   context.lights = &lights;
   context.rays = &world.rays();
-  context.seed = settings.seed;
+  context.pair_seed = mix64(settings.seed);
   context.clamp = settings.clamp > 0 ? settings.clamp : kInfinity;
   context.has_cutouts = has_cutouts(world.rays());
   context.has_smooth = world.rays().has_smooth();
   context.has_directional =
       std::find(lights.kind.begin(), lights.kind.end(), LightKind::directional) != lights.kind.end();
+  context.has_two_sided = !rows.two_sided.empty() || !columns.two_sided.empty();
 
   row_pixel.resize(receivers.size());
   for (std::size_t i = 0; i < row_pixel.size(); ++i) row_pixel[i] = receivers.film[receivers.sample[i]];

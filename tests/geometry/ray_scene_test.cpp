@@ -107,7 +107,7 @@ ShadowPacket random_packet(Rng& rng) {
     p.ox[k] = o.x, p.oy[k] = o.y, p.oz[k] = o.z;
     p.dx[k] = d.x, p.dy[k] = d.y, p.dz[k] = d.z;
     p.t_far[k] = k % 4 == 0 ? kInfinity : (k % 4 == 1 ? 0.5f : 1.0f);
-    p.key[k] = rng.next_bits();
+    p.from[k] = static_cast<std::uint32_t>(rng.next_bits()), p.to[k] = static_cast<std::uint32_t>(k);
     p.valid[k] = rng.next_float() < 0.9f ? -1 : 0;
   }
   return p;
@@ -138,7 +138,7 @@ TEST(RayScene, PacketsAgreeWithBruteForceAndSingleRays) {
         return c.margin > 0 && c.t > 0 && c.t < p.t_far[k];
       });
       EXPECT_EQ(is_visible, !is_blocked);
-      EXPECT_EQ(scene.occluded(segment(p, k), p.key[k]), is_blocked);
+      EXPECT_EQ(scene.occluded(segment(p, k), p.key(k)), is_blocked);
       (is_blocked ? blocked : open) += 1;
     }
   }
@@ -180,13 +180,13 @@ TEST(RayScene, CutoutsBlockWithTheirOpacity) {
         for (int k = 0; k < 16; ++k) {
           p.ox[k] = 0.9f * (2 * rng.next_float() - 1), p.oy[k] = 0.9f * (2 * rng.next_float() - 1);
           p.oz[k] = -1, p.dz[k] = 2, p.t_far[k] = 1, p.valid[k] = -1;
-          p.key[k] = 16u * n + k;
+          p.from[k] = n, p.to[k] = k;
         }
         const unsigned visible = scene.visible16(p);
         EXPECT_EQ(scene.visible16(p), visible);  // the same keys decide the same
         for (int k = 0; k < 16; ++k) {
           blocked += !(visible >> k & 1);
-          EXPECT_EQ(scene.occluded(segment(p, k), p.key[k]), !(visible >> k & 1));
+          EXPECT_EQ(scene.occluded(segment(p, k), p.key(k)), !(visible >> k & 1));
         }
       }
       const double trials = 16.0 * packets, sigma = std::sqrt(trials * opacity * (1 - opacity));

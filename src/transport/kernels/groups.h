@@ -1,6 +1,7 @@
 // Receivers and lights as the kernels read them: groups of 16, structure of arrays within a group.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,14 @@ struct ColumnGroup {
   Lane clamp_area;  // a_j, times max(π·f_y) where f_y is constant
   Lane depth;
 };
+
+// Where fields that are read one by one begin, in floats.
+inline constexpr int kPositionField = 0, kGeometricNormalField = 6 * 16, kOriginField = 9 * 16,
+                     kTargetField = 9 * 16;
+static_assert(offsetof(RowGroup, ng) == kGeometricNormalField * sizeof(float) &&
+              offsetof(ColumnGroup, ng) == kGeometricNormalField * sizeof(float) &&
+              offsetof(RowGroup, origin) == kOriginField * sizeof(float) &&
+              offsetof(ColumnGroup, target) == kTargetField * sizeof(float));
 
 // Classes of receivers; from kRowScatter on, one for each form of scattering.
 inline constexpr std::uint16_t kRowLambertian = 0, kRowScatter = 1;

@@ -43,6 +43,9 @@ inline Lane sqrt(Lane a) {
 #endif
 }
 
+// The number of each lane.
+inline constexpr LaneMask kLaneNumbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
 // Bit k of the result: lane k says yes.
 inline std::uint32_t bits(LaneMask m) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
@@ -72,6 +75,21 @@ inline std::uint32_t* append_set_bits(std::uint32_t b, std::uint32_t base, std::
 #else
   for (; b != 0; b &= b - 1) *out++ = base + static_cast<std::uint32_t>(__builtin_ctz(b));
   return out;
+#endif
+}
+// Packs the lanes of the set bits of b to `out` (room for 16 is needed).
+inline void append_lanes(std::uint32_t b, Lane v, float* out) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  _mm512_storeu_ps(out, _mm512_maskz_compress_ps(static_cast<__mmask16>(b), reinterpret_cast<__m512>(v)));
+#else
+  for (; b != 0; b &= b - 1) *out++ = v[__builtin_ctz(b)];
+#endif
+}
+inline void append_lanes(std::uint32_t b, const std::uint32_t* from, std::uint32_t* out) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(b), _mm512_loadu_si512(from)));
+#else
+  for (; b != 0; b &= b - 1) *out++ = from[__builtin_ctz(b)];
 #endif
 }
 // The inverse of append_set_bits: bit k of `packed` goes to the place of the k-th set bit of `where`.

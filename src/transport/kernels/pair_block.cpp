@@ -95,6 +95,8 @@ void PairBlock::resize(std::size_t groups) {
   excess_.resize(std::max(excess_.size(), groups));
   for (auto* v : {&alive_, &visible_, &clamped_}) v->resize(std::max(v->size(), groups));
   places_.resize(std::max(places_.size(), 16 * groups + 16));
+  for (auto* v : {&end_x_, &end_y_, &end_z_}) v->resize(places_.size());
+  end_item_.resize(places_.size());
   packet_bits_.resize(std::max(packet_bits_.size(), groups + 2));
 }
 
@@ -206,6 +208,26 @@ void PairBlock::collect_survivors() {
   for (std::size_t g = 0; g < groups_; ++g)
     if (alive_[g]) end = append_set_bits(alive_[g], static_cast<std::uint32_t>(16 * g), end);
   survivors_ = static_cast<std::size_t>(end - places_.data());
+  if (shape_ == BlockShape::column) collect(*context_.rows, kOriginField);
+  if (shape_ == BlockShape::row) collect(*context_.columns, kTargetField);
+}
+
+template <typename Store>
+void PairBlock::collect(const Store& store, int field) {
+  std::size_t at = 0;
+  for (std::size_t g = 0; g < groups_; ++g) {
+    const std::uint32_t alive = alive_[g];
+    if (alive == 0) continue;
+    const auto slot = static_cast<std::uint32_t>(first_slot_ + 16 * g);
+    const float* v = store.at(slot) + field;
+    append_lanes(alive, load(v), &end_x_[at]), append_lanes(alive, load(v + 16), &end_y_[at]);
+    append_lanes(alive, load(v + 32), &end_z_[at]);
+    append_lanes(alive, &store.plan.item[slot], &end_item_[at]);
+    at += static_cast<std::size_t>(__builtin_popcount(alive));
+  }
+  if (at == 0) return;
+  for (auto* v : {&end_x_, &end_y_, &end_z_}) std::fill_n(v->begin() + at, 15, (*v)[at - 1]);
+  std::fill_n(end_item_.begin() + at, 15, end_item_[at - 1]);
 }
 
 }  // namespace lumirank::transport

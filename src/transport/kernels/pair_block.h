@@ -20,11 +20,12 @@ struct PairContext {
   ScatterSide row_scatter, column_scatter;
   const VirtualLights* lights;
   const geometry::RayScene* rays;
-  std::uint64_t seed;
-  float clamp;       // X; infinite: off
-  bool has_cutouts;  // rays need keys
-  bool has_smooth;   // rays need transmittances
+  std::uint64_t pair_seed;  // hashed once: with the two ids it decides cut-outs
+  float clamp;              // X; infinite: off
+  bool has_cutouts;         // rays need keys
+  bool has_smooth;          // rays need transmittances
   bool has_directional;
+  bool has_two_sided;  // some surface shines through, see GroupStore::two_sided
 };
 
 // What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.
@@ -90,10 +91,14 @@ class PairBlock {
   void resize(std::size_t places);
   void keep(std::size_t group, const PairResult& result);
   void collect_survivors();
+  template <typename Store>
+  void collect(const Store& store, int field);
   bool to_infinity(std::uint32_t column_slot) const;
-  void turn_ends(geometry::ShadowPacket& packet, const std::uint32_t* rows, const std::uint32_t* columns,
-                 float* tx, float* ty, float* tz) const;
-  void fill(geometry::ShadowPacket& packet, const std::uint32_t* places, int count) const;
+  std::uint32_t row_slot(std::uint32_t place) const;
+  std::uint32_t column_slot(std::uint32_t place) const;
+  void turn_ends(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const;
+  // The rays of survivors first … first + count - 1.
+  void fill(geometry::ShadowPacket& packet, std::size_t first, int count) const;
   void attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count);
 
   const PairContext& context_;
@@ -107,6 +112,10 @@ class PairBlock {
   std::vector<Lane> e_, excess_, sums_;
   std::vector<std::uint16_t> alive_, visible_, clamped_;
   std::vector<std::uint32_t> places_;
+  // Of a tile's survivors, in the order of places_: where their rays start (column) or end (row), and the
+  // receiver or light there. After the last there are 15 copies of it.
+  std::vector<float> end_x_, end_y_, end_z_;
+  std::vector<std::uint32_t> end_item_;
   std::vector<std::uint16_t> packet_bits_;
 };
 

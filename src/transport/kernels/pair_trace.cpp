@@ -1,5 +1,6 @@
 // The shadow rays of a block's survivors, 16 to a packet in the order of the pairs.
 #include <algorithm>
+#include <cstring>
 
 #include "base/random.h"
 #include "transport/kernels/pair_block.h"
@@ -8,98 +9,94 @@
 namespace lumirank::transport {
 namespace {
 
-// Fields of RowGroup and ColumnGroup.
-constexpr int kOrigin = 9 * 16, kTarget = 9 * 16, kPosition = 0, kGeometricNormal = 6 * 16;
-
-// Field `field` of 16 slots, as three arrays.
+// Field `field` of a slot, in all lanes.
 template <typename Store>
-void gather(const Store& store, const std::uint32_t slots[16], int field, float* x, float* y, float* z) {
-  for (int k = 0; k < 16; ++k) {
-    const float* from = store.at(slots[k]) + field;
-    x[k] = from[0], y[k] = from[16], z[k] = from[32];
-  }
+Lane3 repeat(const Store& from, std::uint32_t slot, int field) {
+  return splat(read3(from.at(slot) + field));
 }
 
-template <typename Store>
-void repeat(const Store& from, std::uint32_t slot, int field, float* x, float* y, float* z) {
-  const Vec3f v = read3(from.at(slot) + field);
-  store(x, splat(v.x)), store(y, splat(v.y)), store(z, splat(v.z));
-}
+void set(Lane3& v, int lane, Vec3f value) { v.x[lane] = value.x, v.y[lane] = value.y, v.z[lane] = value.z; }
 
 }  // namespace
 
-// Where a surface shines through, the side from which a ray starts depends on its direction.
-void PairBlock::turn_ends(geometry::ShadowPacket& packet, const std::uint32_t* rows,
-                          const std::uint32_t* columns, float* tx, float* ty, float* tz) const {
-  const auto &row_turns = context_.rows->two_sided, &column_turns = context_.columns->two_sided;
-  for (int k = 0; k < 16; ++k) {
-    const bool row = !row_turns.empty() && row_turns[rows[k]];
-    const bool column = !column_turns.empty() && column_turns[columns[k]];
-    if (!row && !column) continue;
-    const float *r = context_.rows->at(rows[k]), *c = context_.columns->at(columns[k]);
-    const Vec3f p = read3(r + kPosition), y = read3(c + kPosition);
-    const Vec3f w = to_infinity(columns[k]) ? Vec3f{tx[k], ty[k], tz[k]} : y - p;
-    if (row) {
-      const Vec3f origin = world::World::offset_origin(p, read3(r + kGeometricNormal), w);
-      packet.ox[k] = origin.x, packet.oy[k] = origin.y, packet.oz[k] = origin.z;
-    }
-    if (column) {
-      const Vec3f target = world::World::offset_origin(y, read3(c + kGeometricNormal), -w);
-      tx[k] = target.x, ty[k] = target.y, tz[k] = target.z;
-    }
-  }
+std::uint32_t PairBlock::row_slot(std::uint32_t place) const {
+  return shape_ == BlockShape::column ? first_slot_ + place
+         : shape_ == BlockShape::row  ? fixed_slot_
+                                      : row_list_[place];
 }
-
-void PairBlock::fill(geometry::ShadowPacket& packet, const std::uint32_t* places, int count) const {
-  alignas(64) std::uint32_t rows[16], columns[16];
-  alignas(64) float tx[16], ty[16], tz[16];
-  alignas(64) std::uint32_t padded[16];
-  if (count < 16) {
-    for (int k = 0; k < 16; ++k) padded[k] = places[k < count ? k : 0];
-    places = padded;
-  }
-  for (int k = 0; k < 16; ++k) packet.valid[k] = k < count ? -1 : 0;
-  for (int k = 0; k < 16; ++k) {
-    rows[k] = shape_ == BlockShape::column ? first_slot_ + places[k] : fixed_slot_;
-    columns[k] = shape_ == BlockShape::row ? first_slot_ + places[k] : fixed_slot_;
-  }
-  if (shape_ == BlockShape::list)
-    for (int k = 0; k < 16; ++k) rows[k] = row_list_[places[k]], columns[k] = column_list_[places[k]];
-
-  if (shape_ == BlockShape::row) {
-    repeat(*context_.rows, fixed_slot_, kOrigin, packet.ox, packet.oy, packet.oz);
-  } else {
-    gather(*context_.rows, rows, kOrigin, packet.ox, packet.oy, packet.oz);
-  }
-  if (shape_ == BlockShape::column) {
-    repeat(*context_.columns, fixed_slot_, kTarget, tx, ty, tz);
-  } else {
-    gather(*context_.columns, columns, kTarget, tx, ty, tz);
-  }
-  if (!context_.rows->two_sided.empty() || !context_.columns->two_sided.empty())
-    turn_ends(packet, rows, columns, tx, ty, tz);
-  for (int k = 0; k < 16; ++k) {
-    packet.dx[k] = tx[k] - packet.ox[k], packet.dy[k] = ty[k] - packet.oy[k],
-    packet.dz[k] = tz[k] - packet.oz[k];
-    packet.t_far[k] = 1;
-  }
-  if (context_.has_directional)
-    for (int k = 0; k < 16; ++k)
-      if (to_infinity(columns[k]))
-        packet.dx[k] = tx[k], packet.dy[k] = ty[k], packet.dz[k] = tz[k], packet.t_far[k] = kInfinity;
-  // The key only has to differ from pair to pair: whoever decides by it hashes it with the surface's ids.
-  const std::uint64_t keyed = mix64(context_.seed);
-  const std::uint32_t *row_items = context_.rows->plan.item.data(),
-                      *column_items = context_.columns->plan.item.data();
-  for (int k = 0; k < 16; ++k)
-    packet.key[k] =
-        context_.has_cutouts
-            ? keyed ^ (static_cast<std::uint64_t>(row_items[rows[k]]) << 32 | column_items[columns[k]])
-            : 0;
+std::uint32_t PairBlock::column_slot(std::uint32_t place) const {
+  return shape_ == BlockShape::row      ? first_slot_ + place
+         : shape_ == BlockShape::column ? fixed_slot_
+                                        : column_list_[place];
 }
 
 bool PairBlock::to_infinity(std::uint32_t slot) const {
   return context_.columns->plan.kind_of(slot) == kColumnDirectional;
+}
+
+// Where a surface shines through, the side from which a ray starts depends on its direction.
+void PairBlock::turn_ends(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const {
+  const auto &row_turns = context_.rows->two_sided, &column_turns = context_.columns->two_sided;
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t row = row_slot(places[k]), column = column_slot(places[k]);
+    const bool turn_row = !row_turns.empty() && row_turns[row];
+    const bool turn_column = !column_turns.empty() && column_turns[column];
+    if (!turn_row && !turn_column) continue;
+    const float *r = context_.rows->at(row), *c = context_.columns->at(column);
+    const Vec3f p = read3(r + kPositionField), y = read3(c + kPositionField);
+    const Vec3f w = to_infinity(column) ? Vec3f{target.x[k], target.y[k], target.z[k]} : y - p;
+    if (turn_row) set(origin, k, world::World::offset_origin(p, read3(r + kGeometricNormalField), w));
+    if (turn_column) set(target, k, world::World::offset_origin(y, read3(c + kGeometricNormalField), -w));
+  }
+}
+
+void PairBlock::fill(geometry::ShadowPacket& packet, std::size_t first, int count) const {
+  const std::uint32_t* places = &places_[first];
+  Lane3 origin, target;
+  if (shape_ == BlockShape::column) {
+    origin = {load(&end_x_[first]), load(&end_y_[first]), load(&end_z_[first])};
+    target = repeat(*context_.columns, fixed_slot_, kTargetField);
+  } else if (shape_ == BlockShape::row) {
+    origin = repeat(*context_.rows, fixed_slot_, kOriginField);
+    target = {load(&end_x_[first]), load(&end_y_[first]), load(&end_z_[first])};
+  } else {
+    for (int k = 0; k < 16; ++k) {
+      const std::uint32_t place = places[k < count ? k : 0];
+      set(origin, k, read3(context_.rows->at(row_list_[place]) + kOriginField));
+      set(target, k, read3(context_.columns->at(column_list_[place]) + kTargetField));
+    }
+  }
+  if (context_.has_two_sided) turn_ends(places, count, origin, target);
+  LaneMask far{};
+  if (context_.has_directional) {
+    if (shape_ == BlockShape::column) {
+      far = to_infinity(fixed_slot_) ? ~far : far;
+    } else {
+      for (int k = 0; k < count; ++k) far[k] = to_infinity(column_slot(places[k])) ? -1 : 0;
+    }
+  }
+  const Lane3 along = select(far, target, target - origin);
+  store(packet.ox, origin.x), store(packet.oy, origin.y), store(packet.oz, origin.z);
+  store(packet.dx, along.x), store(packet.dy, along.y), store(packet.dz, along.z);
+  store(packet.t_far, select(far, splat(kInfinity), splat(1)));
+  const LaneMask valid = kLaneNumbers < count;
+  std::memcpy(packet.valid, &valid, sizeof valid);
+  if (!context_.has_cutouts) return;
+  // The keys only have to differ from pair to pair: whoever decides by them hashes them with the surface's
+  // ids.
+  packet.seed = context_.pair_seed;
+  if (shape_ == BlockShape::column) {
+    std::copy_n(&end_item_[first], 16, packet.from);
+    std::fill_n(packet.to, 16, context_.columns->plan.item[fixed_slot_]);
+  } else if (shape_ == BlockShape::row) {
+    std::fill_n(packet.from, 16, context_.rows->plan.item[fixed_slot_]);
+    std::copy_n(&end_item_[first], 16, packet.to);
+  } else {
+    for (int k = 0; k < count; ++k) {
+      packet.from[k] = context_.rows->plan.item[row_list_[places[k]]];
+      packet.to[k] = context_.columns->plan.item[column_list_[places[k]]];
+    }
+  }
 }
 
 void PairBlock::attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count) {
@@ -117,7 +114,7 @@ void PairBlock::trace() {
   for (std::size_t p = 0; p < packets; ++p) {
     const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
     const std::uint32_t* places = places_.data() + 16 * p;
-    fill(packet, places, count);
+    fill(packet, 16 * p, count);
     packet_bits_[p] = context_.rays->visible16(packet);
     if (context_.has_smooth && packet_bits_[p] != 0) {
       // What is hidden need not be attenuated.
@@ -147,7 +144,7 @@ void PairBlock::skip_visibility() {
   geometry::ShadowPacket packet;
   for (std::size_t p = 0; 16 * p < survivors_; ++p) {
     const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
-    fill(packet, places_.data() + 16 * p, count);
+    fill(packet, 16 * p, count);
     attenuate(packet, places_.data() + 16 * p, count);
   }
 }
