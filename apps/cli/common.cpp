@@ -32,6 +32,8 @@ RenderSettings CommonOptions::render_settings() const {
     if (!in) throw InputError({replay, 0}, "cannot be read", "give the report of an earlier render");
     settings = render_settings_from_report(text.str());
   }
+  // A budget beside it is a wish for another picture.
+  if (fields.contains("time")) settings.choices.clear();
   for (const auto& [key, value] : fields) set_field(settings, key, value);
   for (const auto& text : method_settings) {
     const auto [key, value] = split_assignment(text, "--set");
@@ -79,8 +81,10 @@ void add_setting_options(CLI::App& command, CommonOptions& common, const std::ve
   if (keys.empty()) {
     command.add_option("--set", common.method_settings, "KEY=VALUE: a parameter of the method; repeatable")
         ->allow_extra_args(false);
-    command.add_option("--replay", common.replay,
-                       "REPORT.json: the same settings again; other options win over it");
+    command.add_option(
+        "--replay", common.replay,
+        "REPORT.json: the same settings again, and what the clock decided under --time; other options "
+        "win over it");
   }
 }
 

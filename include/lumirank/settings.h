@@ -37,6 +37,9 @@ struct RenderSettings {
   std::string camera;          // "": the scene's first
   int crop[4] = {0, 0, 0, 0};  // x, y, width, height; width 0: none
   std::vector<std::string> aovs;
+  // What the clock decided in an earlier run under `time`, from its report: repeated instead of timed anew,
+  // so that the picture has the same bits. Empty: the clock decides.
+  std::map<std::string, std::vector<std::int64_t>> choices;
 };
 
 struct ReferenceSettings {
@@ -61,11 +64,12 @@ const std::vector<Field>& render_fields();
 void set_field(RenderSettings& settings, const std::string& key, const std::string& value);
 std::string get_field(const RenderSettings& settings, const std::string& key);
 
-// All fields as a JSON object and back; an unknown key is an InputError.
+// All fields as a JSON object and back, without `choices`; an unknown key is an InputError.
 std::string to_json(const RenderSettings& settings);
 RenderSettings render_settings_from_json(const std::string& text);
 
-// The settings of an earlier render, from its report.
+// The settings of an earlier render and its choices, from its report. Throws InputError if it is none, or was
+// made under a time budget and lacks its choices because it was interrupted.
 RenderSettings render_settings_from_report(const std::string& report);
 
 // Throws InputError for values that contradict each other or lie out of range.

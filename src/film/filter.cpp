@@ -1,5 +1,6 @@
 #include "film/filter.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lumirank::film {
@@ -41,6 +42,10 @@ float Filter::eval(float x) const {
   }
   return 0;
 }
+
+// It lies between 0.5 and k + 0.5 from the centres of the pixels k beside its own, both open: within the
+// radius for k ≤ ceil(radius − 0.5) only.
+int Filter::reach() const { return std::max(0, static_cast<int>(std::ceil(radius - 0.5f))); }
 
 Filter Filter::standard(FilterKind kind) {
   Filter filter;

@@ -18,16 +18,19 @@ struct Filter {
   float radius = 0.5f;
   float stddev = 0.5f, b = 1.0f / 3, c = 1.0f / 3;
   int lobes = 3;
-  float eval(float x) const;                // 1-D profile of (sample - pixel centre); 0 beyond the radius
+  float eval(float x) const;  // 1-D profile of (sample - pixel centre); 0 beyond the radius
+  // A sample in pixel p counts for pixels p ± reach() at most.
+  int reach() const;
   static Filter standard(FilterKind kind);  // with the radius that suits the kind
 };
 
-// Image of samples at film positions (pixels; (0,0) upper left of a width × height window): every pixel is
-// the weighted mean of the samples under the filter. Values are divided by the sum of weights; where negative
-// lobes nearly cancel that sum, the weights' magnitudes are taken instead. A pixel that no sample reaches is
-// black. The order of sums is fixed. Samples outside the window count as far as the filter reaches. Throws
-// InternalError if the spans differ in length or a position is not finite.
+// Image of samples at film positions (pixels) in a width × height window of the film whose upper left pixel
+// is `corner`: every pixel is the weighted mean of the samples under the filter. Values are divided by the
+// sum of weights; where negative lobes nearly cancel that sum, the weights' magnitudes are taken instead. A
+// pixel that no sample reaches is black. The order of sums is fixed. Samples outside the window count as far
+// as the filter reaches, so a window has the bits that the whole has there. Throws InternalError if the spans
+// differ in length or a position is not finite.
 Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
-            std::span<const Rgb> values);
+            std::span<const Rgb> values, Vec2i corner = {0, 0});
 
 }  // namespace lumirank::film

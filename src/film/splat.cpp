@@ -16,14 +16,14 @@ struct Rows {
   int count() const { return static_cast<int>(begin.size()) - 1; }
 };
 
-Rows group_by_row(int height, int reach, std::span<const Vec2f> positions) {
+Rows group_by_row(int top, int height, int reach, std::span<const Vec2f> positions) {
   Rows rows;
-  rows.first = -reach;
+  rows.first = top - reach;
   const int count = height + 2 * reach;
   const auto row_of = [&](Vec2f p) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y))
       throw InternalError("a receiver's position on the film is not finite");
-    const float row = std::floor(p.y) + static_cast<float>(reach);
+    const float row = std::floor(p.y) - static_cast<float>(rows.first);
     return row >= 0 && row < static_cast<float>(count) ? static_cast<int>(row) : -1;
   };
   rows.begin.assign(count + 1, 0);
@@ -50,6 +50,7 @@ struct Pixel {
 };
 
 struct Splatter {
+  Vec2i corner;  // of the window
   int width;
   const Filter& filter;
   std::span<const Vec2f> positions;
@@ -63,13 +64,13 @@ struct Splatter {
     for (int k = y; k <= y + 2 * reach; ++k)  // group k holds row k - reach
       for (std::size_t s = rows.begin[k]; s < rows.begin[k + 1]; ++s) {
         const std::uint32_t i = rows.samples[s];
-        const float wy = filter.eval(positions[i].y - (static_cast<float>(y) + 0.5f));
+        const float wy = filter.eval(positions[i].y - (static_cast<float>(corner.y + y) + 0.5f));
         if (wy == 0) continue;
-        const float column = std::floor(positions[i].x);
+        const float column = std::floor(positions[i].x) - static_cast<float>(corner.x);
         if (!(column >= static_cast<float>(-reach) && column < static_cast<float>(width + reach))) continue;
         const int center = static_cast<int>(column);
         for (int x = std::max(0, center - reach); x <= std::min(width - 1, center + reach); ++x) {
-          const float wx = filter.eval(positions[i].x - (static_cast<float>(x) + 0.5f));
+          const float wx = filter.eval(positions[i].x - (static_cast<float>(corner.x + x) + 0.5f));
           if (wx != 0) visit(x, static_cast<double>(wx) * wy, values[i]);
         }
       }
@@ -106,14 +107,13 @@ struct Splatter {
 }  // namespace
 
 Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
-            std::span<const Rgb> values) {
+            std::span<const Rgb> values, Vec2i corner) {
   if (positions.size() != values.size()) throw InternalError("as many film positions as values are needed");
   if (positions.size() > UINT32_MAX) throw InternalError("more than 2^32 - 1 film samples");
   Image image(width, height);
-  // A sample in pixel p lies within (0.5, radius) of centres p ± k for k ≤ ceil(radius - 0.5) only.
-  const int reach = std::max(0, static_cast<int>(std::ceil(filter.radius - 0.5f)));
-  const Rows rows = group_by_row(height, reach, positions);
-  const Splatter splatter{width, filter, positions, values, rows, reach};
+  const int reach = filter.reach();
+  const Rows rows = group_by_row(corner.y, height, reach, positions);
+  const Splatter splatter{corner, width, filter, positions, values, rows, reach};
   const bool own_pixel_only = filter.kind == FilterKind::box && filter.radius == 0.5f;
   parallel_for(static_cast<std::size_t>(height), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
@@ -125,7 +125,7 @@ Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> 
       std::vector<Pixel> sums(width);
       for (std::size_t s = rows.begin[y]; s < rows.begin[y + 1]; ++s) {
         const std::uint32_t i = rows.samples[s];
-        const float column = std::floor(positions[i].x);
+        const float column = std::floor(positions[i].x) - static_cast<float>(corner.x);
         if (column >= 0 && column < static_cast<float>(width))
           sums[static_cast<int>(column)].add(values[i], 1);
       }

@@ -9,6 +9,7 @@
 #include "film/atomic_file.h"
 #include "film/image_io.h"
 #include "film/metrics.h"
+#include "methods/timed_choices.h"
 #include "render/aovs.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
@@ -178,7 +179,14 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     rendering::make_matrix(setup, settings, count, sinks);
 
     PreviewThrottle throttle(on_preview);
+    methods::TimedChoices choices =
+        settings.choices.empty() ? methods::TimedChoices() : methods::TimedChoices(settings.choices);
+    if (settings.time > 0) {
+      choices.expect("receivers", static_cast<std::int64_t>(setup.matrix->rows()));
+      choices.expect("virtual_lights", static_cast<std::int64_t>(setup.matrix->columns()));
+    }
     methods::RunOptions run;
+    run.choices = &choices;
     run.seed = settings.method_seed ? settings.method_seed : settings.seed;
     run.target_error = settings.error;
     if (settings.time > 0)
@@ -194,6 +202,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     methods::Estimate estimate = method->run(*setup.matrix, run);
     setup.seconds["method"] = method_timer.seconds();
     result.interrupted = estimate.interrupted;
+    if (!result.interrupted) choices.expect_end();
 
     const Timer film_timer;
     std::vector<Rgb> values =
@@ -220,7 +229,10 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     if (!rendering::add_aovs(result.picture, setup, settings, estimate, sinks)) result.interrupted = true;
     counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
     setup.seconds["film"] = film_timer.seconds();
-    result.report_json = rendering::make_report(setup, settings, info, estimate, timer.seconds(), count);
+    // An interrupted run cannot be repeated: where it was stopped was no choice of its own.
+    if (estimate.interrupted) choices = {};
+    result.report_json =
+        rendering::make_report(setup, settings, info, estimate, choices.made(), timer.seconds(), count);
   });
   return result;
 }

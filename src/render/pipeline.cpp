@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "base/timer.h"
 #include "render/traced_direct.h"
 
@@ -92,8 +93,12 @@ void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& s
   rs.seed = settings.seed;
   rs.spp = settings.spp;
   rs.max_depth = setup.view.max_depth;
-  rs.crop_x = setup.view.crop_x, rs.crop_y = setup.view.crop_y;
-  rs.crop_width = setup.view.width, rs.crop_height = setup.view.height;
+  // The window, and around it what its filter reaches.
+  const View& view = setup.view;
+  const int reach = make_filter(view.sensor.film.filter).reach();
+  rs.crop_x = std::max(0, view.crop_x - reach), rs.crop_y = std::max(0, view.crop_y - reach);
+  rs.crop_width = std::min(camera.width(), view.crop_x + view.width + reach) - rs.crop_x;
+  rs.crop_height = std::min(camera.height(), view.crop_y + view.height + reach) - rs.crop_y;
   rs.first_hits = !settings.aovs.empty();
   setup.receivers = transport::trace_receivers(*setup.world, camera, rs, sinks);
   setup.seconds["receivers"] = timer.seconds();
@@ -116,6 +121,26 @@ void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& s
   }
 }
 
+namespace {
+// What lights are aimed at: some 16,000 receivers spread over the whole film. Lights thus depend on the view,
+// but neither on the crop nor on the number of pixels and samples.
+transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks& sinks) {
+  constexpr double kWanted = 16384;
+  scenedesc::SensorDesc sensor = setup.view.sensor;
+  auto& film = sensor.film;
+  film.crop_width = film.crop_height = film.crop_x = film.crop_y = 0;
+  const double scale = std::sqrt(kWanted / (static_cast<double>(film.width) * film.height));
+  for (int* side : {&film.width, &film.height})
+    *side = std::max(1, static_cast<int>(std::lround(*side * scale)));
+  transport::ReceiverSettings rs;
+  rs.seed = hash_ids(seed, Stage::pilot, ~0ull);  // places of their own
+  rs.spp = 1;
+  rs.max_depth = setup.view.max_depth;
+  rs.first_hits = false;
+  return transport::trace_receivers(*setup.world, world::Camera(sensor), rs, sinks);
+}
+}  // namespace
+
 void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks) {
   const Timer timer;
   setup.matrix.reset();  // before its lights change
@@ -125,7 +150,8 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   ls.max_depth = setup.view.max_depth;
   ls.direct = settings.only != "indirect";
   ls.indirect = settings.only != "direct";
-  ls.receivers = &setup.receivers;
+  const transport::Receivers aim = aim_at(setup, settings.seed, sinks);
+  ls.receivers = &aim;
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
   setup.seconds["lights"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
@@ -166,7 +192,7 @@ std::vector<Rgb> sample_values(const Setup& setup, std::span<const Rgb> sums, Fi
 
 film::Image develop(const Setup& setup, std::span<const Rgb> values) {
   return film::splat(setup.view.width, setup.view.height, make_filter(setup.view.sensor.film.filter),
-                     setup.receivers.film, values);
+                     setup.receivers.film, values, {setup.view.crop_x, setup.view.crop_y});
 }
 
 Picture to_picture(const film::Image& image) {

@@ -15,7 +15,8 @@ std::size_t peak_memory_bytes() {
 }
 
 std::string make_report(const Setup& setup, const RenderSettings& settings, const methods::MethodInfo& method,
-                        const methods::Estimate& estimate, double total_seconds, std::size_t lights_asked) {
+                        const methods::Estimate& estimate, const methods::TimedChoices::Lists& choices,
+                        double total_seconds, std::size_t lights_asked) {
   nlohmann::ordered_json json;
   json["method"] = method.name;
   json["version"] = version();
@@ -51,6 +52,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   json["memory.receivers_bytes"] = setup.receivers.memory_bytes();
   json["memory.lights_bytes"] = setup.lights.memory_bytes();
   json["parameters"] = nlohmann::ordered_json::parse(to_json(settings));
+  if (!choices.empty()) json["choices"] = choices;
   return json.dump(1) + "\n";
 }
 

@@ -5,13 +5,16 @@
 #include <string>
 
 #include "lumirank/settings.h"
+#include "methods/timed_choices.h"
 #include "render/pipeline.h"
 
 namespace lumirank::rendering {
 
-// What every report says of a prepared matrix and what a method did with it.
+// What every report says of a prepared matrix and what a method did with it. `choices`: of the clock; empty
+// without a budget.
 std::string make_report(const Setup& setup, const RenderSettings& settings, const methods::MethodInfo& method,
-                        const methods::Estimate& estimate, double total_seconds, std::size_t lights_asked);
+                        const methods::Estimate& estimate, const methods::TimedChoices::Lists& choices,
+                        double total_seconds, std::size_t lights_asked);
 
 // Resident-set peak of this process, in bytes (0 where the system does not tell).
 std::size_t peak_memory_bytes();

@@ -277,7 +277,17 @@ RenderSettings render_settings_from_report(const std::string& report) {
   const nlohmann::json json = nlohmann::json::parse(report, nullptr, false);
   if (!json.is_object() || !json.contains("parameters"))
     throw InputError("this is not a report of a render", "give the file that --report wrote");
-  return render_settings_from_json(json["parameters"].dump());
+  RenderSettings settings = render_settings_from_json(json["parameters"].dump());
+  if (settings.time <= 0) return settings;
+  try {
+    settings.choices = json.at("choices").get<decltype(settings.choices)>();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError("the report of a run under --time lacks the choices that the clock made",
+                     json.value("stopped", "") == "cancelled"
+                         ? "the run was interrupted: it cannot be replayed"
+                         : "render again with --report");
+  }
+  return settings;
 }
 
 void validate(const RenderSettings& settings) {
@@ -285,6 +295,8 @@ void validate(const RenderSettings& settings) {
     RenderSettings scratch;
     row.set(scratch, row.get(settings));
   }
+  if (!settings.choices.empty() && settings.time <= 0)
+    throw InputError("choices of a timed run need its time budget", "set 'time', or clear the choices");
   if (settings.method != "auto") methods::find_method(settings.method).make(settings.method_settings);
 }
 

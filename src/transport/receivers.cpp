@@ -126,8 +126,7 @@ class ReceiverTracer {
       const Vec2f film_jitter = rng.next_2d();
       const auto place = pattern.place(k, film_jitter, rng.next_2d());
       const Vec2f on_film{within(x, place.film.x), within(y, place.film.y)};
-      result_.film[sample] = {on_film.x - static_cast<float>(crop_.x),
-                              on_film.y - static_cast<float>(crop_.y)};
+      result_.film[sample] = on_film;
       FirstHit first;
       result_.emission[sample] =
           chain.follow(camera_.ray(on_film, place.lens), static_cast<std::uint32_t>(sample), rng,

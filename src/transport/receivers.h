@@ -18,7 +18,8 @@ struct ReceiverSettings {
   std::uint64_t seed = 1;
   int spp = 4;         // film samples per pixel, stratified √spp × √spp when square
   int max_depth = -1;  // Mitsuba's count
-  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // 0: the whole film
+  // What is traced, 0: the whole film. A picture of a window needs as much around it as its filter reaches.
+  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;
   bool first_hits = true;  // keep the first_… arrays, for AOVs: 40 B and some µs per sample
   // Specular vertices at which both reflection and refraction are followed; at later ones, one is drawn.
   int max_splits = 3;
@@ -42,8 +43,8 @@ struct Receivers {
 
   static constexpr std::uint32_t kLambertian = 0xffffffffu;
 
-  // Film samples: position on the (cropped) film in pixels, and the emission that is seen directly or through
-  // the chain.
+  // Film samples: position on the whole film in pixels, and the emission that is seen directly or through the
+  // chain.
   std::vector<Vec2f> film;
   std::vector<Rgb> emission;
   // First hit of each sample, for AOVs: zero (distance: infinite) where the background is seen. Empty if not

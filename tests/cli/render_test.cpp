@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "program.h"
 
@@ -107,6 +108,39 @@ TEST_F(Render, ReplayGivesTheSameBits) {
   EXPECT_NE(read_pixels(again), first);
 }
 
+// Every method's clock choices are in its report, so its picture comes back whatever the clock says now.
+TEST_F(Render, ReplayRepeatsWhatTheClockDecided) {
+  const std::string report = folder_ / "report.json", again = folder_ / "again.exr";
+  for (const char* method : {"auto", "power-sampling", "brute-force"}) {
+    // So many lights that the budget cuts the run short.
+    const std::string file = folder_ / "first.exr";
+    EXPECT_SUCCESS(lumirank({"render", scene_, "-o", file, "--method", method, "--lights", "20000", "--size",
+                             "60x50", "--time", "0.3", "--report", report, "--preview", folder_ / "p.png"}));
+    const Pixels first = read_pixels(file);
+    const auto choices = read_json(report)["choices"];
+    EXPECT_TRUE(choices.contains("columns")) << method;
+    const Arguments replay = {"render", scene_, "-o", again, "--replay", report};
+    for (const char* threads : {"1", "3"}) {
+      EXPECT_SUCCESS(lumirank(replay + Arguments{"--threads", threads, "--report", folder_ / "second.json"}));
+      EXPECT_EQ(read_pixels(again), first) << method << " " << threads;
+    }
+    EXPECT_EQ(read_json(folder_ / "second.json")["choices"], choices) << "a replay can be replayed";
+  }
+  const Arguments replay = {"render", scene_, "-o", folder_ / "no.exr", "--replay", report};
+  expect_refused(lumirank(replay + Arguments{"--lights", "300"}), "do not fit: 'virtual_lights' was");
+  expect_refused(lumirank(replay + Arguments{"--size", "10x10"}), "do not fit: 'receivers' was");
+  expect_refused(lumirank(replay + Arguments{"--method", "power-sampling"}), "do not fit");
+  EXPECT_SUCCESS(lumirank(replay + Arguments{"--lights", "300", "--time", "1"}));
+
+  auto json = read_json(report);
+  json.erase("choices");
+  std::ofstream(report) << json;
+  expect_refused(lumirank(replay), "lacks the choices");
+  json["choices"]["columns"] = "many";
+  std::ofstream(report) << json;
+  expect_refused(lumirank(replay), "lacks the choices");
+}
+
 TEST_F(Render, TheSeedChangesThePicture) {
   const Pixels a = render({"--seed", "1"}), b = render({"--seed", "2"}), c = render({"--seed", "1"});
   EXPECT_NE(a, b);
@@ -138,8 +172,8 @@ TEST_F(Render, SizeAndReceiversPerPixel) {
   EXPECT_EQ(read_json(folder_ / "r.json")["receivers"], 7 * 5 * 9);
 }
 
-// The eye's samples are keyed by their pixel: a window sees what the whole sees there. Its virtual lights are
-// others, since they are aimed at what is seen.
+// The eye's samples are keyed by their pixel and lights are aimed at the whole film: a window sees what the
+// whole sees there, whatever the filter reaches beyond its edges.
 TEST_F(Render, ACropIsAWindowOfTheWhole) {
   const auto expect_window = [](const Pixels& whole, const Pixels& window, const std::string& channel) {
     ASSERT_EQ(window.width, 5) << channel;
@@ -153,6 +187,21 @@ TEST_F(Render, ACropIsAWindowOfTheWhole) {
   const Pixels whole = render(eye), window = render(eye + Arguments{"--crop", "6,2,5,4"});
   for (const auto& [channel, values] : whole.channels)
     if (channel.size() > 1) expect_window(whole, window, channel);  // all but the colours
+
+  // Brute force has the same columns, and the same sums of them, also where filters reach beyond the window.
+  const std::string ball =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"-0.7\" y=\"-1\" z=\"0\"/><float name=\"radius\" "
+      "value=\"0.8\"/><bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.1\"/></bsdf></shape>";
+  for (const char* filter : {"box", "tent", "gaussian", "lanczos"}) {
+    std::string room = small_room(ball);
+    const std::string box = "<rfilter type=\"box\"/>";
+    ASSERT_NE(room.find(box), std::string::npos);
+    room.replace(room.find(box), box.size(), "<rfilter type=\"" + std::string(filter) + "\"/>");
+    scene_ = write_scene(folder_, room);
+    const Arguments all = kBruteForce + Arguments{"--aov", "direct"};
+    const Pixels full = render(all), part = render(all + Arguments{"--crop", "6,2,5,4"});
+    for (const auto& [channel, values] : full.channels) expect_window(full, part, channel);
+  }
 
   const std::string file = folder_ / "reference.exr";
   const Arguments reference = {"reference", scene_, "-o", file, "--size", "12x10", "--spp", "4"};

@@ -151,6 +151,16 @@ TEST(Splat, CancelledWeightsStayWithinRange) {
   EXPECT_NEAR(image.at(0, 0).r, 1.5f, 1e-3f);  // equal magnitudes: the plain mean
 }
 
+TEST(Splat, AWindowHasTheBitsOfTheWhole) {
+  const Samples samples = jittered(40, 60);
+  for (const auto kind : {FilterKind::box, FilterKind::tent, FilterKind::gaussian, FilterKind::lanczos}) {
+    const Image whole = splat(40, 60, Filter::standard(kind), samples.positions, samples.values);
+    const Image window = splat(9, 7, Filter::standard(kind), samples.positions, samples.values, {31, 1});
+    for (int y = 0; y < 7; ++y)
+      for (int x = 0; x < 9; ++x) EXPECT_EQ(window.at(x, y), whole.at(x + 31, y + 1));
+  }
+}
+
 TEST(Splat, SameBitsForAnyNumberOfThreads) {
   const Samples samples = jittered(40, 60);
   const Filter filter = Filter::standard(FilterKind::gaussian);

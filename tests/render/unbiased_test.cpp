@@ -41,7 +41,7 @@ void expect_equal_means(const char* only) {
   settings.method = "brute-force";
   settings.clamp = 0;
   settings.direct = "matrix";
-  settings.lights = 2000;
+  settings.lights = 16000;  // they are aimed at the whole film
   ReferenceSettings how;
   how.paths = "columns";
   how.spp = 512;
