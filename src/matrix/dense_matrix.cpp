@@ -17,11 +17,13 @@ DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
     : pixel(std::move(other.pixel)),
       row_position(std::move(other.row_position)),
       row_normal(std::move(other.row_normal)),
+      row_weight(std::move(other.row_weight)),
       column_position(std::move(other.column_position)),
       column_normal(std::move(other.column_normal)),
       power(std::move(other.power)),
       group(std::move(other.group)),
       indirect(std::move(other.indirect)),
+      half(std::move(other.half)),
       rows_(other.rows_),
       columns_(other.columns_),
       unoccluded_(std::move(other.unoccluded_)),
@@ -93,10 +95,10 @@ void DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rg
   sinks.report("columns", 1.0);
 }
 
-RowFeatures DenseMatrix::row_features() const { return {pixel, row_position, row_normal}; }
+RowFeatures DenseMatrix::row_features() const { return {pixel, row_position, row_normal, row_weight}; }
 
 ColumnFeatures DenseMatrix::column_features() const {
-  return {column_position, column_normal, power, group, indirect};
+  return {column_position, column_normal, power, group, indirect, half};
 }
 
 std::vector<Rgb> DenseMatrix::exact_sums() const {

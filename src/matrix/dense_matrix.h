@@ -37,10 +37,11 @@ class DenseMatrix : public LightingMatrix {
   // Features, empty unless set; lengths must be those of the matrix.
   std::vector<Vec2f> pixel;
   std::vector<Vec3f> row_position, row_normal;
+  std::vector<float> row_weight;
   std::vector<Vec3f> column_position, column_normal;
   std::vector<float> power;
   std::vector<std::uint16_t> group;
-  std::vector<std::uint8_t> indirect;
+  std::vector<std::uint8_t> indirect, half;
 
  private:
   void pay(std::size_t i, std::size_t j) const;

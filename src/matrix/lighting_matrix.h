@@ -34,6 +34,7 @@ struct RowFeatures {
   std::span<const Vec2f> pixel;  // film position
   std::span<const Vec3f> position;
   std::span<const Vec3f> normal;
+  std::span<const float> weight;  // ≥ 0; what the row's sum is multiplied with in the image
 };
 
 // Plain numbers about columns. Arrays of length columns(); may be empty if unknown.
@@ -44,6 +45,9 @@ struct ColumnFeatures {
   std::span<const std::uint16_t>
       group;  // clusters never cross groups; all 0 unless the image is split by light
   std::span<const std::uint8_t> indirect;  // 0: stands for an emitter; 1: particle-traced
+  // Columns are often random samples of what infinitely many would add up to. 1 and 2: member of one of two
+  // independent halves, twice the sum over either of which estimates the same; 0: no sample, but exact.
+  std::span<const std::uint8_t> half;
 };
 
 // Which part of an entry.
@@ -78,6 +82,10 @@ class LightingMatrix {
   // blocks.
   virtual void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                           const Sinks& sinks = {}) const = 0;
+
+  // r + g + b that clamping took away from the visible entries that have been evaluated so far, 0 if nothing
+  // is clamped: what a row lost is the difference before and after it.
+  virtual double clamped_energy() const { return 0; }
 
   virtual RowFeatures row_features() const { return {}; }
   virtual ColumnFeatures column_features() const { return {}; }

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "transport/halves.h"
 #include "transport/sequence.h"
 
 namespace lumirank::transport {
@@ -19,16 +20,18 @@ struct SampleNumbers {
   Vec2f u2;
 };
 
-// One sample of one emitter as a light. `share`: 1 over the number of samples that stand for the emitter.
+// One sample of one emitter as a light. `share`: 1 over the number of samples that stand for the emitter, all
+// of them chosen at random unless `half` is kNoHalf.
 class SampleMaker {
  public:
-  SampleMaker(const world::World& world, int emitter, SampleNumbers numbers, double share)
-      : world_(world), emitter_(emitter), u_(numbers), share_(share) {}
+  SampleMaker(const world::World& world, int emitter, SampleNumbers numbers, double share, std::uint8_t half)
+      : world_(world), emitter_(emitter), u_(numbers), share_(share), half_(half) {}
 
   // False if no light leaves there.
   bool make(LightBatch& batch) {
     light_ = {};
     light_.emitter = static_cast<std::uint16_t>(emitter_);
+    light_.half = half_;
     std::visit([&](const auto& kind) { fill(kind, batch); },
                world_.emitters()[static_cast<std::size_t>(emitter_)].kind);
     if (!(max_component(light_.power) > 0)) return false;
@@ -82,6 +85,7 @@ class SampleMaker {
   int emitter_;
   SampleNumbers u_;
   double share_;
+  std::uint8_t half_;
   LightRecord light_;
 };
 
@@ -95,12 +99,32 @@ std::size_t fixed_count(const emitters::Emitter& e) {
   return 1;
 }
 
-SampleNumbers numbers(const Sequence2& sequence, std::uint64_t seed, int emitter, std::size_t k,
-                      std::size_t n) {
-  Rng rng(seed, Stage::emitter_samples, static_cast<std::uint64_t>(emitter), k);
-  const double u1 = (static_cast<double>(k) + rng.next_double()) / static_cast<double>(n);
-  return {std::min(static_cast<float>(u1), 0x1.fffffep-1f), sequence(k)};
-}
+// Evenly spread numbers for `n` samples, each half by itself.
+class HalvedNumbers {
+ public:
+  HalvedNumbers(std::uint64_t seed, std::uint64_t id, std::size_t n)
+      : seed_(seed), id_(id), n_(n), sequences_{sequence(0), sequence(1)} {}
+
+  // In the k-th of n equal parts of [0, 1), as the half sees them.
+  double stratified(std::size_t k) const {
+    const PlaceInHalf place(k, n_);
+    Rng rng(seed_, Stage::emitter_samples, id_, k);
+    return (static_cast<double>(place.index) + rng.next_double()) / static_cast<double>(place.size);
+  }
+  Vec2f point(std::size_t k) const {
+    const PlaceInHalf place(k, n_);
+    return sequences_[place.half](place.index);
+  }
+
+ private:
+  Sequence2 sequence(std::size_t half) const {
+    return {seed_, Stage::emitter_samples, PlaceInHalf(half, n_).key(id_)};
+  }
+
+  std::uint64_t seed_, id_;
+  std::size_t n_;
+  Sequence2 sequences_[2];
+};
 
 void every_emitter(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
                    std::size_t count, LightBatch& batch) {
@@ -116,25 +140,32 @@ void every_emitter(const world::World& world, const EmitterChoice& choice, std::
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const int emitter = choice.emitter(k);
     std::size_t n = counts[k];
+    // As many in one half as in the other.
     if (n == 0)
-      n = std::max<std::size_t>(
-          1, static_cast<std::size_t>(std::llround(rest * choice.probability(k) / sampled)));
-    const Sequence2 sequence(seed, Stage::emitter_samples, static_cast<std::uint64_t>(emitter));
-    for (std::size_t i = 0; i < n; ++i)
-      SampleMaker(world, emitter, numbers(sequence, seed, emitter, i, n), 1 / static_cast<double>(n))
+      n = 2 * std::max<std::size_t>(
+                  1, static_cast<std::size_t>(std::llround(0.5 * rest * choice.probability(k) / sampled)));
+    const HalvedNumbers numbers(seed, static_cast<std::uint64_t>(emitter), n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const SampleNumbers u{std::min(static_cast<float>(numbers.stratified(i)), 0x1.fffffep-1f),
+                            numbers.point(i)};
+      SampleMaker(world, emitter, u, 1 / static_cast<double>(n),
+                  n == 1 ? kNoHalf : PlaceInHalf(i, n).feature())
           .make(batch);
+    }
   }
 }
 
 void some_emitters(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
                    std::size_t count, LightBatch& batch) {
   constexpr std::uint64_t kAll = ~0ull;  // no emitter has this id
-  const Sequence2 sequence(seed, Stage::emitter_samples, kAll);
+  count = even(count);
+  const HalvedNumbers numbers(seed, kAll, count);
   for (std::size_t i = 0; i < count; ++i) {
-    Rng rng(seed, Stage::emitter_samples, kAll, i);
-    const auto drawn = choice.draw((static_cast<double>(i) + rng.next_double()) / static_cast<double>(count));
+    const auto drawn = choice.draw(numbers.stratified(i));
     const double share = 1 / (drawn.probability * static_cast<double>(count));
-    SampleMaker(world, drawn.emitter, {drawn.remapped, sequence(i)}, share).make(batch);
+    SampleMaker(world, drawn.emitter, {drawn.remapped, numbers.point(i)}, share,
+                PlaceInHalf(i, count).feature())
+        .make(batch);
   }
 }
 

@@ -59,7 +59,7 @@ std::vector<Place> sorted_places(std::span<const LightBatch> batches, std::span<
 void resize(VirtualLights& lights, std::size_t n) {
   lights.kind.resize(n), lights.position.resize(n), lights.normal.resize(n), lights.ng.resize(n);
   lights.power.resize(n), lights.area.resize(n), lights.emitter.resize(n), lights.depth.resize(n);
-  lights.closure.resize(n), lights.albedo.resize(n), lights.incoming.resize(n);
+  lights.closure.resize(n), lights.albedo.resize(n), lights.incoming.resize(n), lights.half.resize(n);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ VirtualLights lay_out(std::span<LightBatch> batches) {
       out.kind[j] = light.kind;
       out.position[j] = light.position, out.normal[j] = light.normal, out.ng[j] = light.ng;
       out.power[j] = light.power, out.area[j] = light.area, out.emitter[j] = light.emitter,
-      out.depth[j] = light.depth;
+      out.depth[j] = light.depth, out.half[j] = light.half;
       out.albedo[j] = light.albedo, out.incoming[j] = light.incoming;
       out.closure[j] = light.closure;
       if (light.kind == LightKind::spot) {

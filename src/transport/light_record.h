@@ -17,6 +17,7 @@ struct LightRecord {
   std::uint32_t closure = VirtualLights::kLambertian;
   std::uint16_t emitter = 0, depth = 0;
   LightKind kind = LightKind::surface;
+  std::uint8_t half = 0;
 };
 
 // Lights in the order in which they were made, with the closures and spot shapes that they index.

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "scatter/closure.h"
+#include "transport/halves.h"
 
 namespace lumirank::transport {
 namespace {
@@ -45,9 +46,13 @@ LightRecord surface_light(const Vec3f& position, const Closure& closure, Vec3f i
 
 EmissionGuide::Start ParticleTracer::trace(std::size_t path, LightBatch& batch, PathTally* tally) const {
   Rng rng(settings_.seed, settings_.stage, settings_.first_id + path);
-  const double u = (static_cast<double>(path) + rng.next_double()) / static_cast<double>(settings_.paths);
-  const auto start = settings_.guide->draw(u, path, settings_.seed ^ settings_.first_id, settings_.stage);
+  const PlaceInHalf place(path, settings_.paths);
+  const double u = (static_cast<double>(place.index) + rng.next_double()) / static_cast<double>(place.size);
+  const auto start =
+      settings_.guide->draw(u, place.index, place.key(settings_.seed ^ settings_.first_id), settings_.stage);
+  const std::size_t before = batch.lights.size();
   follow(start, rng, batch, tally);
+  for (std::size_t k = before; k < batch.lights.size(); ++k) batch.lights[k].half = place.feature();
   return start;
 }
 

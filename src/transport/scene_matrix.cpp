@@ -84,7 +84,11 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   context.has_two_sided = !rows.two_sided.empty() || !columns.two_sided.empty();
 
   row_pixel.resize(receivers.size());
-  for (std::size_t i = 0; i < row_pixel.size(); ++i) row_pixel[i] = receivers.film[receivers.sample[i]];
+  row_weight.resize(receivers.size());
+  for (std::size_t i = 0; i < row_pixel.size(); ++i) {
+    row_pixel[i] = receivers.film[receivers.sample[i]];
+    row_weight[i] = mean(receivers.weight[i]);
+  }
   const float radius = world.bounds().radius();
   column_power.resize(lights.size());
   column_group.resize(lights.size(), 0);
@@ -200,12 +204,17 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
 }
 
 matrix::RowFeatures SceneMatrix::row_features() const {
-  return {impl_->row_pixel, impl_->receivers.position, impl_->receivers.normal};
+  return {impl_->row_pixel, impl_->receivers.position, impl_->receivers.normal, impl_->row_weight};
 }
 
 matrix::ColumnFeatures SceneMatrix::column_features() const {
-  return {impl_->lights.position, impl_->lights.normal, impl_->column_power, impl_->column_group,
-          impl_->column_indirect};
+  return {impl_->lights.position, impl_->lights.normal,   impl_->column_power,
+          impl_->column_group,    impl_->column_indirect, impl_->lights.half};
+}
+
+double SceneMatrix::clamped_energy() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->energy_removed;
 }
 
 double SceneMatrix::clamped_fraction() const {

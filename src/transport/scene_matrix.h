@@ -44,6 +44,7 @@ class SceneMatrix final : public matrix::LightingMatrix {
   // Energy that clamping removed, over the entries evaluated so far: Σ(unclamped − clamped) / Σ unclamped,
   // receivers weighted equally.
   double clamped_fraction() const;
+  double clamped_energy() const override;
 
  private:
   struct Impl;

@@ -23,7 +23,7 @@ struct SceneMatrix::Impl {
   ColumnStore columns;
   PairContext context;
   std::vector<Vec2f> row_pixel;
-  std::vector<float> column_power;
+  std::vector<float> row_weight, column_power;
   std::vector<std::uint16_t> column_group;
   std::vector<std::uint8_t> column_indirect;
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "transport/emitter_lights.h"
 #include "transport/guide_pilot.h"
+#include "transport/halves.h"
 #include "transport/neighbour_distance.h"
 #include "transport/particle.h"
 
@@ -69,7 +70,8 @@ Counts divide(const LightSettings& settings, const DirectNeed& need, const Pilot
     counts.direct = direct ? std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(for_direct))) : 0;
     for_paths = std::max(1.0, target - static_cast<double>(counts.direct));
     const double per_light = pilot.lights_per_path > 0 ? 1 / pilot.lights_per_path : kMostPathsPerLight;
-    counts.paths = static_cast<std::size_t>(std::ceil(for_paths * std::min(per_light, kMostPathsPerLight)));
+    counts.paths =
+        even(static_cast<std::size_t>(std::ceil(for_paths * std::min(per_light, kMostPathsPerLight))));
   } else if (direct) {
     counts.direct = need.sampled ? settings.count : std::min(settings.count, need.least);
   }
@@ -158,8 +160,8 @@ scatter::Closure VirtualLights::closure_at(std::size_t j) const {
 std::size_t VirtualLights::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(kind) + bytes(position) + bytes(normal) + bytes(ng) + bytes(power) + bytes(area) +
-         bytes(emitter) + bytes(depth) + bytes(closure) + bytes(albedo) + bytes(incoming) + bytes(spots) +
-         closures.memory_bytes();
+         bytes(emitter) + bytes(depth) + bytes(half) + bytes(closure) + bytes(albedo) + bytes(incoming) +
+         bytes(spots) + closures.memory_bytes();
 }
 
 }  // namespace lumirank::transport

@@ -55,6 +55,7 @@ struct VirtualLights {
   std::vector<float> area;             // a_j: the area that the light stands for (clamping); 0: never clamped
   std::vector<std::uint16_t> emitter;  // first emitter of the path
   std::vector<std::uint16_t> depth;    // path segments from the emitter to here (0: on the emitter)
+  std::vector<std::uint8_t> half;      // 1 or 2: the independent half that it belongs to; 0: exact (halves.h)
   std::vector<std::uint32_t> closure;  // surface lights that are not lambertian: index into closures; spot:
                                        // into spots; else kLambertian
   std::vector<Rgb> albedo;             // lambertian surface lights
