@@ -35,7 +35,11 @@ world::World build_world(const Scene& scene, const Sinks& sinks,
   world::BuildOptions options;
   options.strict = scene.impl().options.strict;
   world::World world = world::World::build(scene.impl().desc, options, warnings, sinks);
-  for (const auto& w : warnings) sinks.warn(warning_text(w));
+  for (const auto& w : warnings)
+    if (w.harmless)
+      sinks.say(warning_text(w));
+    else
+      sinks.warn(warning_text(w));
   if (keep) *keep = std::move(warnings);
   return world;
 }
@@ -112,7 +116,8 @@ nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
   json["memory.scene_bytes"] = info.memory_bytes;
   json["warnings"] = nlohmann::json::array();
   for (const auto& w : desc.warnings) json["warnings"].push_back(warning_text(w));
-  for (const auto& w : warnings) json["warnings"].push_back(warning_text(w));
+  json["notes"] = nlohmann::json::array();
+  for (const auto& w : warnings) json[w.harmless ? "notes" : "warnings"].push_back(warning_text(w));
   return json;
 }
 
@@ -156,6 +161,8 @@ std::string Scene::info_text(const Sinks& sinks) const {
   const std::size_t read = impl_->desc.warnings.size(), all = json["warnings"].size();
   text += "warnings while building: " + std::to_string(all - read) + "\n";
   for (std::size_t w = read; w < all; ++w) text += "  " + json["warnings"][w].get<std::string>() + "\n";
+  if (!json["notes"].empty()) text += "notes (nothing that a picture shows):\n";
+  for (const auto& note : json["notes"]) text += "  " + note.get<std::string>() + "\n";
   return text;
 }
 

@@ -27,7 +27,7 @@ SceneDesc parse_mitsuba(const std::string& text, const std::string& filename,
 
 MeshData read_mesh(const MeshFileDesc& file);
 // From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are
-// an error, degenerate triangles are left out and noted.
+// an error, degenerate triangles are left out, and all that was mended is noted.
 MeshData parse_obj(const std::string& bytes, const std::string& filename);
 MeshData parse_ply(const std::string& bytes, const std::string& filename);
 MeshData parse_serialized(const std::string& bytes, const std::string& filename, int shape_index);

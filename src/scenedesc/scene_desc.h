@@ -289,6 +289,7 @@ struct Warning {
   SourceLocation where;
   std::string what;          // names the thing that Lumirank does not have
   std::string used_instead;  // "" if it is left out
+  bool harmless = false;     // only a note: no picture shows the difference, so --strict lets it pass
 };
 
 struct SceneDesc {

@@ -17,9 +17,11 @@ namespace {
 // All shining spheres together get about this many triangles: each of their triangles is kept in world space.
 constexpr double kShiningSphereTriangles = 1 << 20;
 
-geometry::TriangleMesh from_file(const sd::MeshFileDesc& file, std::vector<std::string>& notes) {
+geometry::TriangleMesh from_file(const sd::MeshFileDesc& file, std::vector<std::string>& left_out,
+                                 std::vector<sd::MeshData::Mended>& mended) {
   sd::MeshData data = sd::read_mesh(file);
-  notes = std::move(data.notes);
+  left_out = std::move(data.left_out);
+  mended = std::move(data.mended);
   geometry::TriangleMesh mesh;
   mesh.positions = std::move(data.positions);
   mesh.normals = std::move(data.normals);
@@ -78,13 +80,14 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
   check_numbers(shape, numbers);
   shining_spheres_ += shines ? 1 : 0;
   const auto [it, fresh] = index_.try_emplace(key, static_cast<int>(sources_.size()));
-  if (fresh) sources_.push_back({&shape, shines, {}});
+  if (fresh) sources_.push_back({&shape, shines, {}, {}});
   return it->second;
 }
 
 geometry::TriangleMesh MeshStore::make(Source& source) const {
   const sd::ShapeDesc& shape = *source.shape;
-  if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind)) return from_file(*file, source.notes);
+  if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind))
+    return from_file(*file, source.left_out, source.mended);
   if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
   if (std::holds_alternative<sd::CubeDesc>(shape.kind)) return geometry::make_cube();
   if (std::holds_alternative<sd::DiskDesc>(shape.kind)) return geometry::make_disk();
@@ -114,11 +117,13 @@ void MeshStore::load(Notes& notes) {
   });
   for (const auto& failure : failures)
     if (failure) std::rethrow_exception(failure);
-  for (const auto& source : sources_)
-    for (const std::string& note : source.notes) {
-      const auto& file = std::get<sd::MeshFileDesc>(source.shape->kind);
-      notes.warn(source.shape->where, file.filename + ": " + note, "the mesh without them");
-    }
+  for (const auto& source : sources_) {
+    const auto* file = std::get_if<sd::MeshFileDesc>(&source.shape->kind);
+    for (const std::string& what : source.left_out)
+      notes.note(source.shape->where, file->filename + ": " + what + " left out");
+    for (const auto& mended : source.mended)
+      notes.warn(source.shape->where, file->filename + ": " + mended.what, mended.used_instead);
+  }
 }
 
 }  // namespace lumirank::world

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "scenedesc/mesh.h"
 #include "scenedesc/scene_desc.h"
 #include "world/notes.h"
 
@@ -32,7 +33,8 @@ class MeshStore {
   struct Source {
     const scenedesc::ShapeDesc* shape;
     bool shines;
-    std::vector<std::string> notes;
+    std::vector<std::string> left_out;
+    std::vector<scenedesc::MeshData::Mended> mended;
   };
   geometry::TriangleMesh make(Source& source) const;
 

@@ -19,8 +19,10 @@ class Notes {
     if (strict_)
       throw InputError(where, what,
                        "--strict is given; without it: " + (instead.empty() ? "left out" : instead));
-    out_.push_back({where, what, instead});
+    out_.push_back({where, what, instead, false});
   }
+  // For what no picture can show.
+  void note(const SourceLocation& where, const std::string& what) { out_.push_back({where, what, "", true}); }
 
  private:
   std::vector<scenedesc::Warning>& out_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "film/image_io.h"
@@ -146,20 +147,26 @@ TEST(OddInput, NoLightIsBlackWithAWarning) {
   }
 }
 
-TEST(OddInput, ALampWithoutAreaIsDark) {
+TEST(OddInput, TrianglesWithoutAreaAreANote) {
   const TemporaryFolder folder;
   const std::string file = folder / "a.exr", mesh = folder / "flat.obj";
-  // A good triangle, and one whose corners lie on a line: 0 area.
+  // A good triangle, and one whose corners lie on a line.
   { std::ofstream(mesh) << "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n"; }
   const std::string shape =
       "<shape type=\"obj\"><string name=\"filename\" value=\"flat.obj\"/></shape><emitter "
       "type=\"constant\"/>";
-  const Outcome outcome =
-      lumirank(render_small(write_scene(folder, point_camera("0,0,3", "0,0,0", 8, 40) + shape), file));
+  const std::string scene = write_scene(folder, point_camera("0,0,3", "0,0,0", 8, 40) + shape);
+  const Outcome outcome = lumirank(render_small(scene, file) + Arguments{"--strict"});
   EXPECT_SUCCESS(outcome);
-  EXPECT_NE(outcome.err.find("warning: "), std::string::npos);
-  EXPECT_NE(outcome.err.find("degenerate"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("warning: "), std::string::npos) << outcome.err;
   EXPECT_TRUE(all_finite(read_pixels(file)));
+  const Outcome told = lumirank(render_small(scene, file) + Arguments{"--verbose"});
+  EXPECT_NE(told.err.find("1 degenerate triangle left out"), std::string::npos) << told.err;
+  const Outcome text = lumirank({"info", scene}), json = lumirank({"info", scene, "--json"});
+  EXPECT_NE(text.out.find("1 degenerate triangle left out"), std::string::npos) << text.out;
+  const auto info = nlohmann::json::parse(json.out);
+  EXPECT_TRUE(info.at("warnings").empty()) << json.out;
+  ASSERT_EQ(info.at("notes").size(), 1u) << json.out;
 }
 
 TEST(OddInput, AViewOfNothingShowsTheBackground) {

@@ -140,7 +140,32 @@ std::vector<std::string> files_in(const std::string& folder) {
   return names;
 }
 
+namespace {
+
+// By hand: OpenImageIO's releases disagree about which row of a PFM file comes first (it is the lowest).
+Pixels read_pfm_pixels(const std::string& file) {
+  Pixels pixels;
+  std::ifstream in(file, std::ios::binary);
+  std::string magic, scale;
+  in >> magic >> pixels.width >> pixels.height >> scale;
+  in.get();
+  EXPECT_EQ(magic + " " + scale, "PF -1.0") << file << ": not a little-endian colour PFM";
+  const auto width = static_cast<std::size_t>(pixels.width), height = static_cast<std::size_t>(pixels.height);
+  std::vector<float> data(3 * width * height);
+  in.read(reinterpret_cast<char*>(data.data()), static_cast<std::streamsize>(data.size() * sizeof(float)));
+  EXPECT_TRUE(in && in.peek() == EOF) << file << ": its length is wrong";
+  for (std::size_t c = 0; c < 3; ++c) {
+    auto& plane = pixels.channels[std::string(1, "RGB"[c])];
+    for (std::size_t y = height; y-- > 0;)
+      for (std::size_t x = 0; x < width; ++x) plane.push_back(data[3 * (y * width + x) + c]);
+  }
+  return pixels;
+}
+
+}  // namespace
+
 Pixels read_pixels(const std::string& file) {
+  if (file.ends_with(".pfm")) return read_pfm_pixels(file);
   Pixels pixels;
   const auto input = OIIO::ImageInput::open(file);
   if (!input) {

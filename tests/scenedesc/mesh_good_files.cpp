@@ -39,7 +39,7 @@ TEST(ObjReader, ReadsEveryFormOfFaceIndex) {
       EXPECT_EQ(mesh.normals, std::vector<Vec3f>(3, Vec3f{0, 0, 1})) << face;  // made unit length
     else
       EXPECT_TRUE(mesh.normals.empty()) << face;
-    EXPECT_TRUE(mesh.notes.empty()) << face;
+    EXPECT_TRUE(mesh.left_out.empty() && mesh.mended.empty()) << face;
   }
 }
 
@@ -57,10 +57,10 @@ TEST(ObjReader, SharesVerticesThatAreTheSameInAllParts) {
 TEST(ObjReader, CutsPolygonsIntoFans) {
   const MeshData quad = parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", "a.obj");
   EXPECT_EQ(quad.indices, (Indices{0, 1, 2, 0, 2, 3}));
-  EXPECT_TRUE(quad.notes.empty());
+  EXPECT_TRUE(quad.left_out.empty() && quad.mended.empty());
   const MeshData pentagon = parse_obj("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv -1 1 0\nf 1 2 3 4 5\n", "a.obj");
   EXPECT_EQ(pentagon.indices, (Indices{0, 1, 2, 0, 2, 3, 0, 3, 4}));
-  EXPECT_EQ(pentagon.notes.size(), 1u);
+  EXPECT_EQ(pentagon.mended.size(), 1u);
 }
 
 TEST(ObjReader, ReadsColoursAndPassesOverTheRest) {
@@ -81,10 +81,23 @@ TEST(ObjReader, MendsWhatCanBeMended) {
   EXPECT_EQ(mesh.normals[0], (Vec3f{0, 0, 1}));
   EXPECT_EQ(mesh.normals[1], (Vec3f{0, 1, 0}));
   EXPECT_EQ(mesh.normals[2], (Vec3f{0, 0, 1}));
-  EXPECT_EQ(mesh.notes, (std::vector<std::string>{"2 degenerate triangles left out",
-                                                  "2 missing normals taken from their faces"}));
+  EXPECT_EQ(mesh.left_out, std::vector<std::string>{"2 degenerate triangles"});
+  EXPECT_EQ(mesh.mended,
+            (std::vector<MeshData::Mended>{{"2 missing normals", "the direction of the faces around"}}));
   // Numbers beyond a float's range: too small is 0.
   EXPECT_EQ(parse_obj("v 1e-60 0.0000 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "a.obj").positions[0].x, 0);
+}
+
+TEST(ObjReader, SaysNothingAboutVerticesThatNoTriangleUses) {
+  // The normal and the texture coordinate that are not numbers belong to the degenerate triangle alone.
+  const MeshData mesh = parse_obj(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nvt 0 0\nvt nan 0\nvn 0 0 1\nvn nan 0 0\n"
+      "f 1/1/1 2/1/1 3/1/1\nf 1/1/1 2/1/1 4/2/2\n",
+      "a.obj");
+  EXPECT_EQ(mesh.left_out, std::vector<std::string>{"1 degenerate triangle"});
+  EXPECT_TRUE(mesh.mended.empty());
+  const MeshData used = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nf 1/1 2/1 3/2\n", "a.obj");
+  EXPECT_EQ(used.mended, (std::vector<MeshData::Mended>{{"1 texture coordinate that is not finite", "0"}}));
 }
 
 // ----------------------------------------------------------------------------------------------------------
@@ -158,7 +171,8 @@ TEST(PlyReader, ReadsTheSameFromAllFormats) {
     EXPECT_FLOAT_EQ(mesh.colors[0].b, 0.2f);
     EXPECT_FLOAT_EQ(mesh.colors[1].g, 1);
     EXPECT_EQ(mesh.indices, (Indices{0, 1, 2, 0, 2, 3, 3, 2, 4})) << format;
-    EXPECT_EQ(mesh.notes, (std::vector<std::string>{"1 face with fewer than 3 corners left out"}));
+    EXPECT_EQ(mesh.left_out, std::vector<std::string>{"1 face with fewer than 3 corners"});
+    EXPECT_TRUE(mesh.mended.empty());
   }
 }
 

@@ -157,7 +157,7 @@ TEST(Surface, TheOutsideIsTheSideOfTheVertexNormals) {
   expect_near(area.triangles[0].normal, {0, 0, 1});
 }
 
-TEST(Surface, FilesAreReadOnceAndNotesBecomeWarnings) {
+TEST(Surface, FilesAreReadOnceAndDegenerateTrianglesNoted) {
   const TemporaryFile file("two.obj",
                            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");  // the second is flat
   auto desc = empty_scene();
@@ -167,12 +167,28 @@ TEST(Surface, FilesAreReadOnceAndNotesBecomeWarnings) {
   add_shape(desc, mesh, Transform::translate(0, 0, 3), 8);
   add_emitter(desc, sd::ConstantEnvironmentDesc{});
   std::vector<sd::Warning> warnings;
-  const World w = build(desc, &warnings);
+  const World w = build(desc, &warnings, true);  // strict: a note is no error
   EXPECT_EQ(w.info().meshes, 1u);
   EXPECT_EQ(w.info().instances, 2u);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].where, (SourceLocation{"scene.xml", 7}));
   EXPECT_NE(warnings[0].what.find("degenerate"), std::string::npos) << warnings[0].what;
+  EXPECT_TRUE(warnings[0].harmless);
+}
+
+TEST(Surface, WhatWasMendedInAMeshIsAWarning) {
+  const TemporaryFile file("bent.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nf 1//1 2//1 3//1\n");
+  auto desc = empty_scene();
+  sd::MeshFileDesc mesh;
+  mesh.filename = file.path();
+  add_shape(desc, mesh, {}, 7);
+  add_emitter(desc, sd::ConstantEnvironmentDesc{});
+  std::vector<sd::Warning> warnings;
+  build(desc, &warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].what.find("3 missing normals"), std::string::npos) << warnings[0].what;
+  EXPECT_FALSE(warnings[0].harmless);
+  EXPECT_THROW(build(desc, nullptr, true), InputError);
 }
 
 TEST(Surface, OffsetKeepsAwayFromItsOwnTriangle) {

@@ -25,8 +25,18 @@ bool is_degenerate(const MeshData& mesh, const std::uint32_t* corner) {
   return squared(crossed(ab, ac)) <= 1e-20 * longest * longest;
 }
 
-void note(MeshData& mesh, std::size_t count, const char* one, const char* many) {
-  if (count > 0) mesh.notes.push_back(std::to_string(count) + (count == 1 ? one : many));
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + ' ' + (count == 1 ? one : many);
+}
+
+// Notes how many of the vertices `bad` are corners of a triangle: the others cannot be seen.
+void note(MeshData& mesh, const std::vector<std::uint32_t>& bad, const char* one, const char* many,
+          const char* instead) {
+  if (bad.empty()) return;
+  std::vector<bool> used(mesh.positions.size());
+  for (const std::uint32_t k : mesh.indices) used[k] = true;
+  const auto count = std::count_if(bad.begin(), bad.end(), [&](std::uint32_t k) { return used[k]; });
+  if (count > 0) mesh.mended.push_back({counted(static_cast<std::size_t>(count), one, many), instead});
 }
 
 void drop_degenerate(MeshData& mesh) {
@@ -38,32 +48,28 @@ void drop_degenerate(MeshData& mesh) {
   }
   const std::size_t dropped = (mesh.indices.size() - kept) / 3;
   mesh.indices.resize(kept);
-  note(mesh, dropped, " degenerate triangle left out", " degenerate triangles left out");
+  if (dropped > 0) mesh.left_out.push_back(counted(dropped, "degenerate triangle", "degenerate triangles"));
 }
 
 void mend_normals(MeshData& mesh) {
-  std::vector<std::uint8_t> missing;
-  std::size_t bad = 0;
-  for (std::size_t k = 0; k < mesh.normals.size(); ++k) {
+  std::vector<std::uint32_t> missing;
+  for (std::uint32_t k = 0; k < mesh.normals.size(); ++k) {
     const Vec3f n = mesh.normals[k];
     // In double: neither tiny nor huge normals lose their direction.
     const double len = std::sqrt(squared(difference(n, {})));
     if (len > 0 && std::isfinite(len)) {
       mesh.normals[k] = {float(n.x / len), float(n.y / len), float(n.z / len)};
     } else {
-      if (missing.empty()) missing.resize(mesh.normals.size());
-      missing[k] = 1;
-      ++bad;
+      missing.push_back(k);
     }
   }
-  if (bad == 0) return;
+  if (missing.empty()) return;
   MeshData faces;
   faces.positions = mesh.positions;
   faces.indices = mesh.indices;
   make_smooth_normals(faces);
-  for (std::size_t k = 0; k < missing.size(); ++k)
-    if (missing[k]) mesh.normals[k] = faces.normals[k];
-  note(mesh, bad, " missing normal taken from its faces", " missing normals taken from their faces");
+  for (const std::uint32_t k : missing) mesh.normals[k] = faces.normals[k];
+  note(mesh, missing, "missing normal", "missing normals", "the direction of the faces around");
 }
 
 }  // namespace
@@ -78,16 +84,14 @@ MeshData checked(MeshData mesh, const std::string& filename) {
     throw InputError({filename, 0},
                      had_triangles ? "all triangles are degenerate" : "the mesh has no triangle",
                      "export it again, with faces");
-  std::size_t bad = 0;
-  for (Vec2f& uv : mesh.uvs)
-    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {}, ++bad;
-  note(mesh, bad, " texture coordinate that is not finite set to 0",
-       " texture coordinates that are not finite set to 0");
-  bad = 0;
-  for (Rgb& c : mesh.colors)
-    if (!is_finite(c)) c = Rgb(0), ++bad;
-  note(mesh, bad, " vertex colour that is not finite set to 0",
-       " vertex colours that are not finite set to 0");
+  std::vector<std::uint32_t> bad;
+  for (std::uint32_t k = 0; k < mesh.uvs.size(); ++k)
+    if (Vec2f& uv = mesh.uvs[k]; !std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {}, bad.push_back(k);
+  note(mesh, bad, "texture coordinate that is not finite", "texture coordinates that are not finite", "0");
+  bad.clear();
+  for (std::uint32_t k = 0; k < mesh.colors.size(); ++k)
+    if (Rgb& c = mesh.colors[k]; !is_finite(c)) c = Rgb(0), bad.push_back(k);
+  note(mesh, bad, "vertex colour that is not finite", "vertex colours that are not finite", "black");
   mend_normals(mesh);
   return mesh;
 }

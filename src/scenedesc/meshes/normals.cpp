@@ -141,7 +141,8 @@ void make_creased_normals(MeshData& mesh, float max_angle) {
             [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
   MeshData out;
   out.indices.resize(mesh.indices.size());
-  out.notes = std::move(mesh.notes);
+  out.left_out = std::move(mesh.left_out);
+  out.mended = std::move(mesh.mended);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t corner = order[k], old = mesh.indices[corner];
     if (k == 0 || key(corner) != key(order[k - 1])) {

@@ -214,11 +214,10 @@ class ObjParser {
       without_uv += any_uv && c.vt == kAbsent;
     }
     if (without_uv > 0)
-      mesh.notes.push_back(std::to_string(without_uv) + " vertices without texture coordinates got (0, 0)");
+      mesh.mended.push_back({std::to_string(without_uv) + " vertices without texture coordinates", "(0, 0)"});
     if (large_polygons_ > 0)
-      mesh.notes.push_back(
-          std::to_string(large_polygons_) +
-          " polygons of more than 4 corners cut into fans (wrong where they are not convex)");
+      mesh.mended.push_back({std::to_string(large_polygons_) + " polygons of more than 4 corners",
+                             "fans of triangles (wrong where they are not convex)"});
     return checked(std::move(mesh), filename_);
   }
 

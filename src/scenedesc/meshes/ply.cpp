@@ -145,11 +145,11 @@ void read_faces(const PlyElement& element, PlyBody& body, std::uint64_t vertices
     }
   }
   if (reader.small > 0)
-    mesh.notes.push_back(std::to_string(reader.small) + (reader.small == 1 ? " face" : " faces") +
-                         " with fewer than 3 corners left out");
+    mesh.left_out.push_back(std::to_string(reader.small) + (reader.small == 1 ? " face" : " faces") +
+                            " with fewer than 3 corners");
   if (reader.large > 0)
-    mesh.notes.push_back(std::to_string(reader.large) +
-                         " polygons of more than 4 corners cut into fans (wrong where they are not convex)");
+    mesh.mended.push_back({std::to_string(reader.large) + " polygons of more than 4 corners",
+                           "fans of triangles (wrong where they are not convex)"});
 }
 
 void skip_element(const PlyElement& element, PlyBody& body) {
