@@ -32,14 +32,33 @@ AreaPoint sample_area(const AreaEmitter& emitter, float u1, Vec2f u2) {
   return point;
 }
 
+DirectSample sample_direct_triangle(const AreaEmitter::Triangle& triangle, Vec3f point, Vec2f u) {
+  DirectSample s;
+  s.barycentric = warp_triangle(u);
+  const Vec3f to_light = triangle.p0 + triangle.e1 * s.barycentric.x + triangle.e2 * s.barycentric.y - point;
+  const float distance2 = length_squared(to_light);
+  if (!(distance2 > 0)) return s;
+  s.distance = std::sqrt(distance2);
+  s.direction = to_light / s.distance;
+  s.normal = triangle.normal;
+  s.radiance = triangle.mean_radiance;
+  s.pdf = pdf_direct_triangle(triangle, s.direction, s.distance);
+  return s;
+}
+
+float pdf_direct_triangle(const AreaEmitter::Triangle& triangle, Vec3f direction, float distance) {
+  const float cosine = -dot(direction, triangle.normal);
+  if (!(cosine > 0) || !(triangle.area > 0)) return 0;
+  return square(distance) / (cosine * triangle.area);
+}
+
 float pdf_direct_area(const AreaEmitter& emitter, const AreaEmitter::Triangle& triangle, Vec3f direction,
                       float distance) {
   const std::ptrdiff_t index = &triangle - emitter.triangles.data();
   if (index < 0 || index >= static_cast<std::ptrdiff_t>(emitter.triangles.size()))
     throw InternalError("pdf_direct_area: the triangle is not one of the emitter's");
-  const float cosine = -dot(direction, triangle.normal);
-  if (!(cosine > 0) || !(triangle.area > 0)) return 0;
-  return emitter.by_power.pmf(static_cast<std::size_t>(index)) / triangle.area * square(distance) / cosine;
+  return emitter.by_power.pmf(static_cast<std::size_t>(index)) *
+         pdf_direct_triangle(triangle, direction, distance);
 }
 
 }  // namespace lumirank::emitters

@@ -21,8 +21,9 @@ struct PathTracer::Walk {
   bool counts;                  // whether light found now belongs to the wanted paths
   bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
   float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
-  float travelled = 0;   // since the last vertex
-  float eta_scale = 1;   // undoes refraction's scaling for Russian roulette
+  emitters::LitPoint from{};  // that vertex
+  float travelled = 0;        // since the last vertex
+  float eta_scale = 1;        // undoes refraction's scaling for Russian roulette
   Radiance sum{};
 
   void add(Rgb value) {
@@ -65,11 +66,12 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
   if (hit) {
     if (hit->emitter < 0) return;
     emitted = world_.emitted(*hit, -direction);
-    if (!walk.specular && !is_black(emitted)) light_pdf = lights_.pdf_hit(*hit, direction, walk.travelled);
+    if (!walk.specular && !is_black(emitted))
+      light_pdf = lights_.pdf_hit(walk.from, *hit, direction, walk.travelled);
   } else {
     if (world_.environment() >= 0) {
       emitted = world_.background(direction);
-      if (!walk.specular) light_pdf = lights_.pdf_background(direction);
+      if (!walk.specular) light_pdf = lights_.pdf_background(walk.from, direction);
     }
     // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
     if (walk.specular) emitted += world_.sun_disc(direction);
@@ -80,10 +82,11 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
 }
 
 void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure) const {
-  const float u_emitter = walk.rng.next_float(), u1 = walk.rng.next_float();
-  const auto s = lights_.sample(hit.point.position, u_emitter, u1, walk.rng.next_2d());
-  if (!(s.pdf > 0)) return;
   const Vec3f wo = -walk.ray.direction;
+  walk.from = lit_point(hit.point.position, closure, wo);
+  const double u_light = walk.rng.next_double();
+  const auto s = lights_.sample(walk.from, u_light, walk.rng.next_2d());
+  if (!(s.pdf > 0)) return;
   const Rgb f = scatter::eval(closure, wo, s.direct.direction);
   if (is_black(f)) return;
   const Rgb visible =

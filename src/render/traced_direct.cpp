@@ -13,8 +13,8 @@ struct Met {
   Rgb radiance{0};
   float light_pdf = 0;  // with which LightSampler would have found it
 };
-Met emission_along(const world::World& world, const LightSampler& lights, Vec3f origin, Vec3f direction,
-                   Rng& rng) {
+Met emission_along(const world::World& world, const LightSampler& lights, const emitters::LitPoint& from,
+                   Vec3f origin, Vec3f direction, Rng& rng) {
   constexpr int kMaxPasses = 64;
   Rgb through{1};
   float travelled = 0;
@@ -22,12 +22,12 @@ Met emission_along(const world::World& world, const LightSampler& lights, Vec3f 
     const auto hit = world.intersect({origin, direction});
     if (!hit) {
       if (world.environment() < 0) return {};
-      return {through * world.background(direction), lights.pdf_background(direction)};
+      return {through * world.background(direction), lights.pdf_background(from, direction)};
     }
     travelled += hit->hit.t;
     if (hit->emitter >= 0) {
       const Rgb emitted = world.emitted(*hit, -direction);
-      if (!is_black(emitted)) return {through * emitted, lights.pdf_hit(*hit, direction, travelled)};
+      if (!is_black(emitted)) return {through * emitted, lights.pdf_hit(from, *hit, direction, travelled)};
     }
     using Passage = scatter::MaterialSet::Passage;
     const Passage passage = world.materials().passage(hit->material);
@@ -48,14 +48,14 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
   using scatter::Lobes;
   const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
+  const emitters::LitPoint at = lit_point(position, closure, wo);
   Rng rng(settings.seed, Stage::traced_direct, i);
   const int n = settings.samples;
   const float inv_n = 1.0f / static_cast<float>(n);
   Rgb sum{0};
   for (int k = 0; k < n; ++k) {
-    const float u_emitter = (static_cast<float>(k) + rng.next_float()) * inv_n;  // strata over the emitters
-    const float u1 = rng.next_float();
-    const auto s = lights.sample(position, std::min(u_emitter, 0x1.fffffep-1f), u1, rng.next_2d());
+    const double u_light = (k + rng.next_double()) / n;  // strata over the lights
+    const auto s = lights.sample(at, std::min(u_light, 0x1.fffffffffffffp-1), rng.next_2d());
     if (s.pdf > 0) {
       const Rgb f = scatter::eval(closure, wo, s.direct.direction);
       if (!is_black(f)) {
@@ -71,7 +71,7 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
     const auto b = scatter::sample(closure, wo, u_lobe, rng.next_2d(), Lobes::smooth);
     if (!b || is_black(b->weight)) continue;
     const Met met =
-        emission_along(world, lights, world::World::offset_origin(position, ng, b->wi), b->wi, rng);
+        emission_along(world, lights, at, world::World::offset_origin(position, ng, b->wi), b->wi, rng);
     if (!is_black(met.radiance)) sum += b->weight * met.radiance * (b->pdf / (b->pdf + met.light_pdf));
   }
   return sum * inv_n;

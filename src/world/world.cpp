@@ -174,6 +174,10 @@ Rgb World::emitted(const SurfaceHit& at, Vec3f wo) const {
   return impl_->emitted_at(at.emitter, at.hit.triangle, at.hit.barycentric);
 }
 
+Rgb World::emitted(int emitter, std::uint32_t triangle, Vec2f barycentric) const {
+  return impl_->emitted_at(emitter, triangle, barycentric);
+}
+
 Rgb World::background(Vec3f direction) const {
   if (impl_->environment < 0) return Rgb{};
   const auto& kind = impl_->emitters[static_cast<std::size_t>(impl_->environment)].kind;

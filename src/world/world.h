@@ -57,6 +57,8 @@ class World {
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   // Radiance leaving an emitting hit towards wo (0 on the dark side), texture included.
   Rgb emitted(const SurfaceHit& at, Vec3f wo) const;
+  // Radiance on the bright side of a point of an area emitter, texture included.
+  Rgb emitted(int emitter, std::uint32_t triangle, Vec2f barycentric) const;
   // Radiance that arrives along a ray that leaves the scene (environment; delta directional light contributes
   // nothing).
   Rgb background(Vec3f direction) const;

@@ -1,0 +1,100 @@
+#include "emitters/light_tree.h"
+
+#include <cmath>
+
+#include "emitters/light_split.h"
+
+namespace lumirank::emitters {
+
+// What the children of a node are drawn by.
+struct LightTree::Weights {
+  float weight[kWidth];
+  double sum = 0;
+
+  Weights(const Node& node, const LitPoint& at) {
+    node.extents.importance(at, weight);
+    for (const float w : weight) sum += w;
+    if (std::isfinite(sum)) return;
+    // Intensities out of all measure: any chances are right that sample() and pmf() agree on.
+    sum = 0;
+    for (float& w : weight) w = w > 0 ? 1.0f : 0.0f, sum += w;
+  }
+};
+
+LightTree::LightTree(std::span<const LightBound> lights) : leaf_of_(lights.size(), kNone) {
+  std::vector<LightItem> items;
+  for (std::size_t k = 0; k < lights.size(); ++k)
+    if (lights[k].intensity > 0)
+      items.push_back({lights[k], lights[k].bounds.center(), static_cast<std::uint32_t>(k)});
+  if (!items.empty()) build(items, kNone);
+}
+
+std::uint32_t LightTree::build(std::span<LightItem> items, std::uint32_t parent) {
+  const auto at = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back().parent = parent;
+  // The largest part is divided until there are as many as a node can hold.
+  std::span<LightItem> parts[kWidth] = {items};
+  int count = 1;
+  while (count < kWidth) {
+    int largest = 0;
+    for (int k = 1; k < count; ++k)
+      if (parts[k].size() > parts[largest].size()) largest = k;
+    const auto part = parts[largest];
+    if (part.size() < 2) break;
+    const std::size_t middle = split_lights(part);
+    parts[largest] = part.first(middle);
+    parts[count++] = part.subspan(middle);
+  }
+  for (int k = 0; k < count; ++k) {
+    nodes_[at].extents.set(k, join_all(parts[k]));
+    const std::uint32_t slot = at * kWidth + static_cast<std::uint32_t>(k);
+    std::uint32_t child;
+    if (parts[k].size() == 1) {
+      child = kLeaf | parts[k][0].light;
+      leaf_of_[parts[k][0].light] = slot;
+    } else {
+      child = build(parts[k], slot);
+    }
+    nodes_[at].child[k] = child;
+  }
+  return at;
+}
+
+bool LightTree::reaches(const LitPoint& at) const { return !empty() && Weights(nodes_[0], at).sum > 0; }
+
+LightTree::Pick LightTree::sample(const LitPoint& at, double u) const {
+  if (empty()) return {};
+  double pmf = 1;
+  std::uint32_t node = 0;
+  while (true) {
+    const Weights weights(nodes_[node], at);
+    if (!(weights.sum > 0)) return {};
+    double rest = u * weights.sum;
+    int chosen = -1;
+    for (int k = 0; k < kWidth; ++k) {
+      if (!(weights.weight[k] > 0)) continue;
+      chosen = k;  // the last one possible, should rounding lead past it
+      if (rest < weights.weight[k]) break;
+      rest -= weights.weight[k];
+    }
+    const double w = weights.weight[chosen];
+    pmf *= w / weights.sum;
+    const std::uint32_t child = nodes_[node].child[chosen];
+    if (child & kLeaf) return {child & ~kLeaf, static_cast<float>(pmf)};
+    u = std::min(rest / w, 0x1.fffffffffffffp-1);
+    node = child;
+  }
+}
+
+float LightTree::pmf(const LitPoint& at, std::uint32_t light) const {
+  double pmf = 1;
+  for (std::uint32_t slot = leaf_of_[light]; slot != kNone; slot = nodes_[slot / kWidth].parent) {
+    const Weights weights(nodes_[slot / kWidth], at);
+    const float w = weights.weight[slot % kWidth];
+    if (!(w > 0)) return 0;
+    pmf *= w / weights.sum;
+  }
+  return leaf_of_[light] == kNone ? 0.0f : static_cast<float>(pmf);
+}
+
+}  // namespace lumirank::emitters
