@@ -18,11 +18,10 @@ namespace lumirank::scatter {
 enum class TexFilter { nearest, bilinear };
 enum class TexWrap { repeat, mirror, clamp };
 
-// Linear RGB plus alpha; row 0 is the top of the picture.
+// Linear RGB; row 0 is the top of the picture.
 struct TexturePixels {
   int width = 0, height = 0;
   std::vector<Rgb> rgb;
-  std::vector<float> alpha;  // empty if the file has none
 };
 
 struct SurfaceUv {

@@ -47,6 +47,10 @@ std::string rough(Distribution d, const FloatInput& u, const FloatInput& v) {
          (same ? "" : " × " + show(v));
 }
 std::string b(int index) { return index == kNone ? "none" : "bsdf " + std::to_string(index); }
+const char* show(TextureChannel channel) {
+  constexpr const char* kNames[] = {"", ", red alone", ", green alone", ", blue alone", ", alpha alone"};
+  return kNames[static_cast<int>(channel)];
+}
 const char* show(WrapMode mode) {
   return mode == WrapMode::repeat ? "repeat" : (mode == WrapMode::mirror ? "mirror" : "clamp");
 }
@@ -55,7 +59,7 @@ std::string kind(const TextureDesc& t) {
   return std::visit(
       Overloaded{
           [](const BitmapTextureDesc& x) {
-            return "bitmap " + x.filename + (x.raw ? ", raw" : "") +
+            return "bitmap " + x.filename + (x.raw ? ", raw" : "") + show(x.channel) +
                    (x.filter == FilterMode::nearest ? ", nearest" : "") + ", wrap " + show(x.wrap_u) + " × " +
                    show(x.wrap_v) + ", to_uv " + show(x.to_uv);
           },

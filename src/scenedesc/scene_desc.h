@@ -38,6 +38,7 @@ struct FloatInput {
 
 enum class FilterMode { nearest, bilinear };
 enum class WrapMode { repeat, mirror, clamp };
+enum class TextureChannel { rgb, red, green, blue, alpha };
 
 // Texture coordinates: (u, v) = (0, 0) is the lower left corner of the picture, so v runs up and row 0 of the
 // file is at v = 1. `to_uv` maps the surface's coordinates to these. Formats whose v runs down (Mitsuba: v =
@@ -50,6 +51,7 @@ struct BitmapTextureDesc {
   // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear
   // anyway).
   bool raw = false;
+  TextureChannel channel = TextureChannel::rgb;  // another: that one alone, as grey (cut-outs by alpha)
   FilterMode filter = FilterMode::bilinear;
   WrapMode wrap_u = WrapMode::repeat, wrap_v = WrapMode::repeat;
   UvTransform to_uv;

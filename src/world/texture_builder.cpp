@@ -1,5 +1,6 @@
 #include "world/texture_builder.h"
 
+#include <algorithm>
 #include <exception>
 
 #include "base/error.h"
@@ -34,6 +35,21 @@ void check_uv(const scenedesc::UvTransform& to_uv, const SourceLocation& where) 
       throw InputError(where, "the texture's uv transform is not finite", "give finite numbers");
 }
 
+// The pixels of `image`, or one channel of it as grey.
+std::vector<Rgb> take_pixels(film::LoadedImage& image, scenedesc::TextureChannel channel) {
+  using enum scenedesc::TextureChannel;
+  std::vector<Rgb> pixels = std::move(image.color.pixels);
+  if (channel == alpha) {
+    if (image.alpha.empty())
+      throw InputError("the picture has no alpha channel", "give one that has, or another channel");
+    std::transform(image.alpha.begin(), image.alpha.end(), pixels.begin(), [](float a) { return Rgb(a); });
+  } else if (channel != rgb) {
+    const int k = channel == red ? 0 : (channel == green ? 1 : 2);
+    for (Rgb& c : pixels) c = Rgb(c[k]);
+  }
+  return pixels;
+}
+
 }  // namespace
 
 TextureBuilder::TextureBuilder(const scenedesc::SceneDesc& desc)
@@ -62,7 +78,7 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
   int built = 0;
   if (const auto* bitmap = std::get_if<scenedesc::BitmapTextureDesc>(&t.kind)) {
     check_uv(bitmap->to_uv, t.where);
-    File& file = files_[{bitmap->filename, bitmap->raw}];
+    File& file = files_[{bitmap->filename, bitmap->raw, bitmap->channel}];
     if (!file.pixels) file = {t.where, std::make_shared<scatter::TexturePixels>()};
     scatter::BitmapTexture out;
     out.pixels = file.pixels;
@@ -106,20 +122,19 @@ scatter::FloatInput TextureBuilder::number(const scenedesc::FloatInput& input, c
 }
 
 scatter::TextureSet TextureBuilder::finish() {
-  std::vector<std::pair<const std::pair<std::string, bool>, File>*> files;
+  std::vector<std::pair<const FileKey, File>*> files;
   for (auto& f : files_) files.push_back(&f);
   std::vector<std::exception_ptr> failures(files.size());
   parallel_for(files.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) try {
-        film::LoadedImage image = film::read_image(files[i]->first.first, files[i]->first.second);
+        const auto& [name, raw, channel] = files[i]->first;
+        film::LoadedImage image = film::read_image(name, raw);
         auto& pixels = *files[i]->second.pixels;
         pixels.width = image.color.width, pixels.height = image.color.height;
-        pixels.rgb = std::move(image.color.pixels);
-        pixels.alpha = std::move(image.alpha);
+        pixels.rgb = take_pixels(image, channel);
         for (Rgb& c : pixels.rgb)
           for (int k = 0; k < 3; ++k)
-            if (!std::isfinite(c[k]))
-              throw InputError(files[i]->first.first, "has pixels that are not finite");
+            if (!std::isfinite(c[k])) throw InputError(name, "has pixels that are not finite");
       } catch (const InputError& e) {
         failures[i] = std::make_exception_ptr(InputError(files[i]->second.where, e.what()));
       } catch (...) {
@@ -133,8 +148,7 @@ scatter::TextureSet TextureBuilder::finish() {
 
 std::size_t TextureBuilder::memory_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& [key, file] : files_)
-    bytes += file.pixels->rgb.size() * sizeof(Rgb) + file.pixels->alpha.size() * sizeof(float);
+  for (const auto& [key, file] : files_) bytes += file.pixels->rgb.size() * sizeof(Rgb);
   return bytes;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "scatter/material.h"
@@ -30,6 +30,7 @@ class TextureBuilder {
   std::size_t memory_bytes() const;  // of the pixels, after finish()
 
  private:
+  using FileKey = std::tuple<std::string, bool, scenedesc::TextureChannel>;  // name, raw
   struct File {
     SourceLocation where;
     std::shared_ptr<scatter::TexturePixels> pixels;
@@ -40,7 +41,7 @@ class TextureBuilder {
   const scenedesc::SceneDesc& desc_;
   scatter::TextureSet set_;
   std::vector<int> index_;  // of each description: ≥ 0 built, -1 not yet, -2 being built
-  std::map<std::pair<std::string, bool>, File> files_;
+  std::map<FileKey, File> files_;
 };
 
 }  // namespace lumirank::world

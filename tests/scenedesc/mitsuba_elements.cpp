@@ -181,6 +181,27 @@ TEST(MitsubaTexture, ColorsGammaAndOffsets06) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(MitsubaTexture, OneChannelAlone) {
+  std::ofstream(testing::TempDir() + "t.png") << "x";
+  const auto with = [](const std::string& channel) {
+    return parse(kCamera +
+                     "<texture type=\"bitmap\"><string name=\"filename\" value=\"t.png\"/><string "
+                     "name=\"channel\" value=\"" +
+                     channel + "\"/></texture>",
+                 "0.6.0");
+  };
+  const std::pair<const char*, TextureChannel> cases[] = {{"r", TextureChannel::red},
+                                                          {"g", TextureChannel::green},
+                                                          {"b", TextureChannel::blue},
+                                                          {"a", TextureChannel::alpha}};
+  for (const auto& [name, channel] : cases) {
+    const SceneDesc scene = with(name);
+    EXPECT_EQ(std::get<BitmapTextureDesc>(scene.textures.at(0).kind).channel, channel) << name;
+    EXPECT_TRUE(scene.warnings.empty());
+  }
+  EXPECT_THROW(with("q"), InputError);
+}
+
 TEST(MitsubaPrincipled, SpecularIsAnIndex) {
   // Reflectance at normal incidence ((η - 1)/(η + 1))² = 0.08 · specular = 0.04 means η = 1.5.
   const SceneDesc scene = parse(kCamera +

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 
 #include "base/error.h"
 #include "film/image_io.h"
@@ -232,6 +234,37 @@ TEST(Build, TexturesOfOneFileShareTheirPixels) {
   EXPECT_EQ(pixels(0), pixels(1));
   EXPECT_NE(pixels(0), pixels(2));
   EXPECT_EQ(pixels(0)->rgb[0], Rgb(1, 0, 0));
+}
+
+TEST(Build, AMaskReadsTheAlphaOfItsPicture) {
+  const std::string path = ::testing::TempDir() + "lumirank_world_mask.tga";
+  // A Targa file of 2 x 1 pixels, 32 bits each (blue, green, red, alpha), the top row first.
+  const unsigned char bytes[] = {0, 0, 2, 0,  0,    0,   0,   0,   0,  0, 0, 0,   2,
+                                 0, 1, 0, 32, 0x28, 255, 255, 255, 51, 0, 0, 255, 255};
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes), sizeof bytes);
+  auto desc = lit_rectangle();
+  sd::BitmapTextureDesc bitmap;
+  bitmap.filename = path;
+  bitmap.filter = sd::FilterMode::nearest;
+  bitmap.channel = sd::TextureChannel::alpha;
+  const int alpha = add_texture(desc, bitmap);
+  bitmap.channel = sd::TextureChannel::red;
+  const int red = add_texture(desc, bitmap);
+  const int plain = add_bsdf(desc, sd::DiffuseDesc{{Rgb(0), red}});
+  sd::MaskDesc mask;
+  mask.opacity.texture = alpha, mask.nested = plain;
+  desc.shapes[0].bsdf = add_bsdf(desc, mask);
+  const World w = build(desc);
+  std::remove(path.c_str());
+  const int material = static_cast<int>(w.rays().placements()[0].material);
+  EXPECT_FLOAT_EQ(w.materials().opacity(material, {{0.25f, 0.5f}}), 0.2f);
+  EXPECT_FLOAT_EQ(w.materials().opacity(material, {{0.75f, 0.5f}}), 1);
+  bitmap.filename = ::testing::TempDir() + "lumirank_world_no_alpha.pfm";
+  bitmap.channel = sd::TextureChannel::alpha;
+  film::write_image(bitmap.filename, {film::Image(1, 1), {}});
+  desc.textures[static_cast<std::size_t>(alpha)].kind = bitmap;
+  EXPECT_THROW(build(desc), InputError);
+  std::remove(bitmap.filename.c_str());
 }
 
 TEST(Build, NamesAreUniqueAndSharedIdsShareAGroup) {

@@ -43,6 +43,18 @@ WrapMode wrap_mode(Reader& reader, Plugin& p, const std::string& name, WrapMode 
   return WrapMode::clamp;
 }
 
+// 0.6: one channel as a grey texture; masks are made so from the alpha of a picture.
+TextureChannel channel(Plugin& p) {
+  const auto name = p.text("channel");
+  if (!name) return TextureChannel::rgb;
+  if (*name == "r") return TextureChannel::red;
+  if (*name == "g") return TextureChannel::green;
+  if (*name == "b") return TextureChannel::blue;
+  if (*name == "a") return TextureChannel::alpha;
+  throw InputError(p.where_of("channel"), "the channel \"" + *name + "\" of " + p.title() + " is not known",
+                   "r, g, b and a are");
+}
+
 BitmapTextureDesc bitmap(Reader& reader, Plugin& p) {
   BitmapTextureDesc out;
   const std::string name = p.required_text("filename");
@@ -55,6 +67,7 @@ BitmapTextureDesc bitmap(Reader& reader, Plugin& p) {
     if (*gamma != 1 && *gamma != -1)
       reader.warn(p.where_of("gamma"), "a texture gamma of its own", "the sRGB curve");
   }
+  out.channel = channel(p);
   if (const auto filter = p.text("filter_type")) {
     if (*filter == "nearest")
       out.filter = FilterMode::nearest;
