@@ -82,22 +82,37 @@ std::vector<Rgb> scaled_sums(std::span<const Rgb> sums, float a) {
   return out;
 }
 
-double relative_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
-  struct Pair {
-    double difference = 0, size = 0;
-    Pair operator+(const Pair& o) const { return {difference + o.difference, size + o.size}; }
-  };
-  const Pair p = parallel_sum(a.size(), kGrain, Pair{}, [&](std::size_t begin, std::size_t end) {
-    Pair s;
+namespace {
+struct DifferenceAndSize {
+  double difference = 0, size = 0;
+  DifferenceAndSize operator+(const DifferenceAndSize& o) const {
+    return {difference + o.difference, size + o.size};
+  }
+};
+// Sums of measure(a − b) and measure(b) over rows and channels.
+template <typename Measure>
+DifferenceAndSize measured(std::span<const Rgb> a, std::span<const Rgb> b, Measure&& measure) {
+  return parallel_sum(a.size(), kGrain, DifferenceAndSize{}, [&](std::size_t begin, std::size_t end) {
+    DifferenceAndSize s;
     for (std::size_t i = begin; i < end; ++i)
       for (int c = 0; c < 3; ++c) {
         const double x = static_cast<double>(a[i][c]), y = static_cast<double>(b[i][c]);
-        s.difference += (x - y) * (x - y);
-        s.size += y * y;
+        s.difference += measure(x - y);
+        s.size += measure(y);
       }
     return s;
   });
+}
+}  // namespace
+
+double relative_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
+  const auto p = measured(a, b, [](double x) { return x * x; });
   return p.difference == 0 ? 0 : std::sqrt(p.difference / p.size);
+}
+
+double relative_l1_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
+  const auto p = measured(a, b, [](double x) { return std::abs(x); });
+  return p.difference == 0 ? 0 : p.difference / p.size;
 }
 
 }  // namespace lumirank::methods

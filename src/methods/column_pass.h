@@ -38,5 +38,7 @@ void mix_in(std::vector<matrix::ScaledColumn>& combination, std::span<const matr
 std::vector<Rgb> scaled_sums(std::span<const Rgb> sums, float a);
 // ‖a − b‖₂ / ‖b‖₂ over all rows and channels, in double precision; 0 if both are zero.
 double relative_difference(std::span<const Rgb> a, std::span<const Rgb> b);
+// Σ|a − b| / Σ|b|, likewise.
+double relative_l1_difference(std::span<const Rgb> a, std::span<const Rgb> b);
 
 }  // namespace lumirank::methods

@@ -4,6 +4,7 @@
 
 #include "base/timer.h"
 #include "methods/column_pass.h"
+#include "methods/known_rows.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {
@@ -16,7 +17,7 @@ const Fields<NoSettings> kFields{};
 class BruteForce final : public Method {
  public:
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    return sum_all_columns(matrix, options);
+    return sum_all_columns_and_look(matrix, options);
   }
 };
 
@@ -61,6 +62,12 @@ Estimate sum_all_columns(const matrix::LightingMatrix& matrix, const RunOptions&
   estimate.trace.numbers["sampling_rate"] =
       n > 0 ? static_cast<double>(pass.done) / static_cast<double>(n) : 1.0;
   if (options.on_estimate) options.on_estimate(estimate.sums);
+  return estimate;
+}
+
+Estimate sum_all_columns_and_look(const matrix::LightingMatrix& matrix, const RunOptions& options) {
+  Estimate estimate = sum_all_columns(matrix, options);
+  look_at_rows(matrix, options, estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
   return estimate;
 }
 

@@ -19,7 +19,7 @@ const Fields<InstantRadiositySettings> kFields{count_field<InstantRadiositySetti
 class InstantRadiosity final : public Method {
  public:
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    return sum_all_columns(matrix, options);
+    return sum_all_columns_and_look(matrix, options);
   }
 };
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "methods/column_pass.h"
+#include "methods/known_rows.h"
 #include "methods/parameters.h"
 #include "methods/power_draws.h"
 #include "methods/timed_choices.h"
@@ -45,6 +46,13 @@ class PowerSampling final : public Method {
     std::vector<matrix::Index> all(matrix.columns());
     std::iota(all.begin(), all.end(), 0u);
     const auto power = matrix.column_features().power;
+
+    // Rows tell when to stop: draws know nothing of them.
+    constexpr std::size_t kRows = 64;
+    const KnownRows known =
+        options.target_error > 0 ? read_rows(matrix, kRows, options.seed) : KnownRows(matrix);
+    const double aim =
+        target_for_sampling(options.target_error, known.lights().value, known.clamping().value);
 
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
@@ -85,17 +93,25 @@ class PowerSampling final : public Method {
         sums = scaled_sums(sums, gain);
         count = std::max<std::size_t>(1, count * pass.done / drawn.size());
       }
-      if (draws == count) numbers["predicted_error"] = 0.5 * relative_difference(sums, estimate.sums);
+      if (draws == count) numbers["predicted_error"] = 0.5 * relative_l1_difference(sums, estimate.sums);
       add_round(estimate.sums, draws, sums, count);
       mix_in(estimate.combination, std::span(drawn).first(pass.done), gain, share_of_round(draws, count));
       draws += count;
       if (options.on_estimate) options.on_estimate(estimate.sums);
       if (estimate.interrupted || pass.out_of_time || !open_ended) break;
-      const auto error = numbers.find("predicted_error");
-      if (options.target_error > 0 && error != numbers.end() && error->second < options.target_error) break;
+      const auto predicted = numbers.find("predicted_error");
+      if (options.target_error > 0 && predicted != numbers.end() && predicted->second < aim &&
+          known.sampling(estimate.sums).value < aim)
+        break;
+    }
+    if (!estimate.interrupted) {
+      if (known.size() > 0)
+        write_error({known.sampling(estimate.sums), known.lights(), known.clamping()}, estimate.trace);
+      else
+        look_at_rows(matrix, options, estimate.sums, static_cast<double>(rendered), estimate.trace);
     }
     numbers["seconds.columns"] = seconds;
-    numbers["rows"] = 0;
+    numbers["rows"] = static_cast<double>(known.size());
     numbers["draws"] = static_cast<double>(draws);
     numbers["columns"] = static_cast<double>(distinct.size());
     numbers["sampling_rate"] =

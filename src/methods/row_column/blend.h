@@ -22,6 +22,7 @@ class Blend {
 
   bool empty() const { return precision_ == 0; }
   std::vector<Rgb>& sums() { return sums_; }
+  const std::vector<Rgb>& sums() const { return sums_; }
   double expected_error() const;
   // Squared difference, per row, of the last pass from the blend before it; empty before the second pass.
   std::span<const float> disagreement() const { return disagreement_; }

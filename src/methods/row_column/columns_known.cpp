@@ -27,57 +27,87 @@ linalg::Splitter ColumnsKnown::cluster(std::size_t columns, linalg::ClusteringAl
 }
 
 namespace {
-double square_of(std::span<const float> x) {
-  double s = 0;
-  for (float v : x) s += static_cast<double>(v) * static_cast<double>(v);
-  return s;
-}
+// Of one set of columns: what their expected square takes, per coordinate.
+struct Spread {
+  explicit Spread(std::size_t dimension) : sums(dimension, 0.0), squares(dimension, 0.0) {}
+  void clear() {
+    std::fill(sums.begin(), sums.end(), 0.0), std::fill(squares.begin(), squares.end(), 0.0);
+    weight = 0;
+  }
+  void add(std::span<const float> x, double q) {
+    for (std::size_t d = 0; d < sums.size(); ++d) {
+      const double v = static_cast<double>(x[d]);
+      sums[d] += v, squares[d] += v * v / q;
+    }
+    weight += q;
+  }
+  // Of one member drawn in proportion to q.
+  double expected_square(std::size_t d) const {
+    return std::max(0.0, weight * squares[d] - sums[d] * sums[d]);
+  }
+  std::vector<double> sums, squares;  // Σx, Σx²/q
+  double weight = 0;
+};
+
+struct Squares {
+  std::vector<double> v;
+  Squares operator+(const Squares& o) const {
+    Squares s = *this;
+    for (std::size_t d = 0; d < s.v.size(); ++d) s.v[d] += o.v[d];
+    return s;
+  }
+};
 }  // namespace
 
-double ColumnsKnown::expected_square(const linalg::Partition& partition, const linalg::Points& points) const {
-  return parallel_sum(partition.clusters(), 8, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      linalg::PointSum all(points.dimension);
-      double squares_over_weights = 0;
-      for (std::uint32_t j : partition.members(k)) {
-        const double q = static_cast<double>(weights_[j]);
-        all.add(points[j], q);
-        squares_over_weights += square_of(points[j]) / q;
-      }
-      sum += std::max(0.0, all.weight * squares_over_weights - all.squared_length());
-    }
-    return sum;
-  });
+std::vector<double> ColumnsKnown::expected_squares(const linalg::Partition& partition,
+                                                   const linalg::Points& points) const {
+  const Squares zero{std::vector<double>(points.dimension, 0.0)};
+  return parallel_sum(partition.clusters(), 32, zero,
+                      [&](std::size_t begin, std::size_t end) {
+                        Squares all = zero;
+                        Spread cluster(points.dimension);
+                        for (std::size_t k = begin; k < end; ++k) {
+                          cluster.clear();
+                          for (std::uint32_t j : partition.members(k))
+                            cluster.add(points[j], static_cast<double>(weights_[j]));
+                          for (std::size_t d = 0; d < all.v.size(); ++d)
+                            all.v[d] += cluster.expected_square(d);
+                        }
+                        return all;
+                      })
+      .v;
 }
 
 double ColumnsKnown::expected_error(const linalg::Splitter& clusters) const {
   if (exploration_.squared_sum() == 0) return 0;
-  return std::sqrt(expected_square(clusters.partition(), points_) / exploration_.squared_sum());
+  double sum = 0;
+  for (double square : expected_squares(clusters.partition(), points_)) sum += square;
+  return exploration_.l1_over_l2() * std::sqrt(sum / exploration_.squared_sum());
 }
 
 double ColumnsKnown::expected_error(const linalg::Splitter& clusters, Exploration& unseen) const {
-  if (unseen.squared_sum() == 0) return 0;
+  if (unseen.image_sum() == 0) return 0;
   const linalg::Points values = unseen.sketch().points();
-  double error = expected_square(clusters.partition(), values);
+  std::vector<double> squares = expected_squares(clusters.partition(), values);
   if (!zero_.empty()) {
     const auto power = matrix_.column_features().power;
-    linalg::PointSum all(values.dimension);
-    double total = 0, squares_over_powers = 0;
+    Spread all(values.dimension);
     for (matrix::Index j : zero_) {
       const double p = power.empty() ? 1.0 : static_cast<double>(power[j]);
-      if (p <= 0) continue;
-      total += p;
-      all.add(values[j], 0);
-      squares_over_powers += square_of(values[j]) / p;
+      if (p > 0) all.add(values[j], p);
     }
-    if (settings_.zero_columns == ZeroColumns::ignore)
-      error += all.squared_length();
-    else
-      error += std::max(0.0, total * squares_over_powers - all.squared_length()) /
-               static_cast<double>(zero_draws(clusters.clusters()));
+    const bool ignored = settings_.zero_columns == ZeroColumns::ignore;
+    const auto draws = static_cast<double>(std::max<std::size_t>(1, zero_draws(clusters.clusters())));
+    for (std::size_t d = 0; d < squares.size(); ++d)
+      squares[d] += ignored ? all.sums[d] * all.sums[d] : all.expected_square(d) / draws;
   }
-  return std::sqrt(error / unseen.squared_sum());
+  // Coordinates are rows, times their weights.
+  double error = 0;
+  for (std::size_t d = 0; d < squares.size(); ++d) {
+    const KnownRow& row = unseen.known().rows()[d];
+    error += row.share / static_cast<double>(row.from.weight) * std::sqrt(squares[d]);
+  }
+  return kMeanOfNormal * error / unseen.image_sum();
 }
 
 void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, Exploration& unseen) {

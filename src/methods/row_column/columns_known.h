@@ -21,10 +21,11 @@ class ColumnsKnown {
   std::span<const matrix::Index> zero() const { return zero_; }
 
   linalg::Splitter cluster(std::size_t columns, linalg::ClusteringAlgorithm algorithm) const;
-  // Relative 2-norm error to expect on the rows that the clustering has seen: √(E‖X_R − Σ_R‖²) / ‖Σ_R‖ (2007,
-  // section 3.4).
+  // Relative L1 error of the image to expect by the rows that the clustering has seen: √(E‖X_R − Σ_R‖²) /
+  // ‖Σ_R‖ (2007, section 3.4), taken to an L1 error by Exploration::l1_over_l2.
   double expected_error(const linalg::Splitter& clusters) const;
-  // The same on rows that it has not seen, summed exactly over them. No column is rendered for it.
+  // The same by rows that it has not seen: the exact standard deviation of the estimate at each of them,
+  // times √(2/π), summed. No column is rendered for it.
   double expected_error(const linalg::Splitter& clusters, Exploration& unseen) const;
 
   // Takes, of 0, 0.1, 0.3 and 0.6, the share of the lights' power in the choice of representatives that
@@ -39,8 +40,9 @@ class ColumnsKnown {
  private:
   // For a representative drawn with probability q_j/s: Σ_clusters (s Σ_j ‖x_j‖²/q_j − ‖Σ_j x_j‖²), the
   // expected squared error of the sum of the points x; with q_j = ‖x_j‖ it is the cost that the clustering
-  // minimises.
-  double expected_square(const linalg::Partition& partition, const linalg::Points& points) const;
+  // minimises. One number per coordinate of the points.
+  std::vector<double> expected_squares(const linalg::Partition& partition,
+                                       const linalg::Points& points) const;
 
   const matrix::LightingMatrix& matrix_;
   const Exploration& exploration_;

@@ -7,40 +7,27 @@
 namespace lumirank::methods {
 
 void Exploration::read(const SampledRow& row) {
-  matrix_.row(row.row, buffer_);
+  const KnownRow& known = known_.read(row, buffer_);
   static_assert(sizeof(Rgb) == 3 * sizeof(float));
   sketch_.add_row(row.row, row.weight, {reinterpret_cast<const float*>(buffer_.data()), buffer_.size() * 3});
-  struct Sum {
-    double r = 0, g = 0, b = 0, scalar = 0;
-    Sum operator+(const Sum& o) const { return {r + o.r, g + o.g, b + o.b, scalar + o.scalar}; }
-  };
-  const Sum sum = parallel_sum(buffer_.size(), 8192, Sum{}, [&](std::size_t begin, std::size_t end) {
-    Sum s;
-    for (std::size_t j = begin; j < end; ++j) {
-      const Rgb v = buffer_[j];
-      s = s + Sum{static_cast<double>(v.r), static_cast<double>(v.g), static_cast<double>(v.b),
-                  static_cast<double>(norm2(v))};
-    }
+  const double scalar = parallel_sum(buffer_.size(), 8192, 0.0, [&](std::size_t begin, std::size_t end) {
+    double s = 0;
+    for (std::size_t j = begin; j < end; ++j) s += static_cast<double>(norm2(buffer_[j]));
     return s;
   });
-  rows_.push_back(row);
-  exact_.push_back({static_cast<float>(sum.r), static_cast<float>(sum.g), static_cast<float>(sum.b)});
-  const double weighted = static_cast<double>(row.weight) * sum.scalar;
+  const double weighted = static_cast<double>(row.weight) * scalar;
   squared_sum_ += weighted * weighted;
+  image_sum_ += known.share * scalar;
 }
 
-double Exploration::measured_error(std::span<const Rgb> sums) const {
-  double difference = 0, size = 0;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const double w2 = static_cast<double>(rows_[k].weight) * static_cast<double>(rows_[k].weight);
-    for (int c = 0; c < 3; ++c) {
-      const double truth = static_cast<double>(exact_[k][c]);
-      const double d = static_cast<double>(sums[rows_[k].row][c]) - truth;
-      difference += w2 * d * d;
-      size += w2 * truth * truth;
-    }
+double Exploration::l1_over_l2() const {
+  if (!(image_sum_ > 0)) return kMeanOfNormal;
+  double shares = 0, weights = 0;
+  for (const KnownRow& row : known_.rows()) {
+    shares += row.share;
+    weights += static_cast<double>(row.from.weight) * static_cast<double>(row.from.weight);
   }
-  return difference == 0 ? 0 : std::sqrt(difference / size);
+  return kMeanOfNormal * (shares / image_sum_) * std::sqrt(squared_sum_ / weights);
 }
 
 }  // namespace lumirank::methods

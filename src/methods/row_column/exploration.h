@@ -6,33 +6,40 @@
 #include <vector>
 
 #include "linalg/column_sketch.h"
+#include "methods/known_rows.h"
 #include "methods/row_column/row_sampler.h"
 
 namespace lumirank::methods {
 
+// E|x| of a standard normal deviate, √(2/π).
+inline constexpr double kMeanOfNormal = 0.79788456080286536;
+
 class Exploration {
  public:
   Exploration(const matrix::LightingMatrix& matrix, std::size_t projection, std::uint64_t seed)
-      : matrix_(matrix), sketch_(matrix.columns(), projection, seed), buffer_(matrix.columns()) {}
+      : sketch_(matrix.columns(), projection, seed), known_(matrix), buffer_(matrix.columns()) {}
 
   // Evaluates the row and takes it in. The random numbers of the projection are keyed by the row.
   void read(const SampledRow& row);
 
   linalg::ColumnSketch& sketch() { return sketch_; }
   const linalg::ColumnSketch& sketch() const { return sketch_; }
-  std::size_t rows() const { return rows_.size(); }
+  std::size_t rows() const { return known_.size(); }
+  // What is exact there.
+  const KnownRows& known() const { return known_; }
   // Σ over the rows of (weight × Σ_j scalar entry)²: ‖Σ_R‖² of the paper.
   double squared_sum() const { return squared_sum_; }
-  // Relative 2-norm error of `sums` (all rows, RGB) on the rows that were read, where the truth is known.
-  double measured_error(std::span<const Rgb> sums) const;
+  // Σ over the rows of share × Σ_j scalar entry: the light of an image.
+  double image_sum() const { return image_sum_; }
+  // Relative L1 error of an image over its relative 2-norm error, if errors at all rows are normal deviates
+  // of one size: E|·| is √(2/π) of that.
+  double l1_over_l2() const;
 
  private:
-  const matrix::LightingMatrix& matrix_;
   linalg::ColumnSketch sketch_;
+  KnownRows known_;
   std::vector<Rgb> buffer_;
-  std::vector<SampledRow> rows_;
-  std::vector<Rgb> exact_;  // sums of the rows that were read
-  double squared_sum_ = 0;
+  double squared_sum_ = 0, image_sum_ = 0;
 };
 
 }  // namespace lumirank::methods

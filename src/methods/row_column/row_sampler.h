@@ -10,14 +10,9 @@
 #include <vector>
 
 #include "matrix/lighting_matrix.h"
+#include "methods/known_rows.h"
 
 namespace lumirank::methods {
-
-struct SampledRow {
-  matrix::Index row;
-  float weight;  // √(block size × number of blocks / rows): makes Σ|weight × entry|² unbiased for the mean
-                 // square of a column
-};
 
 class RowSampler {
  public:

@@ -25,10 +25,11 @@ RowColumnRun::RowColumnRun(const matrix::LightingMatrix& matrix, const RunOption
       columns_(matrix.columns()),
       sampler_(matrix, options.seed),
       seen_(matrix, projection_for(settings), options.seed),
-      unseen_(matrix, 0, options.seed) {}
+      unseen_(matrix, 0, options.seed),
+      afterwards_(matrix) {}
 
 Estimate RowColumnRun::fixed() {
-  explore(sampler_.stratified(settings_.rows), false, 0);
+  explore(sampler_.stratified(settings_.rows), 0, 0);
   if (!stopped()) {
     const double start = timer_.seconds();
     const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
@@ -39,7 +40,7 @@ Estimate RowColumnRun::fixed() {
   return finish();
 }
 
-void RowColumnRun::explore(const std::vector<SampledRow>& rows, bool hold_out, double until) {
+void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold_out, double until) {
   // Enough held-out rows for the error to expect; they are kept as they are, so their number is bounded.
   constexpr std::size_t kMostHeldOut = 64;
   const double start = timer_.seconds();
@@ -52,7 +53,7 @@ void RowColumnRun::explore(const std::vector<SampledRow>& rows, bool hold_out, d
     const bool enough = earlier ? static_cast<std::int64_t>(k) >= *earlier
                                 : until > 0 && timer_.seconds() > until && rows_read() >= 8;
     if (cancelled_ || enough) break;
-    const bool apart = hold_out && k % 5 == 2 && unseen_.rows() < kMostHeldOut;
+    const bool apart = hold_out > 0 && k % hold_out == hold_out / 2 && unseen_.rows() < kMostHeldOut;
     (apart ? unseen_ : seen_).read(rows[k]);
     options_.sinks.report("rows", static_cast<double>(k + 1) / static_cast<double>(rows.size()));
   }
@@ -145,13 +146,36 @@ Costs RowColumnRun::costs() const {
           columns > 0 ? trace_.numbers.at("seconds.columns") / columns : row * entries.column / entries.row};
 }
 
+ErrorParts RowColumnRun::errors() const {
+  KnownRows all = seen_.known(), unseen = unseen_.known();
+  unseen.append(afterwards_);
+  all.append(unseen);
+  const bool rendered = !blend_.sums().empty();
+  return {rendered ? unseen.sampling(blend_.sums()) : ErrorPart{}, all.lights(), all.clamping()};
+}
+
+void RowColumnRun::report_errors() {
+  if (rows_read() == 0) {  // all columns were summed without a look at rows
+    look_at_rows(matrix_, options_, blend_.sums(), static_cast<double>(rendered_count_), trace_);
+    return;
+  }
+  // With given rows none are held out; a stated error is worth some more.
+  constexpr std::size_t kRowsAfterwards = 64;
+  if (unseen_.rows() == 0 && options_.target_error > 0 && !stopped())
+    afterwards_ = read_rows(matrix_, kRowsAfterwards, options_.seed);
+  const ErrorParts parts = errors();
+  trace_.numbers["sampled_rows_error"] = seen_.known().sampling(blend_.sums()).value;
+  if (unseen_.rows() > 0) trace_.numbers["heldout_error"] = unseen_.known().sampling(blend_.sums()).value;
+  if (unseen_.rows() + afterwards_.size() > 0)
+    write_error(parts, trace_);
+  else
+    write_error_of_lights(parts, trace_);
+}
+
 Estimate RowColumnRun::finish() {
   Estimate estimate;
   auto& numbers = trace_.numbers;
-  if (!blend_.sums().empty()) {
-    numbers["sampled_rows_error"] = seen_.measured_error(blend_.sums());
-    if (unseen_.rows() > 0) numbers["heldout_error"] = unseen_.measured_error(blend_.sums());
-  }
+  if (!blend_.sums().empty()) report_errors();
   numbers["predicted_error"] = blend_.expected_error();
   numbers["rows"] = static_cast<double>(rows_read());
   numbers["rows_held_out"] = static_cast<double>(unseen_.rows());

@@ -35,20 +35,25 @@ class RowColumnRun {
   Estimate automatic();
 
  private:
-  // Reads rows until done, cancelled or `until` (seconds since the call; 0: no limit) has passed.
-  void explore(const std::vector<SampledRow>& rows, bool hold_out, double until);
+  // Reads rows until done, cancelled or `until` (seconds since the call; 0: no limit) has passed. One in
+  // `hold_out` is held out; 0: none.
+  void explore(const std::vector<SampledRow>& rows, std::size_t hold_out, double until);
   bool pass(const ColumnsKnown& known, const linalg::Splitter& clusters, double expected_error);
   void pass_over_all_columns();
   void pilot();
   void more_rows_while_they_pay(double needed);
   linalg::Splitter cluster_for(ColumnsKnown& known, double needed);
   ErrorCurve error_curve(ColumnsKnown& known, double until_error);
-  double needed_error() const;  // of the next pass, for the blend to meet the target; 0: no target
-  bool target_met();
+  double needed_error() const;     // of the next pass, for the blend to meet the target; 0: no target
+  double sampling_target() const;  // what the other parts of the error leave to sampling; 0: no target
+  bool target_met() const;
+  // Of the sums so far, by all rows that were read; its sampling part by those that were held out.
+  ErrorParts errors() const;
   double time_left() const;  // seconds; a large number without a budget
   Costs costs() const;
   std::size_t rows_read() const { return seen_.rows() + unseen_.rows(); }
   bool stopped() const { return cancelled_ || out_of_time_; }
+  void report_errors();
   Estimate finish();
 
   const matrix::LightingMatrix& matrix_;
@@ -62,6 +67,7 @@ class RowColumnRun {
   Blend blend_;
   std::vector<matrix::ScaledColumn> combination_;  // whose sums are the blend's
   Trace trace_;
+  KnownRows afterwards_;  // rows that were read to know the error of the finished sums
   std::set<matrix::Index> rendered_;
   std::size_t rendered_count_ = 0;
   std::size_t passes_ = 0;
