@@ -1,6 +1,6 @@
 #include "render/path_tracer.h"
 
-#include "base/random.h"
+#include "render/sample_stream.h"
 #include "scatter/closure.h"
 
 namespace lumirank::rendering {
@@ -11,7 +11,7 @@ using scatter::Lobes;
 
 // The state of a path between two vertices.
 struct PathTracer::Walk {
-  Rng rng;
+  SampleStream random;
   std::uint64_t key;
   geometry::Ray ray;
   Rgb throughput{1};
@@ -37,7 +37,7 @@ PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
     : world_(world), lights_(world), settings_(settings) {}
 
 Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
-  Walk walk{.rng = Rng(settings_.seed, Stage::reference, pixel, sample),
+  Walk walk{.random = SampleStream(settings_.seed, Stage::reference, pixel, sample),
             .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
             .ray = ray,
             .counts = settings_.paths != Paths::rest};
@@ -81,11 +81,11 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
   walk.add(walk.throughput * emitted * weight);
 }
 
-void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure) const {
+void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
+                               double u_light) const {
   const Vec3f wo = -walk.ray.direction;
   walk.from = lit_point(hit.point.position, closure, wo);
-  const double u_light = walk.rng.next_double();
-  const auto s = lights_.sample(walk.from, u_light, walk.rng.next_2d());
+  const auto s = lights_.sample(walk.from, u_light, walk.random.next_2d());
   if (!(s.pdf > 0)) return;
   const Rgb f = scatter::eval(closure, wo, s.direct.direction);
   if (is_black(f)) return;
@@ -112,16 +112,16 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     }
     closure.count = kept;
   }
+  const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_smooth() && may_continue) {
     // The vertex itself is non-specular for light that is found here.
     ++walk.smooth_vertices;
-    sample_lights(walk, hit, closure);
+    sample_lights(walk, hit, closure, u_light);
     --walk.smooth_vertices;
   }
 
   const Vec3f wo = -walk.ray.direction;
-  const float u_lobe = walk.rng.next_float();
-  const auto next = scatter::sample(closure, wo, u_lobe, walk.rng.next_2d(), Lobes::all);
+  const auto next = scatter::sample(closure, wo, u_lobe, walk.random.next_2d(), Lobes::all);
   if (!next || is_black(next->weight)) return false;
   walk.throughput *= next->weight;
   const bool pass = next->delta && next->kind == LobeKind::delta_pass;
@@ -138,7 +138,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
 
     const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
     if (walk.segments > 5) {
-      if (walk.rng.next_float() >= survival) return false;
+      if (walk.random.next_float() >= survival) return false;
       walk.throughput *= 1 / survival;
     }
   }

@@ -41,7 +41,8 @@ class PathTracer {
  private:
   struct Walk;
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
-  void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure) const;
+  void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
+                     double u_light) const;
   bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
 
   const world::World& world_;

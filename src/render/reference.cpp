@@ -4,9 +4,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/random.h"
 #include "base/timer.h"
 #include "render/film_sampling.h"
+#include "render/sample_stream.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -97,12 +97,12 @@ ReferenceResult path_trace(const world::World& world, const View& view, const Re
             static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
             static_cast<std::uint64_t>(x);
         for (int s = done; s < done + pass; ++s) {
-          Rng rng(settings.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
-          const auto at = filter.sample(rng.next_2d());
+          SampleStream random(settings.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
+          const auto at = filter.sample(random.next_2d());
           const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
                            static_cast<float>(y) + 0.5f + at.offset.y};
           const Radiance radiance =
-              tracer.trace(camera.ray(film, rng.next_2d()), id, static_cast<std::uint64_t>(s));
+              tracer.trace(camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
           if (!is_finite(radiance.total()))
             throw InternalError("the reference met a value that is not finite; replay pixel " +
                                 std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
