@@ -4,7 +4,7 @@
 // one run, alternating. Also single rows.
 //
 //   bench_accumulate [scene file] [benchmark options]
-//   environment: BENCH_LIGHTS (100000), BENCH_COLUMNS (32), BENCH_WIDTH (800), BENCH_HEIGHT (600), BENCH_SPP
+//   environment: BENCH_LIGHTS (100000), BENCH_COLUMNS (200), BENCH_WIDTH (800), BENCH_HEIGHT (600), BENCH_SPP
 //   (4), BENCH_THREADS (all)
 #include <benchmark/benchmark.h>
 
@@ -209,7 +209,7 @@ struct Bench {
 
   std::vector<matrix::ScaledColumn> pick_columns() const {
     Rng rng(1, Stage::benchmark);
-    std::vector<matrix::ScaledColumn> columns(static_cast<std::size_t>(setting("BENCH_COLUMNS", 32)));
+    std::vector<matrix::ScaledColumn> columns(static_cast<std::size_t>(setting("BENCH_COLUMNS", 200)));
     for (auto& c : columns) c.column = static_cast<matrix::Index>(rng.next_below(lights.size()));
     return columns;
   }

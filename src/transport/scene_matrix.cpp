@@ -142,7 +142,7 @@ void SceneMatrix::row(Index i, std::span<Rgb> out, Part part) const {
   const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
     Impl::Lease block(*impl_);
     block->set_column_tile(tile);
-    block->evaluate_row(impl_->rows.plan.slot[i]);
+    block->set_row(impl_->rows.plan.slot[i]);
     const Tally cost = finish(*block, part, items_in_tile(plan, tile));
     const std::uint32_t* items = plan.item.data() + block->first_slot();
     copy_out(*block, part, {items, 16 * block->groups()}, [&](std::uint32_t to) -> Rgb& { return out[to]; });
@@ -158,7 +158,7 @@ void SceneMatrix::column(Index j, std::span<Rgb> out, Part part) const {
   const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
     Impl::Lease block(*impl_);
     block->set_row_tile(tile);
-    block->evaluate_column(impl_->columns.plan.slot[j]);
+    block->set_column(impl_->columns.plan.slot[j]);
     const Tally cost = finish(*block, part, items_in_tile(plan, tile));
     const std::uint32_t* items = plan.item.data() + block->first_slot();
     copy_out(*block, part, {items, 16 * block->groups()}, [&](std::uint32_t to) -> Rgb& { return out[to]; });
@@ -184,7 +184,7 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
       const std::size_t items = items_in_tile(plan, tile);
       for (const matrix::ScaledColumn& s : scaled) {
         if (sinks.cancelled()) throw Cancelled();
-        block->evaluate_column(impl_->columns.plan.slot[s.column]);
+        block->set_column(impl_->columns.plan.slot[s.column]);
         block->trace();
         cost.evaluated += items;
         cost.culled += items - block->survivors();

@@ -42,7 +42,7 @@ class PairList {
       }
       used_.push_back(static_cast<std::uint16_t>(used));
     }
-    block.evaluate_list(rows_, columns_, used_);
+    block.set_list(rows_, columns_, used_);
     const Tally tally = finish(block, part, pairs_.size());
     copy_out(block, part, numbers_, out);
     return tally;

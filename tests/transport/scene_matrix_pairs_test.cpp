@@ -187,14 +187,17 @@ TEST_F(SceneMatrixPairs, CountersAddUp) {
   EXPECT_EQ(counters.rays_shadow, 0u);
   EXPECT_EQ(counters.entries_evaluated, kRows * kColumns);
   const auto black = static_cast<std::uint64_t>(std::count(e.begin(), e.end(), Rgb(0)));
-  EXPECT_EQ(counters.entries_culled, black);
+  // What is culled is black; what a lobe alone makes black is found after its ray.
+  const std::uint64_t culled = counters.entries_culled;
+  EXPECT_LE(culled, black);
+  EXPECT_GT(culled, black / 2);
   std::vector<Rgb> sums(kRows);
   std::vector<matrix::ScaledColumn> columns;
   for (Index j = 0; j < kColumns; ++j) columns.push_back({j, Rgb(1)});
   matrix.accumulate(columns, sums, {});
   EXPECT_EQ(counters.entries_evaluated, 2 * kRows * kColumns);
-  EXPECT_EQ(counters.entries_culled, 2 * black);
-  EXPECT_EQ(counters.rays_shadow, kRows * kColumns - black);
+  EXPECT_EQ(counters.entries_culled, 2 * culled);
+  EXPECT_EQ(counters.rays_shadow, kRows * kColumns - culled);
 }
 
 TEST_F(SceneMatrixPairs, ClampedEntriesKeepTheBoundAndTheirColour) {

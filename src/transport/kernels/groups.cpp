@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "world/world.h"
@@ -14,15 +15,21 @@ constexpr std::uint32_t kRowTile = 2048;
 constexpr std::uint32_t kColumnTile = 4096;
 constexpr float kNoLimit = 1e9f;
 
+// Lanes that no depth lets shine: padding, and what is black.
 template <typename Group>
 Group empty_group() {
   Group group;
   float* all = reinterpret_cast<float*>(&group);
   std::fill(all, all + sizeof(Group) / sizeof(float), 0.0f);
+  if constexpr (std::is_same_v<Group, RowGroup>) {
+    group.depth_max = splat(-kNoLimit);
+  } else {
+    group.depth = splat(-kNoLimit);
+  }
   return group;
 }
 
-// A lambertian surface answers only where wo lies on the same side of both normals (scatter::eval).
+// A surface answers only where wo lies on the same side of both normals (scatter::eval).
 bool answers(Vec3f n, Vec3f ng, Vec3f wo) { return dot(n, wo) * dot(ng, wo) > 0; }
 
 }  // namespace
@@ -52,9 +59,10 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
       const float side = dot(receivers.normal[i], wo) < 0 ? -1.0f : 1.0f;
       const Vec3f n = receivers.normal[i] * side, ng = receivers.ng[i] * side;
       const bool lambertian = kinds[i] == kRowLambertian;
-      const bool dark = lambertian && !answers(n, ng, wo);
-      write3(to, receivers.position[i]);
-      if (!dark) write3(to + 3 * 16, n), write3(to + 6 * 16, ng);
+      const bool black =
+          lambertian ? max_component(receivers.albedo[i]) <= 0
+                     : receivers.closures.lobes(receivers.closures.recipe(receivers.closure[i])).empty();
+      write3(to, receivers.position[i]), write3(to + 3 * 16, n), write3(to + 6 * 16, ng);
       write3(to + 9 * 16, world::World::offset_origin(receivers.position[i], ng, n));
       if (lambertian) {
         const Rgb f = receivers.albedo[i] * kInvPi;
@@ -62,6 +70,7 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
       } else if (some_transmit) {
         store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[i] - kRowScatter)].transmits;
       }
+      if (black || !answers(n, ng, wo)) continue;
       // Lobes have a roughness of 1 at most: above it, all direct light is traced.
       const bool direct_elsewhere = settings.traced_direct_below > 1;
       to[15 * 16] = direct_elsewhere ? 1.0f : 0.0f;
@@ -122,8 +131,11 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms)
         const Vec3f wo = lights.incoming[j];
         if (dot(n, wo) < 0) n = -n, ng = -ng;
         target = world::World::offset_origin(p, ng, n);
-        if (lights.closure[j] == VirtualLights::kLambertian) {
-          if (!answers(n, ng, wo)) power = Rgb(0);
+        const bool lambertian = lights.closure[j] == VirtualLights::kLambertian;
+        if (!answers(n, ng, wo) ||
+            (!lambertian && lights.closures.lobes(lights.closures.recipe(lights.closure[j])).empty()))
+          power = Rgb(0);
+        if (lambertian) {
           power *= lights.albedo[j] * kInvPi;
           area *= max_component(lights.albedo[j]);
         } else if (some_transmit) {
@@ -133,7 +145,7 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms)
       write3(to, p), write3(to + 3 * 16, n), write3(to + 6 * 16, ng), write3(to + 9 * 16, target);
       write3(to + 12 * 16, {power.r, power.g, power.b});
       to[15 * 16] = area;
-      to[16 * 16] = static_cast<float>(lights.depth[j]);
+      if (max_component(power) > 0) to[16 * 16] = static_cast<float>(lights.depth[j]);
     }
   });
   return store;

@@ -5,62 +5,96 @@
 
 namespace lumirank::transport {
 
-// The three loops over groups, compiled for each class of receiver and light.
+// The loops over groups, compiled for each class of receiver and light: `cull` finds the survivors, `shade`
+// evaluates the groups with visible lanes.
 struct PairBlockKernels {
   template <std::uint16_t row_kind, ColumnKind column_kind>
-  static void column(PairBlock& b, std::size_t begin, std::size_t end, const ColumnGroup& light,
-                     PairExtras extras) {
+  static void cull_column(PairBlock& b, std::size_t begin, std::size_t end, const PairExtras& extras) {
+    const RowGroup* rows = b.context_.rows->groups.data() + b.first_slot_ / 16;
+    for (std::size_t g = begin; g < end; ++g)
+      b.alive_[g] =
+          static_cast<std::uint16_t>(cull_pair<row_kind, column_kind>(rows[g], b.fixed_column_, extras));
+  }
+
+  template <std::uint16_t row_kind, ColumnKind column_kind>
+  static void shade_column(PairBlock& b, std::size_t begin, std::size_t end, PairExtras extras) {
     const RowGroup* rows = b.context_.rows->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g) {
+      if (b.visible_[g] == 0) continue;
       if constexpr (row_kind == kRowScatter) extras.row = &b.tile_scatter_[g];
-      b.keep(g, evaluate_pair<row_kind, column_kind>(rows[g], light, extras));
+      b.keep(g, evaluate_pair<row_kind, column_kind>(rows[g], b.fixed_column_, extras));
     }
   }
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
-  static void row(PairBlock& b, std::size_t begin, std::size_t end, const RowGroup& receiver,
-                  PairExtras extras) {
+  static void cull_row(PairBlock& b, std::size_t begin, std::size_t end, PairExtras extras) {
     const ColumnGroup* columns = b.context_.columns->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g) {
-      if constexpr (column_kind == kColumnScatter) extras.column = &b.tile_scatter_[g];
       if constexpr (column_kind == kColumnSpot) extras.spots = &b.tile_spots_[16 * g];
-      b.keep(g, evaluate_pair<row_kind, column_kind>(receiver, columns[g], extras));
+      b.alive_[g] =
+          static_cast<std::uint16_t>(cull_pair<row_kind, column_kind>(b.fixed_row_, columns[g], extras));
     }
   }
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
-  static void list(PairBlock& b, std::size_t g, std::uint32_t used) {
-    const PairContext& context = b.context_;
-    const std::uint32_t *row_slots = b.row_list_.data() + 16 * g,
-                        *column_slots = b.column_list_.data() + 16 * g;
+  static void shade_row(PairBlock& b, std::size_t begin, std::size_t end, PairExtras extras) {
+    const ColumnGroup* columns = b.context_.columns->groups.data() + b.first_slot_ / 16;
+    for (std::size_t g = begin; g < end; ++g) {
+      if (b.visible_[g] == 0) continue;
+      if constexpr (column_kind == kColumnScatter) extras.column = &b.tile_scatter_[g];
+      if constexpr (column_kind == kColumnSpot) extras.spots = &b.tile_spots_[16 * g];
+      b.keep(g, evaluate_pair<row_kind, column_kind>(b.fixed_row_, columns[g], extras));
+    }
+  }
+
+  // Both ends of a group of a list.
+  struct Listed {
     RowGroup rows;
     ColumnGroup columns;
-    context.rows->gather(row_slots, rows);
-    context.columns->gather(column_slots, columns);
-    PairExtras extras;
-    extras.clamp = context.clamp;
-    ScatterGroup row_scatter, column_scatter;
     const SpotShape* spots[16];
+    PairExtras extras;
+    template <ColumnKind column_kind>
+    void gather(const PairBlock& b, std::size_t g) {
+      const PairContext& context = b.context_;
+      context.rows->gather(b.row_list_.data() + 16 * g, rows);
+      context.columns->gather(b.column_list_.data() + 16 * g, columns);
+      extras = b.extras(context.rows->plan.kind_of(b.row_list_[16 * g]),
+                        context.columns->plan.kind_of(b.column_list_[16 * g]));
+      if constexpr (column_kind == kColumnSpot) {
+        for (std::size_t k = 0; k < 16; ++k)
+          spots[k] = b.spot_of(context.columns->plan.item[b.column_list_[16 * g + k]]);
+        extras.spots = spots;
+      }
+    }
+  };
+
+  template <std::uint16_t row_kind, ColumnKind column_kind>
+  static void cull_list(PairBlock& b, std::size_t g, std::uint32_t used) {
+    Listed listed;
+    listed.gather<column_kind>(b, g);
+    b.alive_[g] = static_cast<std::uint16_t>(
+        used & cull_pair<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
+  }
+
+  template <std::uint16_t row_kind, ColumnKind column_kind>
+  static void shade_list(PairBlock& b, std::size_t g) {
+    const PairContext& context = b.context_;
+    Listed listed;
+    listed.gather<column_kind>(b, g);
+    ScatterGroup row_scatter, column_scatter;
     std::uint32_t items[16];
     b.partner_arena_.clear();
     if constexpr (row_kind == kRowScatter) {
-      for (int k = 0; k < 16; ++k) items[k] = context.rows->plan.item[row_slots[k]];
+      for (std::size_t k = 0; k < 16; ++k) items[k] = context.rows->plan.item[b.row_list_[16 * g + k]];
       row_scatter = b.partner_arena_.fetch(context.row_scatter, items);
-      extras.row = &row_scatter;
+      listed.extras.row = &row_scatter;
     }
-    for (int k = 0; k < 16; ++k) items[k] = context.columns->plan.item[column_slots[k]];
     if constexpr (column_kind == kColumnScatter) {
+      for (std::size_t k = 0; k < 16; ++k) items[k] = context.columns->plan.item[b.column_list_[16 * g + k]];
       column_scatter = b.partner_arena_.fetch(context.column_scatter, items);
-      extras.column = &column_scatter;
+      listed.extras.column = &column_scatter;
     }
-    if constexpr (column_kind == kColumnSpot) {
-      for (int k = 0; k < 16; ++k) spots[k] = &context.lights->spots[context.lights->closure[items[k]]];
-      extras.spots = spots;
-    }
-    PairResult result = evaluate_pair<row_kind, column_kind>(rows, columns, extras);
-    result.alive &= used;
-    result.clamped &= used;
-    b.keep(g, result);
+    b.keep(g, evaluate_pair<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
   }
 
   // Calls use.template operator()<row_kind, column_kind>() for the classes at hand.
@@ -102,9 +136,25 @@ void PairBlock::resize(std::size_t groups) {
 
 void PairBlock::keep(std::size_t group, const PairResult& result) {
   e_[3 * group] = result.e.x, e_[3 * group + 1] = result.e.y, e_[3 * group + 2] = result.e.z;
-  alive_[group] = static_cast<std::uint16_t>(result.alive);
-  clamped_[group] = static_cast<std::uint16_t>(result.clamped & result.alive);
+  visible_[group] &= static_cast<std::uint16_t>(result.alive);
+  clamped_[group] = static_cast<std::uint16_t>(result.clamped);
   if (result.clamped) excess_[group] = result.excess;
+}
+
+const SpotShape* PairBlock::spot_of(std::uint32_t light) const {
+  return light == kNoItem ? nullptr : &context_.lights->spots[context_.lights->closure[light]];
+}
+
+PairExtras PairBlock::extras(std::uint16_t row_kind, std::uint16_t column_kind) const {
+  PairExtras extras;
+  extras.clamp = context_.clamp;
+  if (row_kind >= kRowScatter)
+    extras.row_transmits =
+        (*context_.row_scatter.forms)[static_cast<std::uint16_t>(row_kind - kRowScatter)].transmits;
+  if (column_kind >= kColumnScatter)
+    extras.column_transmits =
+        (*context_.column_scatter.forms)[static_cast<std::uint16_t>(column_kind - kColumnScatter)].transmits;
+  return extras;
 }
 
 void PairBlock::set_row_tile(std::size_t tile) {
@@ -135,72 +185,93 @@ void PairBlock::set_column_tile(std::size_t tile) {
       if (run.kind >= kColumnScatter)
         tile_scatter_[(s - first_slot_) / 16] = tile_arena_.fetch(context_.column_scatter, items);
       if (run.kind == kColumnSpot)
-        for (int k = 0; k < 16; ++k)
-          tile_spots_[s - first_slot_ + static_cast<std::uint32_t>(k)] =
-              items[k] == kNoItem ? nullptr : &context_.lights->spots[context_.lights->closure[items[k]]];
+        for (std::uint32_t k = 0; k < 16; ++k) tile_spots_[s - first_slot_ + k] = spot_of(items[k]);
     }
   }
 }
 
-void PairBlock::evaluate_column(std::uint32_t column_slot) {
+void PairBlock::set_column(std::uint32_t column_slot) {
   fixed_slot_ = column_slot;
-  ColumnGroup light;
-  context_.columns->splat(column_slot, light);
-  const std::uint16_t kind = context_.columns->plan.kind_of(column_slot);
-  const std::uint32_t item = context_.columns->plan.item[column_slot];
-  PairExtras extras;
-  extras.clamp = context_.clamp;
-  ScatterGroup scatter;
-  std::array<const SpotShape*, 16> spots;
-  if (kind >= kColumnScatter) {
-    partner_arena_.clear();
-    scatter = partner_arena_.fetch(context_.column_scatter, item);
-    extras.column = &scatter;
-  } else if (kind == kColumnSpot) {
-    spots.fill(&context_.lights->spots[context_.lights->closure[item]]);
-    extras.spots = spots.data();
-  }
-  for (const TilePlan::Run& run : context_.rows->plan.tile(tile_))
-    PairBlockKernels::pick(run.kind, kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-      PairBlockKernels::column<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
-                                                      (run.end - first_slot_) / 16, light, extras);
+  fixed_kind_ = context_.columns->plan.kind_of(column_slot);
+  context_.columns->splat(column_slot, fixed_column_);
+  if (fixed_kind_ == kColumnSpot) fixed_spots_.fill(spot_of(context_.columns->plan.item[column_slot]));
+  for (const TilePlan::Run& run : context_.rows->plan.tile(tile_)) {
+    PairExtras extras = this->extras(run.kind, fixed_kind_);
+    extras.spots = fixed_spots_.data();
+    PairBlockKernels::pick(run.kind, fixed_kind_, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+      PairBlockKernels::cull_column<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
+                                                           (run.end - first_slot_) / 16, extras);
     });
+  }
   collect_survivors();
 }
 
-void PairBlock::evaluate_row(std::uint32_t row_slot) {
+void PairBlock::set_row(std::uint32_t row_slot) {
   fixed_slot_ = row_slot;
-  RowGroup receiver;
-  context_.rows->splat(row_slot, receiver);
-  const std::uint16_t kind = context_.rows->plan.kind_of(row_slot);
-  PairExtras extras;
-  extras.clamp = context_.clamp;
-  ScatterGroup scatter;
-  if (kind >= kRowScatter) {
-    partner_arena_.clear();
-    scatter = partner_arena_.fetch(context_.row_scatter, context_.rows->plan.item[row_slot]);
-    extras.row = &scatter;
-  }
+  fixed_kind_ = context_.rows->plan.kind_of(row_slot);
+  context_.rows->splat(row_slot, fixed_row_);
   for (const TilePlan::Run& run : context_.columns->plan.tile(tile_))
-    PairBlockKernels::pick(kind, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-      PairBlockKernels::row<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
-                                                   (run.end - first_slot_) / 16, receiver, extras);
+    PairBlockKernels::pick(fixed_kind_, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+      PairBlockKernels::cull_row<row_kind, column_kind>(
+          *this, (run.begin - first_slot_) / 16, (run.end - first_slot_) / 16, extras(fixed_kind_, run.kind));
     });
   collect_survivors();
 }
 
-void PairBlock::evaluate_list(std::span<const std::uint32_t> row_slots,
-                              std::span<const std::uint32_t> column_slots,
-                              std::span<const std::uint16_t> used) {
+void PairBlock::set_list(std::span<const std::uint32_t> row_slots,
+                         std::span<const std::uint32_t> column_slots, std::span<const std::uint16_t> used) {
   shape_ = BlockShape::list, row_list_ = row_slots, column_list_ = column_slots, first_slot_ = 0;
   resize(used.size());
   for (std::size_t g = 0; g < groups_; ++g)
     PairBlockKernels::pick(context_.rows->plan.kind_of(row_slots[16 * g]),
                            context_.columns->plan.kind_of(column_slots[16 * g]),
                            [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-                             PairBlockKernels::list<row_kind, column_kind>(*this, g, used[g]);
+                             PairBlockKernels::cull_list<row_kind, column_kind>(*this, g, used[g]);
                            });
   collect_survivors();
+}
+
+void PairBlock::shade() {
+  if (std::all_of(visible_.begin(), visible_.begin() + static_cast<std::ptrdiff_t>(groups_),
+                  [](std::uint16_t lanes) { return lanes == 0; }))
+    return;
+  ScatterGroup scatter;
+  partner_arena_.clear();
+  switch (shape_) {
+    case BlockShape::column:
+      if (fixed_kind_ >= kColumnScatter)
+        scatter = partner_arena_.fetch(context_.column_scatter, context_.columns->plan.item[fixed_slot_]);
+      for (const TilePlan::Run& run : context_.rows->plan.tile(tile_)) {
+        PairExtras extras = this->extras(run.kind, fixed_kind_);
+        extras.column = &scatter, extras.spots = fixed_spots_.data();
+        PairBlockKernels::pick(run.kind, fixed_kind_, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+          PairBlockKernels::shade_column<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
+                                                                (run.end - first_slot_) / 16, extras);
+        });
+      }
+      return;
+    case BlockShape::row:
+      if (fixed_kind_ >= kRowScatter)
+        scatter = partner_arena_.fetch(context_.row_scatter, context_.rows->plan.item[fixed_slot_]);
+      for (const TilePlan::Run& run : context_.columns->plan.tile(tile_)) {
+        PairExtras extras = this->extras(fixed_kind_, run.kind);
+        extras.row = &scatter;
+        PairBlockKernels::pick(fixed_kind_, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+          PairBlockKernels::shade_row<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
+                                                             (run.end - first_slot_) / 16, extras);
+        });
+      }
+      return;
+    case BlockShape::list:
+      for (std::size_t g = 0; g < groups_; ++g)
+        if (visible_[g] != 0)
+          PairBlockKernels::pick(context_.rows->plan.kind_of(row_list_[16 * g]),
+                                 context_.columns->plan.kind_of(column_list_[16 * g]),
+                                 [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+                                   PairBlockKernels::shade_list<row_kind, column_kind>(*this, g);
+                                 });
+      return;
+  }
 }
 
 void PairBlock::collect_survivors() {

@@ -1,6 +1,7 @@
 // E of many pairs at once, in tiles; the survivors' shadow rays are packed in the order of the pairs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,33 +48,32 @@ enum class BlockShape {
   list,    // listed slots on both sides
 };
 
+// Use: a shape, then one partner after another, each followed by trace() or skip_visibility(), after which E
+// and visibility can be read. Rays come before E: most pairs are hidden, and E of a glossy pair costs more
+// than its ray.
 class PairBlock {
  public:
   explicit PairBlock(const PairContext& context) : context_(context) {}
 
-  // Each prepares a shape; evaluate() may then be called for one partner after another.
   void set_row_tile(std::size_t tile);
   void set_column_tile(std::size_t tile);
-  void evaluate_column(std::uint32_t column_slot);  // after set_row_tile
-  void evaluate_row(std::uint32_t row_slot);        // after set_column_tile
+  void set_column(std::uint32_t column_slot);  // after set_row_tile
+  void set_row(std::uint32_t row_slot);        // after set_column_tile
   // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbour; `used`: a
-  // bit per lane that is not padding, by group.
-  void evaluate_list(std::span<const std::uint32_t> row_slots, std::span<const std::uint32_t> column_slots,
-                     std::span<const std::uint16_t> used);
+  // bit per lane that is not padding, by group. The spans must last until E has been read.
+  void set_list(std::span<const std::uint32_t> row_slots, std::span<const std::uint32_t> column_slots,
+                std::span<const std::uint16_t> used);
 
-  // Shoots the survivors' rays: afterwards visible(group) tells which lanes are unblocked and not zero, and e
-  // is multiplied by the transmittance of smooth surfaces.
+  // Shoots the survivors' rays and evaluates what they reach: afterwards visible(group) tells which lanes are
+  // unblocked and not zero, and e is theirs, transmittance of smooth surfaces included.
   void trace();
-  // Takes all survivors as visible; e is multiplied by transmittances.
+  // Takes all survivors as visible.
   void skip_visibility();
 
   std::size_t groups() const { return groups_; }
+  // Only where lanes are visible.
   Lane3 e(std::size_t group) const { return {e_[3 * group], e_[3 * group + 1], e_[3 * group + 2]}; }
-  std::uint32_t alive(std::size_t group) const { return alive_[group]; }
   std::uint32_t visible(std::size_t group) const { return visible_[group]; }
-  // Lanes whose value was clamped; their excess is unclamped/clamped - 1.
-  std::uint32_t clamped(std::size_t group) const { return clamped_[group]; }
-  Lane excess(std::size_t group) const { return excess_[group]; }
   std::size_t survivors() const { return survivors_; }
   std::uint32_t first_slot() const { return first_slot_; }
   // Σ r + g + b of visible entries, and what clamping took away from them; in the order of places.
@@ -88,7 +88,9 @@ class PairBlock {
 
  private:
   friend struct PairBlockKernels;
-  void resize(std::size_t places);
+  void resize(std::size_t groups);
+  const SpotShape* spot_of(std::uint32_t light) const;
+  PairExtras extras(std::uint16_t row_kind, std::uint16_t column_kind) const;
   void keep(std::size_t group, const PairResult& result);
   void collect_survivors();
   template <typename Store>
@@ -99,13 +101,20 @@ class PairBlock {
   void turn_ends(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const;
   // The rays of survivors first … first + count - 1.
   void fill(geometry::ShadowPacket& packet, std::size_t first, int count) const;
-  void attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count);
+  void note_transmittance(const geometry::ShadowPacket& packet, std::size_t first, int count);
+  void shade();
+  void shade_through();  // with what smooth surfaces let pass
 
   const PairContext& context_;
   BlockShape shape_ = BlockShape::column;
   std::size_t tile_ = 0, groups_ = 0, survivors_ = 0;
   std::uint32_t first_slot_ = 0, fixed_slot_ = 0;
   std::span<const std::uint32_t> row_list_, column_list_;
+  // The partner of a tile.
+  RowGroup fixed_row_;
+  ColumnGroup fixed_column_;
+  std::array<const SpotShape*, 16> fixed_spots_;
+  std::uint16_t fixed_kind_ = 0;
   ScatterArena tile_arena_, partner_arena_;
   std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
   std::vector<const SpotShape*> tile_spots_;
@@ -117,6 +126,11 @@ class PairBlock {
   std::vector<float> end_x_, end_y_, end_z_;
   std::vector<std::uint32_t> end_item_;
   std::vector<std::uint16_t> packet_bits_;
+  struct Attenuation {
+    std::uint32_t place;
+    Rgb through;
+  };
+  std::vector<Attenuation> attenuations_;
 };
 
 // Finishes an evaluated block: rays where they are needed, and the cost. `pairs`: without padding.

@@ -16,6 +16,7 @@ struct PairExtras {
   const ScatterGroup* column = nullptr;
   const SpotShape* const* spots = nullptr;  // 16
   float clamp = kInfinity;                  // X
+  bool row_transmits = false, column_transmits = false;
 };
 
 struct PairResult {
@@ -32,6 +33,55 @@ inline float spot_fall_off(const SpotShape& spot, float cosine) {
   return (spot.cutoff - std::acos(cosine)) / (spot.cutoff - spot.beam);
 }
 
+// What depends on the places and normals alone.
+struct PairGeometry {
+  LaneMask alive;     // E may differ from 0
+  Lane3 w;            // from receiver to light, not normalised; directional: towards the light
+  Lane inv, inv_d;    // 1/d², 1/d; directional: 1
+  Lane cos_x, cos_y;  // cosines, times d; see VirtualLights::power about ng
+  Lane spot_cosine;   // spots: between the axis and the way to the receiver
+};
+
+// Culling and evaluation share these lines, so that they agree to the last bit about what is 0.
+template <std::uint16_t row_kind, ColumnKind column_kind>
+inline PairGeometry pair_geometry(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
+  constexpr bool sided_column = column_kind == kColumnFacing || column_kind == kColumnScatter;
+  const Lane zero{};
+  PairGeometry at;
+  at.alive = (c.depth >= r.depth_min) & (c.depth <= r.depth_max);
+  if constexpr (column_kind == kColumnDirectional) {
+    at.w = c.target;
+    at.inv = at.inv_d = splat(1);
+  } else {
+    at.w = c.p - r.p;
+    const Lane d2 = dot(at.w, at.w);
+    at.alive &= d2 > splat(1e-30f);
+    at.inv = splat(1) / select(at.alive, d2, splat(1));
+    at.inv_d = sqrt(at.inv);
+  }
+  at.cos_x = dot(r.n, at.w);
+  if (row_kind == kRowLambertian || !extras.row_transmits)
+    at.alive &= (at.cos_x > zero) & (dot(r.ng, at.w) > zero);
+  if constexpr (sided_column) {
+    at.cos_y = -dot(c.ng, at.w);
+    if (column_kind == kColumnFacing || !extras.column_transmits)
+      at.alive &= (at.cos_y > zero) & (dot(c.n, at.w) < zero);
+  }
+  if constexpr (column_kind == kColumnSpot) {
+    at.spot_cosine = -(dot(c.n, at.w) * at.inv_d);
+    Lane cutoff;
+    for (int k = 0; k < kLanes; ++k) cutoff[k] = extras.spots[k] ? extras.spots[k]->cos_cutoff : 2;
+    at.alive &= at.spot_cosine > cutoff;
+  }
+  return at;
+}
+
+// The lanes that may have E ≠ 0: few others are traced in vain.
+template <std::uint16_t row_kind, ColumnKind column_kind>
+inline std::uint32_t cull_pair(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
+  return bits(pair_geometry<row_kind, column_kind>(r, c, extras).alive);
+}
+
 template <std::uint16_t row_kind, ColumnKind column_kind>
 inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
   constexpr bool directional = column_kind == kColumnDirectional;
@@ -39,34 +89,19 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
   constexpr bool scattering_row = row_kind == kRowScatter;
   constexpr bool scattering_column = column_kind == kColumnScatter;
   const Lane zero{};
+  PairGeometry at = pair_geometry<row_kind, column_kind>(r, c, extras);
+  const Lane3 w = at.w;
+  const Lane inv_d = at.inv_d;
+  LaneMask alive = at.alive;
 
-  LaneMask alive = (c.depth >= r.depth_min) & (c.depth <= r.depth_max);
-  // w is not normalised; inv = 1/d².
-  Lane3 w;
-  Lane inv, inv_d;
-  if constexpr (directional) {
-    w = c.target;
-    inv = inv_d = splat(1);
-  } else {
-    w = c.p - r.p;
-    const Lane d2 = dot(w, w);
-    alive &= d2 > splat(1e-30f);
-    inv = splat(1) / select(alive, d2, splat(1));
-    if constexpr (!facing || scattering_row) inv_d = sqrt(inv);
-  }
-
-  const Lane cos_x = dot(r.n, w);
-  if constexpr (!scattering_row) alive &= (cos_x > zero) & (dot(r.ng, w) > zero);
   // The geometric term of the kind of light: cosθx·cosθy/d², cosθx/d² or cosθx.
   Lane g;
   if constexpr (facing || scattering_column) {
-    const Lane cos_y = -dot(c.ng, w);  // see VirtualLights::power about ng
-    if constexpr (facing) alive &= (cos_y > zero) & (dot(c.n, w) < zero);
-    g = (abs(cos_x) * inv) * (abs(cos_y) * inv);
+    g = (abs(at.cos_x) * at.inv) * (abs(at.cos_y) * at.inv);
   } else if constexpr (directional) {
-    g = abs(cos_x);
+    g = abs(at.cos_x);
   } else {
-    g = (abs(cos_x) * inv) * inv_d;
+    g = (abs(at.cos_x) * at.inv) * inv_d;
   }
 
   PairResult out;
@@ -87,10 +122,9 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
     clamp_area = clamp_area * (max_component(fy) * splat(kPi));
   }
   if constexpr (column_kind == kColumnSpot) {
-    const Lane cosine = -(dot(c.n, w) * inv_d);
     Lane fall_off;
     for (int k = 0; k < kLanes; ++k)
-      fall_off[k] = extras.spots[k] ? spot_fall_off(*extras.spots[k], cosine[k]) : 0;
+      fall_off[k] = extras.spots[k] ? spot_fall_off(*extras.spots[k], at.spot_cosine[k]) : 0;
     power = power * fall_off;
   }
 

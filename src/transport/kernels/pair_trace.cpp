@@ -99,28 +99,34 @@ void PairBlock::fill(geometry::ShadowPacket& packet, std::size_t first, int coun
   }
 }
 
-void PairBlock::attenuate(const geometry::ShadowPacket& packet, const std::uint32_t* places, int count) {
+void PairBlock::note_transmittance(const geometry::ShadowPacket& packet, std::size_t first, int count) {
   Rgb through[16];
   context_.rays->transmittance16(packet, through);
-  for (int k = 0; k < count; ++k) {
-    const std::uint32_t g = places[k] / 16, lane = places[k] % 16;
-    for (std::uint32_t c = 0; c < 3; ++c) e_[3 * g + c][lane] *= through[k][static_cast<int>(c)];
-  }
+  for (int k = 0; k < count; ++k)
+    if (through[k] != Rgb(1))
+      attenuations_.push_back({places_[first + static_cast<std::size_t>(k)], through[k]});
+}
+
+void PairBlock::shade_through() {
+  shade();
+  for (const Attenuation& a : attenuations_)
+    for (std::uint32_t c = 0; c < 3; ++c)
+      e_[3 * (a.place / 16) + c][a.place % 16] *= a.through[static_cast<int>(c)];
 }
 
 void PairBlock::trace() {
+  attenuations_.clear();
   geometry::ShadowPacket packet;
   const std::size_t packets = (survivors_ + 15) / 16;
   for (std::size_t p = 0; p < packets; ++p) {
     const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
-    const std::uint32_t* places = places_.data() + 16 * p;
     fill(packet, 16 * p, count);
     packet_bits_[p] = context_.rays->visible16(packet);
     if (context_.has_smooth && packet_bits_[p] != 0) {
       // What is hidden need not be attenuated.
       for (int k = 0; k < count; ++k)
         if (!(packet_bits_[p] >> k & 1)) packet.valid[k] = 0;
-      attenuate(packet, places, count);
+      note_transmittance(packet, 16 * p, count);
     }
   }
   packet_bits_[packets] = 0;
@@ -136,17 +142,21 @@ void PairBlock::trace() {
     visible_[g] = static_cast<std::uint16_t>(deposit_bits(two >> (at % 16), alive_bits));
     at += static_cast<std::size_t>(__builtin_popcount(alive_bits));
   }
+  shade_through();
 }
 
 void PairBlock::skip_visibility() {
+  attenuations_.clear();
   std::copy_n(alive_.begin(), groups_, visible_.begin());
-  if (!context_.has_smooth) return;
-  geometry::ShadowPacket packet;
-  for (std::size_t p = 0; 16 * p < survivors_; ++p) {
-    const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
-    fill(packet, 16 * p, count);
-    attenuate(packet, places_.data() + 16 * p, count);
+  if (context_.has_smooth) {
+    geometry::ShadowPacket packet;
+    for (std::size_t p = 0; 16 * p < survivors_; ++p) {
+      const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
+      fill(packet, 16 * p, count);
+      note_transmittance(packet, 16 * p, count);
+    }
   }
+  shade_through();
 }
 
 }  // namespace lumirank::transport
