@@ -16,6 +16,7 @@
 #include "render/aovs.h"
 #include "render/compare_page.h"
 #include "render/compare_plan.h"
+#include "render/html_text.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
 #include "render/sampled_truth.h"
@@ -289,9 +290,9 @@ class Comparison {
                                                    std::abs(std::log(cost(*nearest) / cost(*anchor)))))
           nearest = &r;
       if (nearest)
-        results_.notes.push_back(nearest->label + ": " + std::to_string(nearest->seconds) + " s, " +
-                                 std::to_string(nearest->rays / 1e6) + " million rays, relative L2 " +
-                                 std::to_string(100 * nearest->error.relative_l2) + " %");
+        results_.notes.push_back(nearest->label + ": " + show_seconds(nearest->seconds) + ", " +
+                                 show_count(nearest->rays) + " rays, relative L2 " +
+                                 show_percent(nearest->error.relative_l2));
     }
   }
 

@@ -28,8 +28,11 @@ std::string reference_warning(const CompareResults& results, const CompareSummar
 std::string header_section(const CompareResults& results, const CompareSummary& summary) {
   double rays = 0, entries = 0;
   for (const CompareRun& run : results.runs) rays += run.rays, entries += run.entries;
-  const std::string own_error =
-      results.reference_error > 0 ? show_percent(results.reference_error) + " (relative L1)" : "none stated";
+  const bool exact = results.reference_kind.starts_with("all ");  // columns
+  const std::string own_error = exact ? "none: the exact sums of the same lights"
+                                : results.reference_error > 0
+                                    ? show_percent(results.reference_error) + " (relative L1)"
+                                    : "not stated";
   std::string out =
       "<header><h1>" + escape_html(results.scene) + "</h1>\n<p class=\"soft\">" +
       std::to_string(summary.series.size()) + (summary.series.size() == 1 ? " curve, " : " curves, ") +

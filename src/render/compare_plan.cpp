@@ -83,20 +83,21 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
                       [&](const auto& p) { return p.key == setting.first; }))
         base.method_settings.insert_or_assign(setting.first, setting.second);
 
-    // Every sweep of this method is a curve of its own: sweeps are not multiplied with each other.
+    // Every sweep of this method, and --times, is a curve of its own: they are not multiplied with each
+    // other.
     std::vector<PlannedRun> points;
-    int own_sweeps = 0;
+    std::vector<std::size_t> curves;  // first points
     for (const auto& sweep : settings.sweeps) {
       const SweepKey key = parse_key(sweep.key);
       if (!key.method.empty() && key.method != name) continue;
-      ++own_sweeps;
+      curves.push_back(points.size());
       for (const std::string& value : sweep.values) {
         PlannedRun run = base;
         apply(run, key, value);
-        if (own_sweeps > 1) run.series += " (" + sweep.values.front() + " …)";
         points.push_back(run);
       }
     }
+    if (!settings.times.empty()) curves.push_back(points.size());
     for (double time : settings.times) {
       PlannedRun run = base;
       run.time = time;
@@ -106,6 +107,10 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
       run.label += " " + seconds + " s";
       points.push_back(run);
     }
+    // Several are told apart by what their first points have been given.
+    for (std::size_t c = 0; c < curves.size() && curves.size() > 1; ++c)
+      for (std::size_t k = curves[c]; k < (c + 1 < curves.size() ? curves[c + 1] : points.size()); ++k)
+        points[k].series += " (" + points[curves[c]].label.substr(base.label.size() + 1) + " …)";
     if (points.empty()) points.push_back(base);
     for (const PlannedRun& point : points)
       for (int k = 0; k < settings.seeds; ++k) {

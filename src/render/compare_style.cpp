@@ -43,7 +43,7 @@ section { margin-top: 22px; padding: 18px 20px 20px; background: var(--card); bo
 .choice input:focus-visible + span { outline: 2px solid var(--text); outline-offset: -3px }
 .legend { display: flex; flex-wrap: wrap; gap: 6px 8px; margin: 8px 0 }
 .legend button { display: inline-flex; gap: 8px; align-items: center; padding: 3px 10px; font: inherit; color: inherit; background: none;
-  border: 1px solid var(--rule); border-radius: 7px; cursor: pointer }
+  border: 1px solid var(--rule); border-radius: 7px; cursor: pointer; text-align: left }
 .legend button[aria-pressed=false] { opacity: .45; text-decoration: line-through }
 .swatch { width: 26px; height: 14px; flex: none }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 14px 24px }
@@ -70,6 +70,7 @@ figcaption { font-weight: 600; margin-bottom: 2px }
 table { border-collapse: collapse; width: 100%; font-size: 14px; font-variant-numeric: tabular-nums }
 th, td { padding: 5px 7px; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--faint) }
 th:first-child, td:first-child { text-align: left; padding-left: 4px }
+td:first-child { white-space: normal; min-width: 15em }
 thead th { border-bottom: 2px solid var(--rule); vertical-align: bottom; padding: 0 }
 thead button { width: 100%; padding: 5px 7px; font: inherit; font-weight: 600; color: inherit; background: none; border: 0; text-align: inherit; cursor: pointer; white-space: nowrap }
 th:first-child button { padding-left: 4px }
@@ -100,6 +101,18 @@ select, #swap { font: inherit; color: inherit; background: var(--card); border: 
 .colorbar .ends { display: flex; justify-content: space-between }
 footer { margin-top: 26px; color: var(--soft); font-size: 13px }
 a { color: var(--accent) }
+@media (max-width: 640px) {
+  main { padding: 16px 10px 40px }
+  section { padding: 14px 12px 16px }
+  /* Plots are drawn for twice this width. */
+  .plot { font-size: 18px }
+  .plot text.axis { font-size: 19px }
+  .plot text.remark { font-size: 16px }
+  th:first-child, td:first-child { position: sticky; left: 0; background: var(--card) }
+  td:first-child { min-width: 10em; overflow-wrap: anywhere }
+  td .swatch { display: none }
+  .badge { font-size: 11px; max-width: 47% }
+}
 @media print { section { break-inside: avoid } }
 )css";
 

@@ -11,7 +11,7 @@
 namespace lumirank::rendering {
 namespace {
 
-constexpr double kWidth = 600, kHeight = 400, kLeft = 68, kRight = 18, kTop = 14, kBottom = 52;
+constexpr double kWidth = 600, kHeight = 400, kLeft = 84, kRight = 18, kTop = 14, kBottom = 52;
 
 std::string coordinate(double value) {
   char text[32];
@@ -39,6 +39,27 @@ std::string marker(std::size_t series, double x, double y, const std::string& ti
       return "<polygon class=\"mark\" points=\"" + at(0, -5.6) + at(5.6, 0) + at(0, 5.6) + at(-5.6, 0) +
              "\">" + label + "</polygon>";
   }
+}
+
+// Numbers side by side that do not touch: 1, 10, 100, … before 2 and 5 and these before the others.
+std::vector<Tick> without_overlaps(std::vector<Tick> ticks) {
+  constexpr double kDigit = 10, kGap = 8;  // also in the larger type of narrow pages
+  const auto rank = [](const Tick& tick) {
+    const auto first = tick.text.find_first_of("123456789");
+    if (first == std::string::npos || tick.text[first] == '1') return 0;
+    return tick.text[first] == '2' || tick.text[first] == '5' ? 1 : 2;
+  };
+  std::erase_if(ticks, [](const Tick& tick) { return tick.text.empty(); });
+  std::stable_sort(ticks.begin(), ticks.end(),
+                   [&](const Tick& a, const Tick& b) { return rank(a) < rank(b); });
+  std::vector<Tick> kept;
+  for (const Tick& tick : ticks)
+    if (std::none_of(kept.begin(), kept.end(), [&](const Tick& other) {
+          const double room = kDigit / 2 * static_cast<double>(tick.text.size() + other.text.size()) + kGap;
+          return std::abs(tick.at - other.at) < room;
+        }))
+      kept.push_back(tick);
+  return kept;
 }
 
 class Drawing {
@@ -110,10 +131,11 @@ class Drawing {
 
   void draw_axes() {
     const double right = kWidth - kRight, bottom = kHeight - kBottom;
-    for (const Tick& tick : x_.ticks()) {
+    std::vector<Tick> ticks = x_.ticks();
+    for (const Tick& tick : ticks)
       line(tick.text.empty() ? "grid minor" : "grid", tick.at, kTop, tick.at, bottom);
-      if (!tick.text.empty()) text(tick.at, bottom + 18, "middle", "tick", tick.text);
-    }
+    for (const Tick& tick : without_overlaps(std::move(ticks)))
+      text(tick.at, bottom + 18, "middle", "tick", tick.text);
     for (const Tick& tick : y_.ticks()) {
       line(tick.text.empty() ? "grid minor" : "grid", kLeft, tick.at, right, tick.at);
       if (!tick.text.empty()) text(kLeft - 8, tick.at + 4, "end", "tick", tick.text);
