@@ -1,8 +1,8 @@
 #include "render/traced_direct.h"
 
 #include "base/parallel.h"
-#include "base/random.h"
 #include "render/light_sampler.h"
+#include "render/sample_stream.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -14,7 +14,7 @@ struct Met {
   float light_pdf = 0;  // with which LightSampler would have found it
 };
 Met emission_along(const world::World& world, const LightSampler& lights, const emitters::LitPoint& from,
-                   Vec3f origin, Vec3f direction, Rng& rng) {
+                   Vec3f origin, Vec3f direction, SampleStream& random) {
   constexpr int kMaxPasses = 64;
   Rgb through{1};
   float travelled = 0;
@@ -33,7 +33,7 @@ Met emission_along(const world::World& world, const LightSampler& lights, const 
     const Passage passage = world.materials().passage(hit->material);
     if (passage == Passage::opaque) return {};
     if (passage == Passage::cutout) {
-      if (rng.next_float() < world.materials().opacity(hit->material, hit->point.uv)) return {};
+      if (random.next_float() < world.materials().opacity(hit->material, hit->point.uv)) return {};
     } else {
       through *= world.materials().transmittance(hit->material, hit->point, -direction);
       if (is_black(through)) return {};
@@ -49,13 +49,14 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
   const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
   const emitters::LitPoint at = lit_point(position, closure, wo);
-  Rng rng(settings.seed, Stage::traced_direct, i);
   const int n = settings.samples;
   const float inv_n = 1.0f / static_cast<float>(n);
   Rgb sum{0};
   for (int k = 0; k < n; ++k) {
-    const double u_light = (k + rng.next_double()) / n;  // strata over the lights
-    const auto s = lights.sample(at, std::min(u_light, 0x1.fffffffffffffp-1), rng.next_2d());
+    // One of the stream's two sets: even numbers only.
+    SampleStream random(settings.seed, Stage::traced_direct, i, 2 * static_cast<std::uint64_t>(k));
+    const auto [u_light, u_lobe] = random.next_fine();
+    const auto s = lights.sample(at, u_light, random.next_2d());
     if (s.pdf > 0) {
       const Rgb f = scatter::eval(closure, wo, s.direct.direction);
       if (!is_black(f)) {
@@ -67,11 +68,10 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
         sum += f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf));
       }
     }
-    const float u_lobe = rng.next_float();
-    const auto b = scatter::sample(closure, wo, u_lobe, rng.next_2d(), Lobes::smooth);
+    const auto b = scatter::sample(closure, wo, u_lobe, random.next_2d(), Lobes::smooth);
     if (!b || is_black(b->weight)) continue;
     const Met met =
-        emission_along(world, lights, at, world::World::offset_origin(position, ng, b->wi), b->wi, rng);
+        emission_along(world, lights, at, world::World::offset_origin(position, ng, b->wi), b->wi, random);
     if (!is_black(met.radiance)) sum += b->weight * met.radiance * (b->pdf / (b->pdf + met.light_pdf));
   }
   return sum * inv_n;
