@@ -16,6 +16,7 @@ struct Bin {
   LightBound bound;
   Vec3f axes{0, 0, 0};
   std::size_t count = 0;
+  float least_cosine = 1;  // of the axis with those of flat lights
 
   void add(const LightItem& item) {
     bound.bounds.extend(item.bound.bounds);
@@ -29,11 +30,19 @@ struct Bin {
     bound.axis = len > 1e-3f * static_cast<float>(count) ? axes / len : Vec3f{0, 0, 1};
   }
   void widen(const LightItem& item) {
-    // acos of a rounded cosine is within 5·10⁻⁴ of the angle.
-    const float angle = std::acos(std::clamp(dot(bound.axis, item.bound.axis), -1.0f, 1.0f));
-    const float rounding = item.bound.axis == bound.axis ? 0.0f : 5e-4f;
-    bound.spread = std::min(kPi, std::max(bound.spread, angle + item.bound.spread + rounding));
+    const float cosine = dot(bound.axis, item.bound.axis);
+    if (item.bound.spread == 0) {
+      least_cosine = std::min(least_cosine, cosine);  // one arc cosine for all flat lights
+    } else {
+      bound.spread = std::max(bound.spread, angle_of(cosine) + item.bound.spread);
+    }
   }
+  void set_spread() {
+    if (least_cosine < 1) bound.spread = std::max(bound.spread, angle_of(least_cosine));
+    bound.spread = std::min(bound.spread, kPi);
+  }
+  // The arc cosine of a rounded cosine is within 5·10⁻⁴ of the angle.
+  static float angle_of(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)) + 5e-4f; }
 };
 
 // What a group costs: the more it emits, the wider and the larger it is.
@@ -60,6 +69,7 @@ LightBound join_all(std::span<const LightItem> items) {
   for (const LightItem& item : items) all.add(item);
   all.set_axis();
   for (const LightItem& item : items) all.widen(item);
+  all.set_spread();
   return all.bound;
 }
 
@@ -82,6 +92,7 @@ std::size_t split_lights(std::span<LightItem> items) {
     for (const LightItem& item : items) bins[bin_of(item, axis)].add(item);
     for (Bin& bin : bins) bin.set_axis();
     for (const LightItem& item : items) bins[bin_of(item, axis)].widen(item);
+    for (Bin& bin : bins) bin.set_spread();
     std::array<float, kBins> below{};
     LightBound sum;
     for (int k = 0; k + 1 < kBins; ++k) {

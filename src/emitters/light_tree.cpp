@@ -1,5 +1,6 @@
 #include "emitters/light_tree.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "emitters/light_split.h"
@@ -32,18 +33,23 @@ LightTree::LightTree(std::span<const LightBound> lights) : leaf_of_(lights.size(
 std::uint32_t LightTree::build(std::span<LightItem> items, std::uint32_t parent) {
   const auto at = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back().parent = parent;
-  // The largest part is divided until there are as many as a node can hold.
+  // The largest part is divided until there are as many as a node can hold, or all of them fit into one node
+  // each; of those, the ones that the free slots have room for are leaves of this node.
   std::span<LightItem> parts[kWidth] = {items};
   int count = 1;
   while (count < kWidth) {
-    int largest = 0;
-    for (int k = 1; k < count; ++k)
-      if (parts[k].size() > parts[largest].size()) largest = k;
-    const auto part = parts[largest];
-    if (part.size() < 2) break;
-    const std::size_t middle = split_lights(part);
-    parts[largest] = part.first(middle);
-    parts[count++] = part.subspan(middle);
+    auto& largest =
+        *std::max_element(parts, parts + count, [](auto a, auto b) { return a.size() < b.size(); });
+    if (largest.size() <= kWidth) break;
+    const std::size_t middle = split_lights(largest);
+    parts[count++] = largest.subspan(middle);
+    largest = largest.first(middle);
+  }
+  for (int k = 0; k < count; ++k) {
+    const auto part = parts[k];
+    if (part.size() < 2 || count - 1 + part.size() > kWidth) continue;
+    parts[k] = part.first(1);
+    for (std::size_t m = 1; m < part.size(); ++m) parts[count++] = part.subspan(m, 1);
   }
   for (int k = 0; k < count; ++k) {
     nodes_[at].extents.set(k, join_all(parts[k]));
