@@ -143,6 +143,21 @@ TEST(LightSampler, TheSumOverEveryKindOfEmitter) {
   expect_no_light_lost(every_emitter(), 1000, 4000, "every kind");
 }
 
+TEST(LightSampler, LightMattersOnTheSideOfTheEyeOrOnBothIfASurfaceTransmits) {
+  scatter::Closure closure;
+  closure.frame = Frame::from_normal({0, 0, 1});
+  scatter::Lobe lobe;
+  lobe.color = Rgb(0.5f);
+  closure.add(lobe);
+  const Vec3f above = normalize(Vec3f{1, 0, 1}), below = normalize(Vec3f{1, 0, -1});
+  EXPECT_EQ(lit_point({}, closure, above).normal, (Vec3f{0, 0, 1}));
+  EXPECT_EQ(lit_point({}, closure, below).normal, (Vec3f{0, 0, -1}));
+  EXPECT_FALSE(lit_point({}, closure, above).both_sides);
+  lobe.kind = scatter::LobeKind::microfacet_transmit;
+  closure.add(lobe);
+  EXPECT_TRUE(lit_point({}, closure, above).both_sides);
+}
+
 TEST(LightSampler, NearAndFarLightsBothGetAQuarter) {
   // Whatever the powers, which for a sky are measured over the disc of the whole scene.
   const world::World world = every_emitter();
