@@ -16,7 +16,11 @@ sanitized() {
 }
 
 step "Formatting"
-git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format --dry-run --Werror
+if clang-format --version | grep -q 'version 14\.'; then
+  git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format --dry-run --Werror
+else
+  echo "not checked: the files follow clang-format 14 (Debian 12's), and $(clang-format --version) would change some lines"
+fi
 step "Layers"
 python3 cmake/check_layers.py
 

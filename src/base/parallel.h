@@ -19,7 +19,7 @@ int current_threads();
 
 // Sum over the pieces of piece(begin, end), added in the order of the pieces.
 template <typename T, typename Piece>
-T parallel_sum(std::size_t n, std::size_t grain, T zero, Piece&& piece) {
+T parallel_sum(std::size_t n, std::size_t grain, const T& zero, Piece&& piece) {
   const std::size_t pieces = (n + grain - 1) / grain;
   std::vector<T> partial(pieces, zero);
   parallel_for(n, grain, [&](std::size_t b, std::size_t e) { partial[b / grain] = piece(b, e); });

@@ -69,17 +69,16 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
     rays.mask[k] = 0xffffffffu;
     rays.id[k] = k;
     rays.flags[k] = 0;
-    // Bitwise, so that the loop becomes a few vector instructions.
-    const bool good = (std::abs(packet.ox[k]) <= kLargest) & (std::abs(packet.oy[k]) <= kLargest) &
-                      (std::abs(packet.oz[k]) <= kLargest) & (std::abs(packet.dx[k]) <= kLargest) &
-                      (std::abs(packet.dy[k]) <= kLargest) & (std::abs(packet.dz[k]) <= kLargest) &
-                      (rays.tfar[k] >= kShadowEpsilon);
+    // Integers and bitwise, so that the loop becomes a few vector instructions.
+    const int good = int{std::abs(packet.ox[k]) <= kLargest} & int{std::abs(packet.oy[k]) <= kLargest} &
+                     int{std::abs(packet.oz[k]) <= kLargest} & int{std::abs(packet.dx[k]) <= kLargest} &
+                     int{std::abs(packet.dy[k]) <= kLargest} & int{std::abs(packet.dz[k]) <= kLargest} &
+                     int{rays.tfar[k] >= kShadowEpsilon};
     valid[k] = good ? packet.valid[k] : 0;
   }
   embree::occluded16(valid, scene, context.embree, rays, context.scene->parts.empty());
   unsigned visible = 0;
-  for (unsigned k = 0; k < 16; ++k)
-    visible |= static_cast<unsigned>((valid[k] != 0) & (rays.tfar[k] >= 0)) << k;
+  for (unsigned k = 0; k < 16; ++k) visible |= (unsigned{valid[k] != 0} & unsigned{rays.tfar[k] >= 0}) << k;
   return static_cast<std::uint16_t>(visible);
 }
 
