@@ -11,6 +11,7 @@
 #include "film/metrics.h"
 #include "methods/timed_choices.h"
 #include "render/aovs.h"
+#include "render/error_advice.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
 #include "render/report.h"
@@ -209,6 +210,12 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     methods::Estimate estimate = method->run(*setup.matrix, run);
     setup.seconds["method"] = method_timer.seconds();
     result.interrupted = estimate.interrupted;
+    const bool own_lights = info.lights_wanted && info.lights_wanted(settings.method_settings) > 0;
+    const rendering::ErrorAsked asked{settings.error, count, own_lights ? "--set lights=" : "--lights"};
+    if (const std::string advice = rendering::error_advice(asked, estimate.trace.numbers); !advice.empty()) {
+      sinks.warn(advice);
+      estimate.trace.notes["error.advice"] = advice;
+    }
     if (!result.interrupted) choices.expect_end();
 
     const Timer film_timer;

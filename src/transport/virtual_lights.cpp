@@ -94,20 +94,31 @@ void trace_particles(const world::World& world, const EmitterChoice& choice, con
   if (sinks.cancelled()) throw Cancelled();
 }
 
-// The area that a surface light stands for: a disc that holds ten lights has a tenth of it for each.
+// The area that a surface light stands for: a disc that holds ten lights has a tenth of it for each. Each
+// half is measured by itself, for clamping would otherwise couple the two; a light of it stands for as much
+// less as there are more lights in both.
 void measure_areas(VirtualLights& lights, float scene_radius) {
-  std::vector<std::size_t> which;
-  std::vector<Vec3f> points;
+  std::vector<std::size_t> which[2];
+  std::vector<Vec3f> points[2];
   for (std::size_t j = 0; j < lights.size(); ++j) {
     if (lights.kind[j] != LightKind::surface) continue;
-    which.push_back(j);
-    points.push_back(lights.position[j]);
+    const std::size_t h = lights.half[j] == 2 ? 1 : 0;
+    which[h].push_back(j);
+    points[h].push_back(lights.position[j]);
   }
-  if (which.size() == 1) lights.area[which[0]] = kPi * square(scene_radius);
-  if (which.size() < 2) return;
-  const auto k = static_cast<float>(std::min<std::size_t>(kNeighbour, which.size() - 1));
-  const std::vector<float> distance2 = neighbour_distance_squared(points, kNeighbour);
-  for (std::size_t i = 0; i < which.size(); ++i) lights.area[which[i]] = kPi * distance2[i] / k;
+  const auto all = static_cast<float>(which[0].size() + which[1].size());
+  for (std::size_t h = 0; h < 2; ++h) {
+    const std::size_t n = which[h].size();
+    if (n == 0) continue;
+    const float share = static_cast<float>(n) / all;
+    if (n == 1) {
+      lights.area[which[h][0]] = kPi * square(scene_radius) * share;
+      continue;
+    }
+    const auto k = static_cast<float>(std::min<std::size_t>(kNeighbour, n - 1));
+    const std::vector<float> distance2 = neighbour_distance_squared(points[h], kNeighbour);
+    for (std::size_t i = 0; i < n; ++i) lights.area[which[h][i]] = kPi * distance2[i] / k * share;
+  }
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ constexpr std::size_t kMostColumnsUnasked = 3000;
 // error: aimed a little lower, it is met more often than not.
 constexpr double kAimBelow = 0.9;
 // Held out before the first pass where an error is asked for.
-constexpr std::size_t kHeldOutForTarget = 48;
+constexpr std::size_t kHeldOutForTarget = 64;
 // Held-out rows measure one draw of a random error on few rows: only clearly more than the target is a
 // disagreement.
 constexpr double kDisagreement = 1.5;

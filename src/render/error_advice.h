@@ -1,0 +1,25 @@
+// What to do where an error was asked for that more columns cannot reach.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+namespace lumirank::rendering {
+
+struct ErrorAsked {
+  double target = 0;                // --error
+  std::size_t lights = 0;           // asked for
+  std::string option = "--lights";  // how to ask for more
+};
+
+// How many lights should bring the error under the target if half of it is left to sampling: the lights' part
+// falls like 1/√N, and so does clamping, which darkens strips along edges as wide as the lights are apart.
+// Two significant digits, rounded up.
+double lights_for_error(const ErrorAsked& asked, double lights_part, double clamping_part);
+
+// A warning that names the parts and the remedy. Empty if the target was met, or if the error is not known.
+// `numbers`: of the method's trace.
+std::string error_advice(const ErrorAsked& asked, const std::map<std::string, double>& numbers);
+
+}  // namespace lumirank::rendering
