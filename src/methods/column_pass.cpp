@@ -11,6 +11,12 @@ namespace lumirank::methods {
 namespace {
 
 constexpr std::size_t kBlock = 32;
+// Against a deadline: a 32nd of the list, and less before anything is timed. By these numbers alone, not by
+// the clock, so that a replay has the same blocks.
+std::size_t timed_block(std::size_t done, std::size_t size) {
+  constexpr std::size_t kLeast = 8;
+  return std::min(std::clamp(size / 32, kLeast, kBlock), std::max(kLeast, done));
+}
 // A single-precision sum of very many small terms stops growing; long lists are summed in two levels.
 constexpr std::size_t kTwoLevels = 8192, kLevel = 1024;
 constexpr std::size_t kGrain = 16384;
@@ -40,7 +46,9 @@ PassResult render_columns(const matrix::LightingMatrix& matrix, std::span<const 
   while (result.done < columns.size()) {
     const double now = control.timer.seconds();
     const double per_column = result.done > 0 ? (now - start) / static_cast<double>(result.done) : 0;
-    const std::size_t count = std::min(kBlock, columns.size() - result.done);
+    const std::size_t count =
+        std::min(control.deadline > 0 ? timed_block(result.done, columns.size()) : kBlock,
+                 columns.size() - result.done);
     result.cancelled = control.options.sinks.cancelled();
     if (earlier)
       result.out_of_time = static_cast<std::int64_t>(result.done) >= *earlier;

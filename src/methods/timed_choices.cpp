@@ -21,7 +21,8 @@ TimedChoices::TimedChoices(Lists earlier) : repeats_(true), earlier_(std::move(e
 std::optional<std::int64_t> TimedChoices::earlier(const std::string& what, std::int64_t most) {
   if (!repeats_) return std::nullopt;
   const auto found = earlier_.find(what);
-  if (found == earlier_.end() || found->second.empty()) does_not_fit("there are too few of '" + what + "'");
+  if (found == earlier_.end()) does_not_fit("they lack '" + what + "'");
+  if (found->second.empty()) does_not_fit("there are too few of '" + what + "'");
   const std::int64_t value = found->second.back();
   found->second.pop_back();
   if (value < 0 || value > most)

@@ -97,6 +97,15 @@ FilmParts wanted_parts(const RenderSettings& settings) {
   return {.emission = settings.only == "all", .matrix = true, .traced = settings.only != "indirect"};
 }
 
+int passes_over_columns(const RenderSettings& settings) {
+  bool bounces = false, lights = false;
+  for (const std::string& aov : settings.aovs) {
+    bounces = bounces || aov == "direct" || aov == "indirect";
+    lights = lights || aov.starts_with("light:");
+  }
+  return 1 + (bounces ? 1 : 0) + (lights ? 1 : 0);
+}
+
 void check_aovs(const world::World& world, const RenderSettings& settings) {
   const auto& emitters = world.emitters();
   for (const std::string& aov : settings.aovs) {

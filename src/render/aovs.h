@@ -12,6 +12,9 @@ FilmParts wanted_parts(const RenderSettings& settings);
 // Throws InputError for a light that the world does not have: before the render, not after it.
 void check_aovs(const world::World& world, const RenderSettings& settings);
 
+// How often columns are gone over at most: by the method, and again for the layers that part its light.
+int passes_over_columns(const RenderSettings& settings);
+
 // Appends the planes that settings.aovs names. Throws InputError where a method's estimate cannot be split by
 // light. Cancelled, it leaves out those that are still to be computed from columns, warns, and returns false.
 bool add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settings,

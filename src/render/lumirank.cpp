@@ -2,6 +2,7 @@
 #include "lumirank/lumirank.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -86,6 +87,17 @@ film::DisplayOptions to_display_options(const DisplaySettings& display) {
   else if (display.tonemap != "none")
     throw InputError("'" + display.tonemap + "' is not a tone map", "choose one of none|reinhard|agx");
   return options;
+}
+
+int rest_paths(const RenderSettings& settings) { return std::max(16, settings.spp); }
+
+// Seconds of a budget that are kept for the film: a twentieth, or less where that would be wasted.
+double film_reserve(const Setup& setup, double budget) {
+  const double most = 0.05 * budget;
+  if (most < 0.2) return most;
+  const Timer timer;
+  rendering::develop(setup, setup.receivers.emission);
+  return std::min(most, 0.05 + 2 * timer.seconds());
 }
 
 nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
@@ -190,6 +202,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     methods::TimedChoices choices =
         settings.choices.empty() ? methods::TimedChoices() : methods::TimedChoices(settings.choices);
     if (settings.time > 0) {
+      choices.expect("method." + info.name, 1);
       choices.expect("receivers", static_cast<std::int64_t>(setup.matrix->rows()));
       choices.expect("virtual_lights", static_cast<std::int64_t>(setup.matrix->columns()));
     }
@@ -197,8 +210,25 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     run.choices = &choices;
     run.seed = settings.method_seed ? settings.method_seed : settings.seed;
     run.target_error = settings.error;
-    if (settings.time > 0)
-      run.time_seconds = std::max(1e-3, settings.time - timer.seconds() - 0.05 * settings.time);
+    std::optional<rendering::ReferenceResult> rest;
+    double rest_seconds = 0;
+    if (settings.time > 0) {
+      if (settings.rest == "trace") {  // before the method, which fills the budget
+        const Timer rest_timer;
+        const auto earlier = choices.earlier("rest_paths", rest_paths(settings));
+        ReferenceSettings how;
+        how.paths = "rest";
+        how.spp = earlier ? static_cast<int>(*earlier) : rest_paths(settings);
+        if (!earlier) how.time = std::max(1e-3, 0.4 * (settings.time - timer.seconds()));
+        rest = rendering::path_trace(world, setup.view, settings, how, sinks);
+        if (rest->interrupted) throw Cancelled();
+        choices.record("rest_paths", rest->spp);
+        rest_seconds = rest_timer.seconds();
+      }
+      const double after = film_reserve(setup, settings.time);
+      run.time_seconds = std::max(
+          1e-3, (settings.time - timer.seconds() - after) / rendering::passes_over_columns(settings));
+    }
     run.sinks = sinks;
     if (on_preview)
       run.on_estimate = [&](std::span<const Rgb> sums) {
@@ -222,19 +252,20 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     std::vector<Rgb> values =
         rendering::sample_values(setup, estimate.sums, rendering::wanted_parts(settings));
     film::Image image = rendering::develop(setup, values);
-    if (settings.rest == "trace" && !result.interrupted) {
-      ReferenceSettings rest;
-      rest.paths = "rest";
-      rest.spp = std::max(16, settings.spp);
+    if (settings.rest == "trace" && !rest && !result.interrupted) {
+      ReferenceSettings how;
+      how.paths = "rest";
+      how.spp = rest_paths(settings);
       try {
-        const auto traced = rendering::path_trace(world, setup.view, settings, rest, sinks);
-        // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
-        for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += traced.image.pixels[p];
-        result.interrupted = traced.interrupted;
+        rest = rendering::path_trace(world, setup.view, settings, how, sinks);
+        result.interrupted = rest->interrupted;
       } catch (const Cancelled&) {  // what the matrix gave is kept
         result.interrupted = true;
       }
     }
+    // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
+    if (rest)
+      for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += rest->image.pixels[p];
     result.picture = rendering::to_picture(image);
     // The report counts what the method looked at; layers look at the chosen columns once more.
     auto& counters = setup.matrix->counters();
@@ -242,7 +273,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
                rays = counters.rays_shadow.load();
     if (!rendering::add_aovs(result.picture, setup, settings, estimate, sinks)) result.interrupted = true;
     counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
-    setup.seconds["film"] = film_timer.seconds();
+    setup.seconds["film"] = film_timer.seconds() + rest_seconds;
     // An interrupted run cannot be repeated: where it was stopped was no choice of its own.
     if (estimate.interrupted) choices = {};
     result.report_json =

@@ -126,10 +126,21 @@ TEST_F(Render, ReplayRepeatsWhatTheClockDecided) {
     }
     EXPECT_EQ(read_json(folder_ / "second.json")["choices"], choices) << "a replay can be replayed";
   }
+  // The rest of the paths and the layers share the budget.
+  const std::string file = folder_ / "first.exr";
+  EXPECT_SUCCESS(lumirank({"render", scene_, "-o", file, "--lights", "20000", "--size", "60x50", "--time",
+                           "0.5", "--rest", "trace", "--aov", "direct,light:*", "--report", report}));
+  EXPECT_TRUE(read_json(report)["choices"].contains("rest_paths"));
+  EXPECT_SUCCESS(lumirank({"render", scene_, "-o", again, "--replay", report, "--threads", "2"}));
+  EXPECT_EQ(read_pixels(again), read_pixels(file));
+
+  EXPECT_SUCCESS(lumirank({"render", scene_, "-o", file, "--method", "brute-force", "--lights", "20000",
+                           "--size", "60x50", "--time", "0.3", "--report", report}));
   const Arguments replay = {"render", scene_, "-o", folder_ / "no.exr", "--replay", report};
   expect_refused(lumirank(replay + Arguments{"--lights", "300"}), "do not fit: 'virtual_lights' was");
   expect_refused(lumirank(replay + Arguments{"--size", "10x10"}), "do not fit: 'receivers' was");
-  expect_refused(lumirank(replay + Arguments{"--method", "power-sampling"}), "do not fit");
+  expect_refused(lumirank(replay + Arguments{"--method", "power-sampling"}),
+                 "do not fit: they lack 'method.power-sampling'");
   EXPECT_SUCCESS(lumirank(replay + Arguments{"--lights", "300", "--time", "1"}));
 
   auto json = read_json(report);
