@@ -37,7 +37,7 @@ class TimedChoices;
 struct RunOptions {
   std::uint64_t seed = 1;
   double time_seconds = 0;          // > 0: stop when this much time has passed since the call
-  double target_error = 0;          // > 0: stop when the estimated relative error falls below
+  double target_error = 0;          // > 0: stop when the whole error (known_rows.h) falls below
   TimedChoices* choices = nullptr;  // with a budget: where the clock's choices are kept, see timed_choices.h
   Sinks sinks;
   // Called with a complete estimate of all row sums whenever a better one exists (progressive display). May
