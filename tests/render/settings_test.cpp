@@ -63,7 +63,8 @@ TEST(Settings, WrongValuesAreErrors) {
       {"aov", "beauty"}, {"max-depth", "-2"}, {"direct", "maybe"}, {"backend", "abacus"}};
   for (const auto& [key, value] : wrong) {
     RenderSettings settings;
-    EXPECT_NE(message_of([&] { set_field(settings, key, value); }), "no error") << key << "=" << value;
+    EXPECT_NE(message_of([&, key = key, value = value] { set_field(settings, key, value); }), "no error")
+        << key << "=" << value;
   }
 }
 

@@ -151,7 +151,7 @@ TEST(BadMeshes, AnyCutAndAnyChangedByteIsReadOrRefused) {
       {"b.serialized", serialized_file({mesh}, 3)}};
   for (const auto& [name, bytes] : good) {
     ASSERT_EQ(parse(name, bytes).triangle_count(), 1u) << name;
-    auto attempt = [&](const std::string& changed) {
+    auto attempt = [&, name = name](const std::string& changed) {
       try {
         const MeshData m = parse(name, changed);
         for (const std::uint32_t i : m.indices) ASSERT_LT(i, m.positions.size());
