@@ -57,6 +57,9 @@ enum class Part { value, unoccluded, visibility };
 struct ScaledColumn {
   Index column;
   Rgb scale{1};
+  // If > 0, a matrix that knows how large a part of the surroundings a column stands for keeps its scaled
+  // entries from showing more than this share of what fills the whole hemisphere; others ignore it.
+  float most_shown = 0;
 };
 
 class LightingMatrix {

@@ -50,6 +50,13 @@ std::size_t items_in_tile(const TilePlan& plan, std::size_t tile) {
   return n;
 }
 
+// What a_j·G·(π f_x)(π f_y) of a column may be where it stands for `scale` times its area. Without clamping
+// nothing is bounded, so that who switches it off gets an unbiased picture.
+float clamp_of(const matrix::ScaledColumn& s, float clamp) {
+  if (!(s.most_shown > 0) || clamp == kInfinity) return clamp;
+  return std::min(clamp, s.most_shown / std::max(max_component(s.scale), 1e-30f));
+}
+
 void require(bool holds, const char* what) {
   if (!holds) throw InternalError(std::string("transport::SceneMatrix: ") + what);
 }
@@ -158,7 +165,7 @@ void SceneMatrix::column(Index j, std::span<Rgb> out, Part part) const {
   const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
     Impl::Lease block(*impl_);
     block->set_row_tile(tile);
-    block->set_column(impl_->columns.plan.slot[j]);
+    block->set_column(impl_->columns.plan.slot[j], impl_->context.clamp);
     const Tally cost = finish(*block, part, items_in_tile(plan, tile));
     const std::uint32_t* items = plan.item.data() + block->first_slot();
     copy_out(*block, part, {items, 16 * block->groups()}, [&](std::uint32_t to) -> Rgb& { return out[to]; });
@@ -184,7 +191,7 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
       const std::size_t items = items_in_tile(plan, tile);
       for (const matrix::ScaledColumn& s : scaled) {
         if (sinks.cancelled()) throw Cancelled();
-        block->set_column(impl_->columns.plan.slot[s.column]);
+        block->set_column(impl_->columns.plan.slot[s.column], clamp_of(s, impl_->context.clamp));
         block->trace();
         cost.evaluated += items;
         cost.culled += items - block->survivors();

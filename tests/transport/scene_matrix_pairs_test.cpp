@@ -216,6 +216,23 @@ TEST_F(SceneMatrixPairs, ClampedEntriesKeepTheBoundAndTheirColour) {
   EXPECT_GT(clamped, 100u);
 }
 
+// A column that stands for `scale` times its area is one with a clamp that much lower; without clamping the
+// bound is off.
+TEST_F(SceneMatrixPairs, RepresentativesAreBoundedAsTheAreaTheyStandFor) {
+  const float clamp = 0.03f, scale = 64, most_shown = 0.5f;
+  const auto sums_of = [&](const SceneMatrix& matrix, float bound) {
+    std::vector<Rgb> sums(kRows);
+    std::vector<matrix::ScaledColumn> columns;
+    for (Index j = 0; j < kColumns; ++j) columns.push_back({j, Rgb(scale), bound});
+    matrix.accumulate(columns, sums, {});
+    return sums;
+  };
+  EXPECT_EQ(sums_of(make(clamp), most_shown), sums_of(make(most_shown / scale), 0));
+  EXPECT_NE(sums_of(make(clamp), most_shown), sums_of(make(clamp), 0));
+  EXPECT_EQ(sums_of(make(clamp), 10 * scale), sums_of(make(clamp), 0));
+  EXPECT_EQ(sums_of(make(0), most_shown), sums_of(make(0), 0));
+}
+
 TEST_F(SceneMatrixPairs, ClampedFractionIsTheShareOfEnergyTakenAway) {
   const float limit = 1e-3f;
   const std::vector<Rgb> free = all(make(0), Part::value), held = all(make(limit), Part::value);

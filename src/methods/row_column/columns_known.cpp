@@ -135,7 +135,8 @@ std::size_t ColumnsKnown::zero_draws(std::size_t columns) const {
 }
 
 Representatives ColumnsKnown::choose(const linalg::Splitter& clusters, std::uint64_t round) const {
-  const RepresentativeSettings choice{settings_.colour, seed_, round};
+  const RepresentativeSettings choice{settings_.colour, seed_, round,
+                                      static_cast<float>(settings_.most_shown)};
   Representatives chosen =
       choose_representatives(clusters.partition(), exploration_.sketch(), weights_, choice);
   add_zero_columns(zero_, matrix_.column_features().power, zero_draws(clusters.clusters()), choice, chosen);

@@ -85,9 +85,10 @@ Representatives choose_representatives(const linalg::Partition& clusters, const 
       }
       r.energy[k] = energy;
       const auto scalar = static_cast<float>(s / static_cast<double>(weights[chosen]));
-      r.columns[k] = {chosen, settings.colour == ColourMode::scalar
-                                  ? Rgb(scalar)
-                                  : colour_gain(sketch, members, chosen) * scalar};
+      r.columns[k] = {
+          chosen,
+          settings.colour == ColourMode::scalar ? Rgb(scalar) : colour_gain(sketch, members, chosen) * scalar,
+          settings.most_shown};
     }
   });
   std::vector<std::uint32_t> order(r.columns.size());
@@ -101,8 +102,9 @@ Representatives choose_representatives(const linalg::Partition& clusters, const 
 
 void add_zero_columns(std::span<const matrix::Index> zero, std::span<const float> power, std::size_t count,
                       const RepresentativeSettings& settings, Representatives& representatives) {
-  const auto drawn = draw_columns(
+  auto drawn = draw_columns(
       zero, power, {std::min(count, zero.size()), true, settings.seed, Stage::zero_columns, settings.round});
+  for (matrix::ScaledColumn& c : drawn) c.most_shown = settings.most_shown;
   representatives.columns.insert(representatives.columns.end(), drawn.begin(), drawn.end());
   representatives.energy.resize(representatives.columns.size(), 0.0);
   representatives.zero_columns += drawn.size();

@@ -22,6 +22,7 @@ struct RepresentativeSettings {
   ColourMode colour = ColourMode::averaged;
   std::uint64_t seed = 1;
   std::uint64_t round = 0;  // rounds are independent of each other
+  float most_shown = 0;     // see matrix::ScaledColumn
 };
 
 // How likely a column is to stand for its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both

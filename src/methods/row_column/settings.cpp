@@ -41,7 +41,13 @@ const Fields<RowColumnSettings>& row_column_fields() {
            "its effect on the "
            "sampled rows; 0: none, as in the paper. Guards against lights that matter only "
            "between sampled rows. Where rows or columns are automatic, held-out rows may choose another."},
-          &S::power_share, 0, 1)};
+          &S::power_share, 0, 1),
+      number_field<S>(
+          {"most-shown", "of the hemisphere",
+           "A representative stands for its cluster's lights and so for their area; near it, it may not "
+           "show more than this share of what would fill the receiver's view. Keeps specks away, and takes "
+           "a little light from corners that more columns give back; 0: no bound, unbiased."},
+          &S::most_shown, 0, 1e9)};
   return fields;
 }
 

@@ -19,7 +19,8 @@ struct RowColumnSettings {
   ColourMode colour = ColourMode::averaged;
   ZeroColumns zero_columns = ZeroColumns::sample;
   double zero_share = 0.02;
-  double power_share = 0;
+  double power_share = 0.3;
+  double most_shown = 0.5;
 };
 
 const Fields<RowColumnSettings>& row_column_fields();

@@ -147,7 +147,7 @@ const SpotShape* PairBlock::spot_of(std::uint32_t light) const {
 
 PairExtras PairBlock::extras(std::uint16_t row_kind, std::uint16_t column_kind) const {
   PairExtras extras;
-  extras.clamp = context_.clamp;
+  extras.clamp = clamp_;
   if (row_kind >= kRowScatter)
     extras.row_transmits =
         (*context_.row_scatter.forms)[static_cast<std::uint16_t>(row_kind - kRowScatter)].transmits;
@@ -190,7 +190,8 @@ void PairBlock::set_column_tile(std::size_t tile) {
   }
 }
 
-void PairBlock::set_column(std::uint32_t column_slot) {
+void PairBlock::set_column(std::uint32_t column_slot, float clamp) {
+  clamp_ = clamp;
   fixed_slot_ = column_slot;
   fixed_kind_ = context_.columns->plan.kind_of(column_slot);
   context_.columns->splat(column_slot, fixed_column_);
@@ -207,6 +208,7 @@ void PairBlock::set_column(std::uint32_t column_slot) {
 }
 
 void PairBlock::set_row(std::uint32_t row_slot) {
+  clamp_ = context_.clamp;
   fixed_slot_ = row_slot;
   fixed_kind_ = context_.rows->plan.kind_of(row_slot);
   context_.rows->splat(row_slot, fixed_row_);
@@ -220,6 +222,7 @@ void PairBlock::set_row(std::uint32_t row_slot) {
 
 void PairBlock::set_list(std::span<const std::uint32_t> row_slots,
                          std::span<const std::uint32_t> column_slots, std::span<const std::uint16_t> used) {
+  clamp_ = context_.clamp;
   shape_ = BlockShape::list, row_list_ = row_slots, column_list_ = column_slots, first_slot_ = 0;
   resize(used.size());
   for (std::size_t g = 0; g < groups_; ++g)

@@ -57,8 +57,9 @@ class PairBlock {
 
   void set_row_tile(std::size_t tile);
   void set_column_tile(std::size_t tile);
-  void set_column(std::uint32_t column_slot);  // after set_row_tile
-  void set_row(std::uint32_t row_slot);        // after set_column_tile
+  // After set_row_tile. clamp: X of this column; lower than the context's where it stands for others as well.
+  void set_column(std::uint32_t column_slot, float clamp);
+  void set_row(std::uint32_t row_slot);  // after set_column_tile
   // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbour; `used`: a
   // bit per lane that is not padding, by group. The spans must last until E has been read.
   void set_list(std::span<const std::uint32_t> row_slots, std::span<const std::uint32_t> column_slots,
@@ -115,6 +116,7 @@ class PairBlock {
   ColumnGroup fixed_column_;
   std::array<const SpotShape*, 16> fixed_spots_;
   std::uint16_t fixed_kind_ = 0;
+  float clamp_ = kInfinity;  // X of the pairs at hand
   ScatterArena tile_arena_, partner_arena_;
   std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
   std::vector<const SpotShape*> tile_spots_;
