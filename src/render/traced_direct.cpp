@@ -49,12 +49,13 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
   const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
   const emitters::LitPoint at = lit_point(position, closure, wo);
+  const std::uint64_t key = receivers.key(i);
   const int n = settings.samples;
   const float inv_n = 1.0f / static_cast<float>(n);
   Rgb sum{0};
   for (int k = 0; k < n; ++k) {
     // One of the stream's two sets: even numbers only.
-    SampleStream random(settings.seed, Stage::traced_direct, i, 2 * static_cast<std::uint64_t>(k));
+    SampleStream random(settings.seed, Stage::traced_direct, key, 2 * static_cast<std::uint64_t>(k));
     const auto [u_light, u_lobe] = random.next_fine();
     const auto s = lights.sample(at, u_light, random.next_2d());
     if (s.pdf > 0) {
@@ -64,7 +65,7 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
             s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::smooth);
         const Rgb visible =
             visible_fraction(world, position, ng, s.direct.direction, s.direct.distance,
-                             hash_ids(settings.seed, Stage::opacity, i, static_cast<std::uint64_t>(k)));
+                             hash_ids(settings.seed, Stage::opacity, key, static_cast<std::uint64_t>(k)));
         sum += f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf));
       }
     }

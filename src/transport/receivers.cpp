@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "base/error.h"
@@ -198,6 +199,18 @@ scatter::Closure Receivers::closure_at(std::size_t i) const {
   lobe.color = albedo[i];
   c.add(lobe);
   return c;
+}
+
+std::uint32_t Receivers::key(std::size_t i) const {
+  // A sample's place on the film is its own; the receiver's place tells apart those of one sample.
+  const auto both = [](float a, float b) {
+    return static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(a)) << 32 |
+           std::bit_cast<std::uint32_t>(b);
+  };
+  const Vec2f f = film[sample[i]];
+  const Vec3f p = position[i];
+  return static_cast<std::uint32_t>(mix64(mix64(mix64(both(f.x, f.y)) ^ both(p.x, p.y)) ^ both(p.z, 0)) >>
+                                    32);
 }
 
 std::size_t Receivers::memory_bytes() const {

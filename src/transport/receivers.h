@@ -54,6 +54,9 @@ struct Receivers {
   std::vector<float> first_distance;
   int width = 0, height = 0;  // of the cropped film
 
+  // Whose random numbers a receiver uses: the same in every window of the film that shows it.
+  std::uint32_t key(std::size_t i) const;
+
   std::size_t size() const { return position.size(); }
   std::size_t samples() const { return film.size(); }
   std::size_t memory_bytes() const;

@@ -71,8 +71,8 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
       settings(settings_),
       row_forms(receivers_.closures),
       column_forms(lights_.closures),
-      rows(make_rows(receivers_, row_forms, settings_)),
-      columns(make_columns(lights_, column_forms)) {
+      rows(make_rows(receivers_, row_forms, settings_, has_cutouts(world.rays()))),
+      columns(make_columns(lights_, column_forms, has_cutouts(world.rays()))) {
   context.rows = &rows;
   context.columns = &columns;
   context.row_scatter = {

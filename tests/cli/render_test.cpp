@@ -202,16 +202,21 @@ TEST_F(Render, ACropIsAWindowOfTheWhole) {
   // Brute force has the same columns, and the same sums of them, also where filters reach beyond the window.
   const std::string ball =
       "<shape type=\"sphere\"><point name=\"center\" x=\"-0.7\" y=\"-1\" z=\"0\"/><float name=\"radius\" "
-      "value=\"0.8\"/><bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.1\"/></bsdf></shape>";
+      "value=\"0.8\"/><bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.1\"/></bsdf></shape>"
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.6\"/><translate "
+      "z=\"0.5\"/></transform>"
+      "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.5\"/><bsdf type=\"diffuse\"/></bsdf></shape>";
   for (const char* filter : {"box", "tent", "gaussian", "lanczos"}) {
     std::string room = small_room(ball);
     const std::string box = "<rfilter type=\"box\"/>";
     ASSERT_NE(room.find(box), std::string::npos);
     room.replace(room.find(box), box.size(), "<rfilter type=\"" + std::string(filter) + "\"/>");
     scene_ = write_scene(folder_, room);
-    const Arguments all = kBruteForce + Arguments{"--aov", "direct"};
-    const Pixels full = render(all), part = render(all + Arguments{"--crop", "6,2,5,4"});
-    for (const auto& [channel, values] : full.channels) expect_window(full, part, channel);
+    for (const char* direct : {"matrix", "auto"}) {
+      const Arguments all = {"--method", "brute-force", "--aov", "direct", "--direct", direct};
+      const Pixels full = render(all), part = render(all + Arguments{"--crop", "6,2,5,4"});
+      for (const auto& [channel, values] : full.channels) expect_window(full, part, channel);
+    }
   }
 
   const std::string file = folder_ / "reference.exr";

@@ -34,8 +34,8 @@ bool answers(Vec3f n, Vec3f ng, Vec3f wo) { return dot(n, wo) * dot(ng, wo) > 0;
 
 }  // namespace
 
-RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
-                   const SceneMatrixSettings& settings) {
+RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const SceneMatrixSettings& settings,
+                   bool with_keys) {
   RowStore store;
   const std::size_t count = receivers.size();
   std::vector<std::uint16_t> kinds(count);
@@ -50,10 +50,12 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
   store.plan = TilePlan::build(kinds, kRowTile);
   store.groups.assign(store.plan.groups(), empty_group<RowGroup>());
   if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
+  if (with_keys) store.key.assign(store.plan.item.size(), 0);
 
   parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t slot = store.plan.slot[i];
+      if (with_keys) store.key[slot] = receivers.key(i);
       float* to = store.at(slot);
       const Vec3f wo = receivers.wo[i];
       const float side = dot(receivers.normal[i], wo) < 0 ? -1.0f : 1.0f;
@@ -82,7 +84,7 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
   return store;
 }
 
-ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms) {
+ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms, bool with_keys) {
   ColumnStore store;
   const std::size_t count = lights.size();
   std::vector<std::uint16_t> kinds(count);
@@ -112,10 +114,12 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms)
   store.plan = TilePlan::build(kinds, kColumnTile);
   store.groups.assign(store.plan.groups(), empty_group<ColumnGroup>());
   if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
+  if (with_keys) store.key.assign(store.plan.item.size(), 0);
 
   parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
       const std::uint32_t slot = store.plan.slot[j];
+      if (with_keys) store.key[slot] = static_cast<std::uint32_t>(j);
       float* to = store.at(slot);
       const LightKind kind = lights.kind[j];
       const Vec3f p = lights.position[j];

@@ -59,6 +59,8 @@ struct GroupStore {
   std::vector<std::uint8_t>
       two_sided;  // slot: transmits, so the ray's side depends on its direction; empty: none
 
+  std::vector<std::uint32_t> key;  // slot: what decides cut-outs; empty where there are none
+
   // The first field of a slot; field k of the same slot is 16·k floats on.
   const float* at(std::uint32_t slot) const {
     return reinterpret_cast<const float*>(groups.data() + (slot >> 4)) + (slot & 15);
@@ -81,17 +83,18 @@ struct GroupStore {
   }
   std::size_t memory_bytes() const {
     return groups.size() * sizeof(Group) + two_sided.size() +
-           (plan.item.size() + plan.slot.size() + plan.first_run.size()) * 4 + plan.kind.size() * 2 +
-           plan.runs.size() * sizeof(TilePlan::Run);
+           (key.size() + plan.item.size() + plan.slot.size() + plan.first_run.size()) * 4 +
+           plan.kind.size() * 2 + plan.runs.size() * sizeof(TilePlan::Run);
   }
 };
 
 using RowStore = GroupStore<RowGroup>;
 using ColumnStore = GroupStore<ColumnGroup>;
 
-RowStore make_rows(const Receivers& receivers, const ScatterForms& forms,
-                   const SceneMatrixSettings& settings);
-ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms);
+// with_keys: the scene has cut-outs.
+RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const SceneMatrixSettings& settings,
+                   bool with_keys);
+ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms, bool with_keys);
 
 inline Vec3f read3(const float* p) { return {p[0], p[16], p[32]}; }
 inline void write3(float* p, Vec3f v) { p[0] = v.x, p[16] = v.y, p[32] = v.z; }

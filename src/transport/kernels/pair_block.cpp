@@ -130,7 +130,7 @@ void PairBlock::resize(std::size_t groups) {
   for (auto* v : {&alive_, &visible_, &clamped_}) v->resize(std::max(v->size(), groups));
   places_.resize(std::max(places_.size(), 16 * groups + 16));
   for (auto* v : {&end_x_, &end_y_, &end_z_}) v->resize(places_.size());
-  end_item_.resize(places_.size());
+  end_key_.resize(places_.size());
   packet_bits_.resize(std::max(packet_bits_.size(), groups + 2));
 }
 
@@ -296,12 +296,12 @@ void PairBlock::collect(const Store& store, int field) {
     const float* v = store.at(slot) + field;
     append_lanes(alive, load(v), &end_x_[at]), append_lanes(alive, load(v + 16), &end_y_[at]);
     append_lanes(alive, load(v + 32), &end_z_[at]);
-    append_lanes(alive, &store.plan.item[slot], &end_item_[at]);
+    if (context_.has_cutouts) append_lanes(alive, &store.key[slot], &end_key_[at]);
     at += static_cast<std::size_t>(__builtin_popcount(alive));
   }
   if (at == 0) return;
   for (auto* v : {&end_x_, &end_y_, &end_z_}) std::fill_n(v->begin() + at, 15, (*v)[at - 1]);
-  std::fill_n(end_item_.begin() + at, 15, end_item_[at - 1]);
+  if (context_.has_cutouts) std::fill_n(end_key_.begin() + at, 15, end_key_[at - 1]);
 }
 
 }  // namespace lumirank::transport

@@ -124,9 +124,9 @@ class PairBlock {
   std::vector<std::uint16_t> alive_, visible_, clamped_;
   std::vector<std::uint32_t> places_;
   // Of a tile's survivors, in the order of places_: where their rays start (column) or end (row), and the
-  // receiver or light there. After the last there are 15 copies of it.
+  // key there. After the last there are 15 copies of it.
   std::vector<float> end_x_, end_y_, end_z_;
-  std::vector<std::uint32_t> end_item_;
+  std::vector<std::uint32_t> end_key_;
   std::vector<std::uint16_t> packet_bits_;
   struct Attenuation {
     std::uint32_t place;

@@ -86,15 +86,15 @@ void PairBlock::fill(geometry::ShadowPacket& packet, std::size_t first, int coun
   // ids.
   packet.seed = context_.pair_seed;
   if (shape_ == BlockShape::column) {
-    std::copy_n(&end_item_[first], 16, packet.from);
-    std::fill_n(packet.to, 16, context_.columns->plan.item[fixed_slot_]);
+    std::copy_n(&end_key_[first], 16, packet.from);
+    std::fill_n(packet.to, 16, context_.columns->key[fixed_slot_]);
   } else if (shape_ == BlockShape::row) {
-    std::fill_n(packet.from, 16, context_.rows->plan.item[fixed_slot_]);
-    std::copy_n(&end_item_[first], 16, packet.to);
+    std::fill_n(packet.from, 16, context_.rows->key[fixed_slot_]);
+    std::copy_n(&end_key_[first], 16, packet.to);
   } else {
     for (int k = 0; k < count; ++k) {
-      packet.from[k] = context_.rows->plan.item[row_list_[places[k]]];
-      packet.to[k] = context_.columns->plan.item[column_list_[places[k]]];
+      packet.from[k] = context_.rows->key[row_list_[places[k]]];
+      packet.to[k] = context_.columns->key[column_list_[places[k]]];
     }
   }
 }
