@@ -40,10 +40,11 @@ scripts/fuzz.sh build/fuzz 10
 export OPENBLAS_NUM_THREADS=1
 export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
-step "The readers' and the algebra's tests under the address and undefined-behaviour sanitizers"
-sanitized asan base linalg matrix scenedesc film methods
+# Neither render nor cli: their statistical tests take minutes there, over code that the other rooms' tests reach.
+step "The rooms' tests under the address and undefined-behaviour sanitizers"
+sanitized asan base linalg matrix methods scenedesc film scatter emitters geometry world transport
 step "Threaded tests under the thread sanitizer"
-sanitized tsan base methods
+sanitized tsan base methods geometry world transport
 unset OPENBLAS_NUM_THREADS
 
 step "All tests"

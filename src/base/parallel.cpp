@@ -30,10 +30,18 @@ void parallel_for(std::size_t n, std::size_t grain,
 }
 
 void with_threads(int threads, const std::function<void()>& work) {
+#if defined(__SANITIZE_THREAD__)
+  return plain_threads::with(threads, work);
+#endif
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute(work);
 }
 
-int current_threads() { return tbb::this_task_arena::max_concurrency(); }
+int current_threads() {
+#if defined(__SANITIZE_THREAD__)
+  if (plain_threads::asked > 0) return plain_threads::asked;
+#endif
+  return tbb::this_task_arena::max_concurrency();
+}
 
 }  // namespace lumirank
