@@ -58,6 +58,10 @@ bool png_is_whole(std::istream& in) {
 
 void require_file_end(const std::string& filename) {
   std::ifstream in(filename, std::ios::binary);
+  require_file_end(in, filename);
+}
+
+void require_file_end(std::istream& in, const std::string& name) {
   std::array<unsigned char, 8> start{};
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   in.clear();
@@ -68,7 +72,7 @@ void require_file_end(const std::string& filename) {
     if (!png_is_whole(in)) format = "PNG";
   }
   if (format)
-    throw InputError(SourceLocation{filename, 0},
+    throw InputError(SourceLocation{name, 0},
                      std::string("cannot read the image: this ") + format + " file is truncated");
 }
 

@@ -27,6 +27,9 @@ struct LoadedImage {
 };
 LoadedImage read_image(const std::string& filename, bool raw = false,
                        std::size_t max_pixels = std::size_t{1} << 28);
+// The same of a PNG or JPEG file that lies in memory; `name` names it in messages.
+LoadedImage decode_image(const std::string& bytes, const std::string& name, bool raw = false,
+                         std::size_t max_pixels = std::size_t{1} << 28);
 
 // 8-bit sRGB pixels of one image, row-major RGB.
 std::vector<unsigned char> to_display(const Image& image, const DisplayOptions& display);

@@ -1,3 +1,4 @@
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <array>
@@ -5,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -77,10 +79,12 @@ class Reader {
   Reader(const std::string& filename, bool raw, std::size_t max_pixels)
       : filename_(filename), raw_(raw), max_pixels_(max_pixels) {}
 
-  LoadedImage read() {
+  // The file `filename`, or with `memory` the bytes there, whose format the ending of `opened_as` tells.
+  LoadedImage read(OIIO::Filesystem::IOProxy* memory = nullptr, const std::string& opened_as = {}) {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
-    const auto input = OIIO::ImageInput::open(filename_, &wishes);
+    if (memory) wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
+    const auto input = OIIO::ImageInput::open(memory ? opened_as : filename_, &wishes);
     if (!input) fail(OIIO::geterror());
     input->threads(1);
     const OIIO::ImageSpec spec = input->spec();
@@ -162,6 +166,20 @@ bool starts_with_pfm_magic(const std::string& filename) {
          std::isspace(static_cast<unsigned char>(magic[2]));
 }
 
+// Whatever a decoder throws, as an InputError.
+template <typename Read>
+LoadedImage guarded(const std::string& name, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw InputError(SourceLocation{name, 0}, "the image needs more memory than there is");
+  } catch (const std::exception& failure) {
+    throw InputError(SourceLocation{name, 0}, std::string("cannot read the image: ") + failure.what());
+  }
+}
+
 }  // namespace
 
 LoadedImage read_image(const std::string& filename, bool raw, std::size_t max_pixels) {
@@ -174,15 +192,21 @@ LoadedImage read_image(const std::string& filename, bool raw, std::size_t max_pi
   if (starts_with_pfm_magic(filename)) return {read_pfm(filename, max_pixels), {}};
   require_file_end(filename);
   require_sane_exr_header(filename, max_pixels);
-  try {
-    return Reader(filename, raw, max_pixels).read();
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw InputError(SourceLocation{filename, 0}, "the image needs more memory than there is");
-  } catch (const std::exception& failure) {
-    throw InputError(SourceLocation{filename, 0}, std::string("cannot read the image: ") + failure.what());
-  }
+  return guarded(filename, [&] { return Reader(filename, raw, max_pixels).read(); });
+}
+
+LoadedImage decode_image(const std::string& bytes, const std::string& name, bool raw,
+                         std::size_t max_pixels) {
+  const bool png = bytes.starts_with("\x89PNG\r\n\x1a\n"), jpeg = bytes.starts_with("\xff\xd8\xff");
+  if (!png && !jpeg)
+    throw InputError(SourceLocation{name, 0}, "an image in memory is neither a PNG nor a JPEG file",
+                     "embed one of these, or keep the image in a file of its own");
+  std::istringstream in(bytes, std::ios::binary);
+  require_file_end(in, name);
+  return guarded(name, [&] {
+    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    return Reader(name, raw, max_pixels).read(&memory, png ? "memory.png" : "memory.jpg");
+  });
 }
 
 }  // namespace lumirank::film

@@ -72,21 +72,27 @@ struct RgbGradient {
   Rgb du{0}, dv{0};
 };
 
-RgbGradient rgb_gradient(const std::vector<Texture>& textures, int index, const SurfaceUv& at);
+RgbGradient rgb_gradient(const TextureSet& set, int index, const SurfaceUv& at);
 
 struct GradientVisitor {
-  const std::vector<Texture>& textures;
+  const TextureSet& set;
   const SurfaceUv& at;
 
   RgbGradient operator()(const ConstantTexture&) const { return {}; }
   RgbGradient operator()(const VertexColorTexture&) const { return {}; }
   RgbGradient operator()(const CheckerboardTexture& t) const {
-    return rgb_gradient(textures, checker_first(t, at.uv) ? t.color0 : t.color1, at);
+    return rgb_gradient(set, checker_first(t, at.uv) ? t.color0 : t.color1, at);
   }
   RgbGradient operator()(const ScaleTexture& t) const {
-    const RgbGradient g = rgb_gradient(textures, t.input, at);
+    const RgbGradient g = rgb_gradient(set, t.input, at);
     return {g.du * t.scale, g.dv * t.scale};
   }
+  RgbGradient operator()(const ProductTexture& t) const {
+    const RgbGradient a = rgb_gradient(set, t.a, at), b = rgb_gradient(set, t.b, at);
+    const Rgb va = set.lookup(t.a, at), vb = set.lookup(t.b, at);
+    return {a.du * vb + b.du * va, a.dv * vb + b.dv * va};
+  }
+  RgbGradient operator()(const ThresholdTexture&) const { return {}; }
   RgbGradient operator()(const BitmapTexture& t) const {
     const Vec2f uv = transform(t.to_uv, finite(at.uv));
     const auto w = static_cast<float>(t.pixels->width), h = static_cast<float>(t.pixels->height);
@@ -97,8 +103,8 @@ struct GradientVisitor {
   }
 };
 
-RgbGradient rgb_gradient(const std::vector<Texture>& textures, int index, const SurfaceUv& at) {
-  return std::visit(GradientVisitor{textures, at}, textures[static_cast<std::size_t>(index)]);
+RgbGradient rgb_gradient(const TextureSet& set, int index, const SurfaceUv& at) {
+  return std::visit(GradientVisitor{set, at}, set.textures[static_cast<std::size_t>(index)]);
 }
 
 struct LookupVisitor {
@@ -111,6 +117,12 @@ struct LookupVisitor {
     return set.lookup(checker_first(t, at.uv) ? t.color0 : t.color1, at);
   }
   Rgb operator()(const ScaleTexture& t) const { return set.lookup(t.input, at) * t.scale; }
+  Rgb operator()(const ProductTexture& t) const { return set.lookup(t.a, at) * set.lookup(t.b, at); }
+  Rgb operator()(const ThresholdTexture& t) const {
+    const Rgb c = set.lookup(t.input, at);
+    return {c.r >= t.threshold ? 1.0f : 0.0f, c.g >= t.threshold ? 1.0f : 0.0f,
+            c.b >= t.threshold ? 1.0f : 0.0f};
+  }
   Rgb operator()(const VertexColorTexture&) const { return at.vertex_color; }
 };
 
@@ -128,6 +140,14 @@ struct MeanVisitor {
     return (set.mean(t.color0) + set.mean(t.color1)) * 0.5f;
   }
   Rgb operator()(const ScaleTexture& t) const { return set.mean(t.input) * t.scale; }
+  // Exact where one of the two is constant.
+  Rgb operator()(const ProductTexture& t) const { return set.mean(t.a) * set.mean(t.b); }
+  // That of the mean: of a cut-out's outline no more is known without looking everywhere.
+  Rgb operator()(const ThresholdTexture& t) const {
+    const Rgb c = set.mean(t.input);
+    return {c.r >= t.threshold ? 1.0f : 0.0f, c.g >= t.threshold ? 1.0f : 0.0f,
+            c.b >= t.threshold ? 1.0f : 0.0f};
+  }
   Rgb operator()(const VertexColorTexture&) const { return Rgb(1); }
 };
 
@@ -149,7 +169,7 @@ float TextureSet::lookup_float(int texture, const SurfaceUv& at) const {
 
 Vec2f TextureSet::gradient(int texture, const SurfaceUv& at) const {
   checked(textures, texture);
-  const RgbGradient g = rgb_gradient(textures, texture, at);
+  const RgbGradient g = rgb_gradient(*this, texture, at);
   return {luminance(g.du), luminance(g.dv)};
 }
 

@@ -46,10 +46,17 @@ struct ScaleTexture {
   int input = 0;
   Rgb scale{1};
 };
+struct ProductTexture {
+  int a = 0, b = 0;
+};
+struct ThresholdTexture {  // channel by channel 1 where the input is at least the threshold, else 0
+  int input = 0;
+  float threshold = 0.5f;
+};
 struct VertexColorTexture {};
 
-using Texture =
-    std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture, ScaleTexture, VertexColorTexture>;
+using Texture = std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture, ScaleTexture,
+                             ProductTexture, ThresholdTexture, VertexColorTexture>;
 
 // All textures of a world; a texture refers only to textures before it.
 struct TextureSet {

@@ -59,14 +59,16 @@ std::string kind(const TextureDesc& t) {
   return std::visit(
       Overloaded{
           [](const BitmapTextureDesc& x) {
-            return "bitmap " + x.filename + (x.raw ? ", raw" : "") + show(x.channel) +
-                   (x.filter == FilterMode::nearest ? ", nearest" : "") + ", wrap " + show(x.wrap_u) + " × " +
-                   show(x.wrap_v) + ", to_uv " + show(x.to_uv);
+            return "bitmap " + x.filename + (x.bytes ? ", embedded" : "") + (x.raw ? ", raw" : "") +
+                   show(x.channel) + (x.filter == FilterMode::nearest ? ", nearest" : "") + ", wrap " +
+                   show(x.wrap_u) + " × " + show(x.wrap_v) + ", to_uv " + show(x.to_uv);
           },
           [](const CheckerboardTextureDesc& x) {
             return "checkerboard " + show(x.color0) + " and " + show(x.color1) + ", to_uv " + show(x.to_uv);
           },
           [](const ScaleTextureDesc& x) { return "scale of " + show(x.input) + " by " + show(x.scale); },
+          [](const ProductTextureDesc& x) { return "product of " + show(x.a) + " and " + show(x.b); },
+          [](const ThresholdTextureDesc& x) { return show(x.input) + " cut at " + num(x.threshold); },
           [](const VertexColorTextureDesc& x) { return "vertex colours \"" + x.attribute + "\""; }},
       t.kind);
 }

@@ -3,6 +3,7 @@
 // opened, except that a reader may check that they exist.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -48,10 +49,13 @@ enum class TextureChannel { rgb, red, green, blue, alpha };
 // exact.
 struct BitmapTextureDesc {
   std::string filename;
+  // A PNG or JPEG file that the scene file holds; then `filename` only names it, in messages.
+  std::shared_ptr<const std::string> bytes = nullptr;
   // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear
   // anyway).
   bool raw = false;
   TextureChannel channel = TextureChannel::rgb;  // another: that one alone, as grey (cut-outs by alpha)
+  bool alpha_may_lack = false;                   // an alpha channel that the file does not have is 1
   FilterMode filter = FilterMode::bilinear;
   WrapMode wrap_u = WrapMode::repeat, wrap_v = WrapMode::repeat;
   UvTransform to_uv;
@@ -64,13 +68,23 @@ struct ScaleTextureDesc {
   ColorInput input;
   Rgb scale{1};
 };
+struct ProductTextureDesc {  // of two inputs, channel by channel: vertex colours and a texture, say
+  ColorInput a{Rgb(1)}, b{Rgb(1)};
+};
+struct ThresholdTextureDesc {  // 1 where the input is at least the threshold, else 0: cut-outs with hard
+                               // edges
+  ColorInput input;
+  float threshold = 0.5f;
+};
 struct VertexColorTextureDesc {
   std::string attribute = "vertex_color";
 };
 struct TextureDesc {
   std::string id;
   SourceLocation where;
-  std::variant<BitmapTextureDesc, CheckerboardTextureDesc, ScaleTextureDesc, VertexColorTextureDesc> kind;
+  std::variant<BitmapTextureDesc, CheckerboardTextureDesc, ScaleTextureDesc, ProductTextureDesc,
+               ThresholdTextureDesc, VertexColorTextureDesc>
+      kind;
 };
 
 // -------------------------------------------------------------------------------------------------------

@@ -36,10 +36,12 @@ void check_uv(const scenedesc::UvTransform& to_uv, const SourceLocation& where) 
 }
 
 // The pixels of `image`, or one channel of it as grey.
-std::vector<Rgb> take_pixels(film::LoadedImage& image, scenedesc::TextureChannel channel) {
+std::vector<Rgb> take_pixels(film::LoadedImage& image, scenedesc::TextureChannel channel,
+                             bool alpha_may_lack) {
   using enum scenedesc::TextureChannel;
   std::vector<Rgb> pixels = std::move(image.color.pixels);
   if (channel == alpha) {
+    if (image.alpha.empty() && alpha_may_lack) image.alpha.assign(pixels.size(), 1.0f);
     if (image.alpha.empty())
       throw InputError("the picture has no alpha channel", "give one that has, or another channel");
     std::transform(image.alpha.begin(), image.alpha.end(), pixels.begin(), [](float a) { return Rgb(a); });
@@ -78,7 +80,8 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
   int built = 0;
   if (const auto* bitmap = std::get_if<scenedesc::BitmapTextureDesc>(&t.kind)) {
     check_uv(bitmap->to_uv, t.where);
-    File& file = files_[{bitmap->filename, bitmap->raw, bitmap->channel}];
+    File& file =
+        files_[{bitmap->filename, bitmap->bytes.get(), bitmap->raw, bitmap->channel, bitmap->alpha_may_lack}];
     if (!file.pixels) file = {t.where, std::make_shared<scatter::TexturePixels>()};
     scatter::BitmapTexture out;
     out.pixels = file.pixels;
@@ -99,6 +102,14 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
       throw InputError(t.where, "the texture's scale is not finite", "give a number");
     const int input = operand(scale->input, t.where);
     built = add(scatter::ScaleTexture{input, scale->scale});
+  } else if (const auto* product = std::get_if<scenedesc::ProductTextureDesc>(&t.kind)) {
+    const int a = operand(product->a, t.where);
+    built = add(scatter::ProductTexture{a, operand(product->b, t.where)});
+  } else if (const auto* cut = std::get_if<scenedesc::ThresholdTextureDesc>(&t.kind)) {
+    if (!std::isfinite(cut->threshold))
+      throw InputError(t.where, "the texture's threshold is not finite", "give a number");
+    const int input = operand(cut->input, t.where);
+    built = add(scatter::ThresholdTexture{input, cut->threshold});
   } else {
     built = add(scatter::VertexColorTexture{});
   }
@@ -127,11 +138,11 @@ scatter::TextureSet TextureBuilder::finish() {
   std::vector<std::exception_ptr> failures(files.size());
   parallel_for(files.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) try {
-        const auto& [name, raw, channel] = files[i]->first;
-        film::LoadedImage image = film::read_image(name, raw);
+        const auto& [name, bytes, raw, channel, alpha_may_lack] = files[i]->first;
+        film::LoadedImage image = bytes ? film::decode_image(*bytes, name, raw) : film::read_image(name, raw);
         auto& pixels = *files[i]->second.pixels;
         pixels.width = image.color.width, pixels.height = image.color.height;
-        pixels.rgb = take_pixels(image, channel);
+        pixels.rgb = take_pixels(image, channel, alpha_may_lack);
         for (Rgb& c : pixels.rgb)
           for (int k = 0; k < 3; ++k)
             if (!std::isfinite(c[k])) throw InputError(name, "has pixels that are not finite");

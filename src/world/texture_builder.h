@@ -30,7 +30,8 @@ class TextureBuilder {
   std::size_t memory_bytes() const;  // of the pixels, after finish()
 
  private:
-  using FileKey = std::tuple<std::string, bool, scenedesc::TextureChannel>;  // name, raw
+  // Name, embedded bytes, raw, channel, whether that may be an alpha that the file lacks.
+  using FileKey = std::tuple<std::string, const std::string*, bool, scenedesc::TextureChannel, bool>;
   struct File {
     SourceLocation where;
     std::shared_ptr<scatter::TexturePixels> pixels;

@@ -329,5 +329,26 @@ TEST_F(ImageIo, ReplacesFilesAndFollowsLinks) {
   EXPECT_EQ(files().size(), 2u);
 }
 
+TEST_F(ImageIo, BytesInMemoryGiveWhatTheFileGives) {
+  std::vector<unsigned char> values;
+  for (int i = 0; i < 6 * 5 * 4; ++i) values.push_back(static_cast<unsigned char>(i * 37 % 251));
+  for (const char* name : {"a.png", "a.jpg"}) {
+    const std::string file = path(name);
+    const int channels = std::string(name) == "a.png" ? 4 : 3;
+    write_other(file, 6, 5, channels, values, OIIO::TypeDesc::UINT8);
+    const std::string bytes = read_bytes(file);
+    for (const bool raw : {false, true}) {
+      const LoadedImage from_file = read_image(file, raw), from_bytes = decode_image(bytes, "x", raw);
+      expect_same_bits(from_file.color, from_bytes.color);
+      EXPECT_EQ(from_file.alpha, from_bytes.alpha);
+      EXPECT_EQ(from_bytes.alpha.empty(), channels == 3);
+    }
+    EXPECT_THROW(decode_image(bytes, "x", false, 29), InputError) << "30 pixels";
+    EXPECT_THROW(decode_image(bytes.substr(0, bytes.size() / 2), "x"), InputError);
+  }
+  EXPECT_THROW(decode_image("", "x"), InputError);
+  EXPECT_THROW(decode_image("GIF89a", "x"), InputError);
+}
+
 }  // namespace
 }  // namespace lumirank::film

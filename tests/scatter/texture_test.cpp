@@ -132,5 +132,19 @@ TEST(TextureSet, ScalesVertexColoursAndMeans) {
   EXPECT_THROW(set.lookup(-1, {}), InternalError);
 }
 
+TEST(TextureSet, ProductsAndThresholds) {
+  TextureSet set{{VertexColorTexture{}, ConstantTexture{{0.5f, 2, 0}}, ProductTexture{0, 1}, numbered(),
+                  ProductTexture{3, 1}, ProductTexture{3, 3}, ThresholdTexture{3, 1.5f}}};
+  EXPECT_EQ(set.lookup(2, {{0, 0}, {0.5f, 0.25f, 1}}), Rgb(0.25f, 0.5f, 0));
+  EXPECT_EQ(set.mean(4), Rgb(0.75f, 1, 0));
+  // Half way between columns 1 and 2 the value is 1.5 and rises by 4 per unit of u: the square's slope is
+  // 2 · 1.5 · 4.
+  const SurfaceUv middle{{0.5f, 0.5f}, Rgb(1)};
+  EXPECT_NEAR(set.lookup(5, middle).r, 2.25f, 1e-5f);
+  EXPECT_NEAR(set.gradient(5, middle).x, 12 * 0.2126f, 1e-4f);
+  EXPECT_EQ(set.lookup(6, middle), Rgb(1, 0, 0));
+  EXPECT_EQ(set.lookup(6, {{0.49f, 0.5f}, Rgb(1)}), Rgb(0, 0, 0));
+}
+
 }  // namespace
 }  // namespace lumirank::scatter
