@@ -115,6 +115,10 @@ std::string kind(const BsdfDesc& desc) {
                           show(x.clearcoat) + " (gloss " + show(x.clearcoat_gloss) + "), flatness " +
                           show(x.flatness) + ", eta " + num(x.eta);
                  },
+                 [](const HairDesc& x) {
+                   return "hair diffuse " + show(x.diffuse_reflectance) + ", specular " +
+                          show(x.specular_reflectance) + ", exponent " + show(x.exponent);
+                 },
                  [](const MaskDesc& x) { return "mask " + show(x.opacity) + " over " + b(x.nested); },
                  [](const TwoSidedDesc& x) {
                    return "twosided " + b(x.front) + (x.back == x.front ? "" : " and " + b(x.back));
@@ -157,6 +161,14 @@ std::string kind(const ShapeDesc& s) {
           [](const DiskDesc&) { return std::string("disk"); },
           [](const CylinderDesc& x) {
             return "cylinder " + show(x.p0) + " to " + show(x.p1) + ", radius " + num(x.radius);
+          },
+          [](const CurvesDesc& x) {
+            constexpr const char* kBases[] = {"bspline", "bezier", "linear"};
+            std::string text = std::string(kBases[static_cast<int>(x.basis)]) + " curves";
+            if (!x.filename.empty()) return text + " " + x.filename;
+            const std::size_t curves = x.first.empty() ? 0 : x.first.size() - 1;
+            return text + ", " + std::to_string(curves) + " of " + std::to_string(x.points.size()) +
+                   " points";
           },
           [](const ShapeGroupDesc& x) {
             std::string text = "group of shapes";

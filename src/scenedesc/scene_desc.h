@@ -3,6 +3,7 @@
 // opened, except that a reader may check that they exist.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -139,6 +140,10 @@ struct PrincipledDesc {  // Mitsuba 3's "principled" and "principledthin" withou
       sheen_tint{0}, clearcoat{0}, clearcoat_gloss{0}, flatness{0};
   float eta = 1.5f;
 };
+struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fibre
+  ColorInput diffuse_reflectance{Rgb(0.4f)}, specular_reflectance{Rgb(0.1f)};
+  FloatInput exponent{40};  // the specular lobe falls like cosⁿ of the angle to the mirror cone
+};
 struct MaskDesc {  // opacity 1: the nested BSDF; 0: nothing there
   FloatInput opacity{0.5f};
   int nested = kNone;
@@ -168,8 +173,8 @@ struct BsdfDesc {
   std::string id;
   SourceLocation where;
   std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc, ThinDielectricDesc,
-               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, MaskDesc, TwoSidedDesc, BumpMapDesc,
-               NormalMapDesc, MixtureDesc>
+               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, HairDesc, MaskDesc, TwoSidedDesc,
+               BumpMapDesc, NormalMapDesc, MixtureDesc>
       kind;
 };
 
@@ -200,6 +205,18 @@ struct CylinderDesc {
   Vec3f p0{0, 0, 0}, p1{0, 0, 1};
   float radius = 1;
 };
+// Fibres: many curves with a radius at each of their points. Cubic ones have uniform knots: a b-spline of n
+// points has n - 3 pieces and does not reach its outer points; a bezier curve of 3k + 1 points has k pieces.
+struct CurvesDesc {
+  enum class Basis { bspline, bezier, linear };
+  Basis basis = Basis::bspline;
+  // Read from a file, and then empty here; or stated by the scene itself.
+  std::string filename;
+  float file_radius = 0;  // of files that state none (the "hair" shape of Mitsuba 0.6); 0: the file has radii
+  std::vector<Vec3f> points;
+  std::vector<float> radii;          // one per point
+  std::vector<std::uint32_t> first;  // the first point of each curve, and the number of points at the end
+};
 struct ShapeGroupDesc {
   std::vector<int> shapes;  // indices into SceneDesc::shapes
 };
@@ -221,8 +238,8 @@ struct ShapeDesc {
   int bsdf = kNone;  // kNone: the default diffuse BSDF
   std::optional<AreaEmitterDesc> emitter;
   bool in_group = false;  // a member of a shape group: not in the world by itself
-  std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, ShapeGroupDesc,
-               InstanceDesc>
+  std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, CurvesDesc,
+               ShapeGroupDesc, InstanceDesc>
       kind;
 };
 

@@ -180,6 +180,10 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
       m.eta = checked_eta(d.eta, where);
       return m;
     }
+    sc::Material operator()(const sd::HairDesc& d) const {
+      self.notes_.warn(where, "a hair BSDF on a surface", "diffuse of its diffuse reflectance");
+      return sc::DiffuseMaterial{color(d.diffuse_reflectance)};
+    }
     sc::Material operator()(const sd::MaskDesc& d) const {
       return sc::MaskMaterial{number(d.opacity), nested(d.nested)};
     }

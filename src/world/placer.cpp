@@ -39,6 +39,7 @@ void place_instance(const sd::SceneDesc& desc, const sd::ShapeDesc& instance, Me
     if (is_group(child) || as_instance(child))
       throw InputError(child.where, "a shape group holds another group or an instance",
                        "groups cannot be nested: place the shapes themselves in the group");
+    if (std::holds_alternative<sd::CurvesDesc>(child.kind)) continue;  // warned about by place_shapes
     check_transform(child.to_world, child.where);
     out.push_back({store.use(child), instance.to_world * child.to_world,
                    child.flip_normals != instance.flip_normals, &child, false});
@@ -90,6 +91,10 @@ bool all_finite(const geometry::TriangleMesh& mesh) {
 std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, Notes& notes) {
   std::vector<Placed> out;
   for (const sd::ShapeDesc& shape : desc.shapes) {
+    if (std::holds_alternative<sd::CurvesDesc>(shape.kind)) {
+      notes.warn(shape.where, "a shape of curves", "");
+      continue;
+    }
     if (shape.in_group) {
       if (shape.emitter) notes.warn(shape.where, "an emitter in a shape group", "the shape without it");
       continue;
