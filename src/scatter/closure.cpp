@@ -126,22 +126,24 @@ bool Closure::is_lambertian() const {
   int smooth = 0;
   for (int k = 0; k < count; ++k) {
     if (is_delta(lobes[k].kind)) continue;
-    if (lobes[k].kind != LobeKind::diffuse) return false;
+    if (lobes[k].kind != LobeKind::diffuse || lobes[k].coat) return false;
     ++smooth;
   }
   return smooth == 1;
 }
 
 float lobe_roughness(const Lobe& lobe) {
+  // Refraction into the open widens what lies under a coat.
+  const float wider = lobe.coat ? lobe.coat.bend : 1.0f;
   switch (lobe.kind) {
     case LobeKind::microfacet_reflect:
     case LobeKind::microfacet_transmit:
     case LobeKind::ward:
-      return std::min({1.0f, lobe.alpha_u, lobe.alpha_v});
+      return std::min({1.0f, wider * lobe.alpha_u, wider * lobe.alpha_v});
     case LobeKind::clearcoat:
-      return std::min(1.0f, lobe.alpha_u);
+      return std::min(1.0f, wider * lobe.alpha_u);
     case LobeKind::phong:
-      return std::min(1.0f, std::sqrt(2 / (lobe.alpha_u + 2)));
+      return std::min(1.0f, wider * std::sqrt(2 / (lobe.alpha_u + 2)));
     default:
       return is_delta(lobe.kind) ? 0.0f : 1.0f;
   }

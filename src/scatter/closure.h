@@ -51,7 +51,17 @@ enum class NormalDistribution : std::uint8_t { beckmann, ggx };
 
 inline constexpr std::uint8_t kThinSlab = 1;
 
-// Plain data; which fields mean something depends on `kind`. 72 bytes.
+// A dielectric layer over a lobe, as seen from outside (coat.h). 44 bytes.
+struct Coat {
+  float eta = 0;                    // index of the layer over that of the outside; 0: there is no layer
+  float bend = 1;                   // index by which directions are bent: eta where the layer covers all
+  float t[6] = {0, 1, 0, 0, 0, 0};  // coefficients of its transmittance, as in interface.h
+  Rgb depth{0};                     // optical thickness: absorption coefficient times thickness
+  explicit operator bool() const { return eta > 0; }
+  friend bool operator==(const Coat&, const Coat&) = default;
+};
+
+// Plain data; which fields mean something depends on `kind`. 100 bytes.
 struct Lobe {
   LobeKind kind = LobeKind::diffuse;
   FresnelKind fresnel = FresnelKind::none;
@@ -62,11 +72,13 @@ struct Lobe {
   float eta = 1;                         // inside over outside, for wo on the outside
   Rgb conductor_eta{0}, conductor_k{0};  // conductor; schlick: conductor_eta is F0
   float extra = 0;                       // disney_diffuse: flatness
+  Coat coat;                             // over this lobe, if any
 };
 
 inline constexpr int kMaxLobes = 8;
 
-// Least roughness alpha of a lobe (Phong's exponent n → √(2/(n+2))); 1 for diffuse ones, 0 for delta lobes.
+// Least roughness alpha of a lobe (Phong's exponent n → √(2/(n+2)); under a coat as it looks from outside); 1
+// for diffuse ones, 0 for delta lobes.
 float lobe_roughness(const Lobe& lobe);
 
 struct Closure {

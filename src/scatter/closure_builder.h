@@ -25,6 +25,7 @@ class ClosureBuilder {
   void leaf(const PhongMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const WardMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const PrincipledMaterial& m, const SurfacePoint& at, float weight);
+  void leaf(const CoatingMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const MaskMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const TwoSidedMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const BumpMaterial& m, const SurfacePoint& at, float weight);
@@ -44,6 +45,8 @@ class ClosureBuilder {
 // Inputs with their textures looked up. Reflectances are held within [0, 1], so that no surface makes energy;
 // what is not a number counts as 0.
 Rgb reflectance(const TextureSet& textures, const ColorInput& input, const SurfaceUv& uv);
+// Not held within [0, 1] but at least 0: optical thicknesses.
+Rgb positive_color(const TextureSet& textures, const ColorInput& input, const SurfaceUv& uv);
 float number(const TextureSet& textures, const FloatInput& input, const SurfaceUv& uv);
 float fraction(const TextureSet& textures, const FloatInput& input, const SurfaceUv& uv);  // within [0, 1]
 float rough_alpha(const TextureSet& textures, const FloatInput& input,
@@ -57,6 +60,9 @@ SurfacePoint bumped(const TextureSet& textures, const BumpMaterial& m, const Sur
 SurfacePoint normal_mapped(const TextureSet& textures, const NormalMapMaterial& m, const SurfacePoint& at);
 // The same point with its other side outside; tangents stay.
 SurfacePoint turned(const SurfacePoint& at);
+
+// What a coating lets through of light that goes straight along w (coating.cpp).
+Rgb coating_passage(const TextureSet& textures, const CoatingMaterial& m, const SurfacePoint& at, Vec3f w);
 
 // Makes room in a full closure (merge_lobes.cpp).
 void merge_lobes(Closure& closure, const Lobe& extra);

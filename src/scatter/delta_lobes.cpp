@@ -4,7 +4,7 @@
 
 namespace lumirank::scatter {
 
-bool delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
+bool bare_delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
   const Lobe& lobe = view.lobe;
   const bool thin = lobe.variant == kThinSlab;
   switch (lobe.kind) {

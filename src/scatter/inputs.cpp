@@ -15,6 +15,12 @@ Rgb reflectance(const TextureSet& textures, const ColorInput& input, const Surfa
   return {unit(c.r), unit(c.g), unit(c.b)};
 }
 
+Rgb positive_color(const TextureSet& textures, const ColorInput& input, const SurfaceUv& uv) {
+  const Rgb c = input.texture >= 0 ? textures.lookup(input.texture, uv) : input.value;
+  const auto positive = [](float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; };
+  return {positive(c.r), positive(c.g), positive(c.b)};
+}
+
 float number(const TextureSet& textures, const FloatInput& input, const SurfaceUv& uv) {
   const float x = input.texture >= 0 ? textures.lookup_float(input.texture, uv) : input.value;
   return std::isfinite(x) ? x : 0.0f;

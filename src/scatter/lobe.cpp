@@ -13,6 +13,8 @@ Rgb interfaced_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
   return lobe.color * (kInvPi * interface_transmittance(lobe, wo.z) * interface_transmittance(lobe, wi.z));
 }
 
+}  // namespace
+
 Rgb quadrature_albedo(LobeView view, Vec3f wo) {
   // A Fibonacci lattice: no two-dimensional rule of so few points is much better.
   constexpr int count = 55, step = 34;
@@ -30,9 +32,32 @@ Rgb quadrature_albedo(LobeView view, Vec3f wo) {
   return sum * (scale / static_cast<float>(count));
 }
 
-}  // namespace
+bool draws_cosine(LobeKind kind) {
+  return kind == LobeKind::diffuse || kind == LobeKind::oren_nayar || kind == LobeKind::interfaced_diffuse ||
+         kind == LobeKind::sheen || kind == LobeKind::disney_diffuse;
+}
 
 Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi) {
+  return view.lobe.coat ? coated_value(view, wo, wi) : bare_value(view, wo, wi);
+}
+float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi) {
+  return view.lobe.coat ? coated_pdf(view, wo, wi) : bare_pdf(view, wo, wi);
+}
+bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
+  return view.lobe.coat ? coated_sample(view, wo, u, wi) : bare_sample(view, wo, u, wi);
+}
+Rgb lobe_albedo(LobeView view, Vec3f wo) {
+  return view.lobe.coat ? coated_albedo(view, wo) : bare_albedo(view, wo);
+}
+float lobe_importance(LobeView view, float cos_o) {
+  return view.lobe.coat ? coated_importance(view, cos_o) : bare_importance(view, cos_o);
+}
+bool delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
+  return view.lobe.coat ? coated_delta_direction(view, wo, wi, coefficient)
+                        : bare_delta_direction(view, wo, wi, coefficient);
+}
+
+Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
   const Lobe& lobe = view.lobe;
   switch (lobe.kind) {
     case LobeKind::diffuse:
@@ -63,7 +88,7 @@ Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi) {
   return Rgb(0);
 }
 
-float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi) {
+float bare_pdf(LobeView view, Vec3f wo, Vec3f wi) {
   const Lobe& lobe = view.lobe;
   switch (lobe.kind) {
     case LobeKind::diffuse:
@@ -90,7 +115,7 @@ float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi) {
   return 0;
 }
 
-bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
+bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
   const Lobe& lobe = view.lobe;
   switch (lobe.kind) {
     case LobeKind::diffuse:
@@ -118,7 +143,7 @@ bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
   return false;
 }
 
-Rgb lobe_albedo(LobeView view, Vec3f wo) {
+Rgb bare_albedo(LobeView view, Vec3f wo) {
   const Lobe& lobe = view.lobe;
   if (lobe.kind == LobeKind::diffuse) return lobe.color;
   if (lobe.kind == LobeKind::interfaced_diffuse)
@@ -126,7 +151,7 @@ Rgb lobe_albedo(LobeView view, Vec3f wo) {
   if (is_delta(lobe.kind)) {
     Vec3f wi;
     Rgb coefficient;
-    return delta_direction(view, wo, wi, coefficient) ? coefficient : Rgb(0);
+    return bare_delta_direction(view, wo, wi, coefficient) ? coefficient : Rgb(0);
   }
   // Total internal reflection is no matter of Schlick's curve: the table is for the outside.
   if (lobe.kind == LobeKind::microfacet_reflect && lobe.alpha_u == lobe.alpha_v && lobe.alpha_u <= 1 &&
@@ -135,7 +160,7 @@ Rgb lobe_albedo(LobeView view, Vec3f wo) {
   return quadrature_albedo(view, wo);
 }
 
-float lobe_importance(LobeView view, float cos_o) {
+float bare_importance(LobeView view, float cos_o) {
   const Lobe& lobe = view.lobe;
   const float scale = mean(lobe.color);
   // Microfacets may reflect or refract where the macroscopic surface does not: never below a twentieth.

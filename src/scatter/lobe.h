@@ -12,11 +12,12 @@ namespace lumirank::scatter {
 
 struct LobeView {
   const Lobe& lobe;
-  float eta;  // index of the far side over that of wo's side
+  float eta;     // index of the far side over that of wo's side
+  bool outside;  // wo is on the outside, where coats are
 };
 
 inline LobeView view_from(const Lobe& lobe, bool outside) {
-  return {lobe, outside ? lobe.eta : 1 / lobe.eta};
+  return {lobe, outside ? lobe.eta : 1 / lobe.eta, outside};
 }
 
 // Any smooth lobe. A draw that leads nowhere (below the horizon) returns false.
@@ -40,6 +41,24 @@ bool delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient);
 
 // Fresnel factor of a reflecting lobe at the cosine with the (micro)facet, one of the four kinds.
 Rgb lobe_fresnel(LobeView view, float cos_m);
+
+// The same without the lobe's coat, for directions within the coat (coated.cpp turns outer ones into them).
+Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi);
+float bare_pdf(LobeView view, Vec3f wo, Vec3f wi);
+bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb bare_albedo(LobeView view, Vec3f wo);
+float bare_importance(LobeView view, float cos_o);
+bool bare_delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient);
+Rgb coated_value(LobeView view, Vec3f wo, Vec3f wi);
+float coated_pdf(LobeView view, Vec3f wo, Vec3f wi);
+bool coated_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb coated_albedo(LobeView view, Vec3f wo);
+float coated_importance(LobeView view, float cos_o);
+bool coated_delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient);
+// Drawn by the cosine alone.
+bool draws_cosine(LobeKind kind);
+// Albedo by a fixed rule of 55 draws.
+Rgb quadrature_albedo(LobeView view, Vec3f wo);
 
 // The families.
 Rgb oren_nayar_value(const Lobe& lobe, Vec3f wo, Vec3f wi);

@@ -80,6 +80,17 @@ struct PrincipledMaterial {
       clearcoat_gloss, flatness;
   float eta = 1.5f;
 };
+// A dielectric layer over another material (coating.cpp).
+struct CoatingMaterial {
+  int nested = -1;
+  float eta = 1.5f;
+  ColorInput specular_reflectance;
+  ColorInput absorption;  // optical thickness
+  FloatInput weight;      // share of the surface that is coated
+  NormalDistribution distribution;
+  FloatInput alpha_u, alpha_v;
+  bool smooth = true;
+};
 struct MaskMaterial {
   FloatInput opacity;
   int nested;
@@ -105,10 +116,10 @@ struct MixtureMaterial {
   std::vector<Part> parts;
 };
 
-using Material =
-    std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
-                 ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
-                 MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
+using Material = std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial,
+                              DielectricMaterial, ThinDielectricMaterial, PlasticMaterial, PhongMaterial,
+                              WardMaterial, PrincipledMaterial, CoatingMaterial, MaskMaterial,
+                              TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

@@ -14,11 +14,11 @@ bool nearly_diffuse(LobeKind kind) {
 
 bool same_sort(const Lobe& a, const Lobe& b) {
   return a.kind == b.kind && a.fresnel == b.fresnel && a.distribution == b.distribution &&
-         a.variant == b.variant;
+         a.variant == b.variant && static_cast<bool>(a.coat) == static_cast<bool>(b.coat);
 }
 
 bool equal_but_color(const Lobe& a, const Lobe& b) {
-  if (!same_sort(a, b)) return false;
+  if (!same_sort(a, b) || a.coat != b.coat) return false;
   if (a.kind == LobeKind::diffuse) return true;
   if (a.kind == LobeKind::oren_nayar) return a.alpha_u == b.alpha_u;
   return a.alpha_u == b.alpha_u && a.alpha_v == b.alpha_v && a.eta == b.eta &&
@@ -31,6 +31,9 @@ Lobe average(const Lobe& a, const Lobe& b) {
   out.color = a.color + b.color;
   out.alpha_u = lerp(a.alpha_u, b.alpha_u, t), out.alpha_v = lerp(a.alpha_v, b.alpha_v, t);
   out.eta = lerp(a.eta, b.eta, t), out.extra = lerp(a.extra, b.extra, t);
+  out.coat.eta = lerp(a.coat.eta, b.coat.eta, t), out.coat.bend = lerp(a.coat.bend, b.coat.bend, t);
+  for (int i = 0; i < 6; ++i) out.coat.t[i] = lerp(a.coat.t[i], b.coat.t[i], t);
+  out.coat.depth = lerp(a.coat.depth, b.coat.depth, t);
   if (a.kind == LobeKind::oren_nayar) {
     out.conductor_eta = a.conductor_eta + b.conductor_eta;
   } else {

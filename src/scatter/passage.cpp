@@ -16,6 +16,10 @@ struct PassageVisitor {
   }
   Passage operator()(const NullMaterial&) const { return Passage::smooth; }
   Passage operator()(const ThinDielectricMaterial&) const { return Passage::smooth; }
+  Passage operator()(const CoatingMaterial& m) const {
+    // What a layer takes from the light in a cut-out's holes is no binary matter.
+    return set.passage(m.nested) == Passage::opaque ? Passage::opaque : Passage::smooth;
+  }
   Passage operator()(const MaskMaterial& m) const {
     const Passage inside = set.passage(m.nested);
     if (inside != Passage::opaque) return inside;
@@ -50,6 +54,10 @@ struct TransmittanceVisitor {
   Rgb operator()(const ThinDielectricMaterial& m) const {
     const float r = fresnel_thin(fresnel_dielectric(std::abs(dot(w, at.shading.n)), m.eta));
     return reflectance(set.textures, m.specular_transmittance, at.uv) * (1 - r);
+  }
+  Rgb operator()(const CoatingMaterial& m) const {
+    const Rgb through = set.transmittance(m.nested, at, w);
+    return is_black(through) ? through : through * coating_passage(set.textures, m, at, w);
   }
   Rgb operator()(const MaskMaterial& m) const {
     const float opacity = fraction(set.textures, m.opacity, at.uv);

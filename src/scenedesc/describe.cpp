@@ -119,6 +119,11 @@ std::string kind(const BsdfDesc& desc) {
                    return "hair diffuse " + show(x.diffuse_reflectance) + ", specular " +
                           show(x.specular_reflectance) + ", exponent " + show(x.exponent);
                  },
+                 [](const CoatingDesc& x) {
+                   return "coating eta " + num(x.eta) + ", reflectance " + show(x.specular_reflectance) +
+                          ", absorption " + show(x.absorption) + ", weight " + show(x.weight) +
+                          rough(x.distribution, x.alpha_u, x.alpha_v) + " over " + b(x.nested);
+                 },
                  [](const MaskDesc& x) { return "mask " + show(x.opacity) + " over " + b(x.nested); },
                  [](const TwoSidedDesc& x) {
                    return "twosided " + b(x.front) + (x.back == x.front ? "" : " and " + b(x.back));

@@ -144,6 +144,18 @@ struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meet
   ColorInput diffuse_reflectance{Rgb(0.4f)}, specular_reflectance{Rgb(0.1f)};
   FloatInput exponent{40};  // the specular lobe falls like cosⁿ of the angle to the mirror cone
 };
+// A dielectric layer over the nested BSDF, without scattering in it; smooth if alpha_u and alpha_v are the
+// constant 0. Mitsuba 0.6's "coating" and "roughcoating", pbrt's coateddiffuse and coatedconductor (over a
+// diffuse or conductor BSDF whose eta and k are relative to the layer), glTF's clear coat (`weight`).
+struct CoatingDesc {
+  int nested = kNone;
+  float eta = 1.5046f / 1.000277f;          // index of the layer over that of the outside
+  ColorInput specular_reflectance{Rgb(1)};  // scales the layer's own reflection alone
+  ColorInput absorption{Rgb(0)};            // absorption coefficient × thickness, per channel, ≥ 0
+  FloatInput weight{1};                     // share of the surface that is coated
+  Distribution distribution = Distribution::beckmann;
+  FloatInput alpha_u{0}, alpha_v{0};
+};
 struct MaskDesc {  // opacity 1: the nested BSDF; 0: nothing there
   FloatInput opacity{0.5f};
   int nested = kNone;
@@ -173,8 +185,8 @@ struct BsdfDesc {
   std::string id;
   SourceLocation where;
   std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc, ThinDielectricDesc,
-               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, HairDesc, MaskDesc, TwoSidedDesc,
-               BumpMapDesc, NormalMapDesc, MixtureDesc>
+               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, CoatingDesc, HairDesc, MaskDesc,
+               TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>
       kind;
 };
 

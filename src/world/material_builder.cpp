@@ -1,6 +1,8 @@
 #include "world/material_builder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "base/error.h"
 
@@ -75,6 +77,7 @@ bool MaterialBuilder::transmits(int material) const {
     bool operator()(const sc::PrincipledMaterial& m) const {
       return m.spec_trans.texture >= 0 || m.spec_trans.value > 0;
     }
+    bool operator()(const sc::CoatingMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::BumpMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::NormalMapMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::MixtureMaterial& m) const {
@@ -91,6 +94,26 @@ bool MaterialBuilder::transmits(int material) const {
     bool operator()(const sc::TwoSidedMaterial&) const { return false; }
   };
   return std::visit(Ask{*this}, materials_[static_cast<std::size_t>(material)]);
+}
+
+bool MaterialBuilder::is_coated(int material) const {
+  return std::visit(
+      [&](const auto& m) {
+        using Kind = std::decay_t<decltype(m)>;
+        if constexpr (std::is_same_v<Kind, sc::CoatingMaterial>) {
+          return true;
+        } else if constexpr (std::is_same_v<Kind, sc::TwoSidedMaterial>) {
+          return is_coated(m.front) || is_coated(m.back);
+        } else if constexpr (std::is_same_v<Kind, sc::MixtureMaterial>) {
+          return std::any_of(m.parts.begin(), m.parts.end(),
+                             [&](const auto& part) { return is_coated(part.nested); });
+        } else if constexpr (requires { m.nested; }) {
+          return is_coated(m.nested);
+        } else {
+          return false;
+        }
+      },
+      materials_[static_cast<std::size_t>(material)]);
 }
 
 int MaterialBuilder::instead_of_two_sided(const sd::TwoSidedDesc& d, const SourceLocation& where) {
@@ -183,6 +206,22 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
     sc::Material operator()(const sd::HairDesc& d) const {
       self.notes_.warn(where, "a hair BSDF on a surface", "diffuse of its diffuse reflectance");
       return sc::DiffuseMaterial{color(d.diffuse_reflectance)};
+    }
+    sc::Material operator()(const sd::CoatingDesc& d) const {
+      sc::CoatingMaterial m;
+      m.nested = nested(d.nested);
+      if (self.is_coated(m.nested)) {
+        self.notes_.warn(where, "a coating over a BSDF that has a coating", "the inner one alone");
+        return self.materials_[static_cast<std::size_t>(m.nested)];
+      }
+      m.eta = checked_eta(d.eta, where);
+      m.specular_reflectance = color(d.specular_reflectance);
+      m.absorption = color(d.absorption);
+      m.weight = number(d.weight);
+      m.distribution = world::convert(d.distribution);
+      m.alpha_u = number(d.alpha_u), m.alpha_v = number(d.alpha_v);
+      m.smooth = is_zero(d.alpha_u) && is_zero(d.alpha_v);
+      return m;
     }
     sc::Material operator()(const sd::MaskDesc& d) const {
       return sc::MaskMaterial{number(d.opacity), nested(d.nested)};

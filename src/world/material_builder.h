@@ -21,6 +21,7 @@ class MaterialBuilder {
  private:
   int add(scatter::Material material);
   bool transmits(int material) const;
+  bool is_coated(int material) const;
 
   scatter::Material convert(const scenedesc::BsdfDesc& b);
   // A two-sided wrapper around something that lets light through is replaced by its contents: -1 if it may

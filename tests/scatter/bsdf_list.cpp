@@ -78,6 +78,18 @@ BsdfCase oren_nayar(std::string name, float rho, float alpha) {
   return single("roughdiffuse_" + name, RoughDiffuseMaterial{gray(rho), number(alpha)});
 }
 
+CoatingMaterial layer(NormalDistribution d, float alpha, float eta, float depth, float weight) {
+  return {0,
+          eta,
+          gray(1),
+          color(depth, 0.5f * depth, 2 * depth),
+          number(weight),
+          d,
+          number(alpha),
+          number(alpha),
+          alpha == 0};
+}
+
 BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
   auto pixels = std::make_shared<TexturePixels>();
   pixels->width = width, pixels->height = height;
@@ -137,6 +149,35 @@ std::vector<BsdfCase> build() {
   list.back().energy_exempt.clear();
   list.push_back(principled("everything", 0.3f, 0.4f, 0.4f, 0.5f));
   list.push_back(principled("opaque_extras", 0.2f, 0, 0.6f, 1));
+
+  list.push_back(nested("coating_smooth_diffuse", DiffuseMaterial{gray(1)}, layer(kGgx, 0, 1.5f, 0, 1)));
+  list.push_back(nested("coating_smooth_absorbing", DiffuseMaterial{color(0.8f, 0.5f, 0.2f)},
+                        layer(kGgx, 0, 1.5f, 0.3f, 1)));
+  list.push_back(nested("coating_rough_diffuse", DiffuseMaterial{gray(1)}, layer(kGgx, 0.3f, 1.5f, 0, 1)));
+  list.push_back(nested("coating_smooth_mirror", perfect_mirror(kGgx, 0), layer(kGgx, 0, 1.5f, 0, 1)));
+  list.back().lossless = true;
+  list.push_back(nested("coating_smooth_metal", perfect_mirror(kGgx, 0.2f), layer(kGgx, 0, 1.5f, 0, 1)));
+  list.push_back(
+      nested("coating_rough_smooth_metal", conductor(kGgx, 0, 0), layer(kGgx, 0.3f, 1.5f, 0.1f, 1)));
+  list.push_back(
+      nested("coating_rough_metal", perfect_mirror(kBeckmann, 0.5f), layer(kBeckmann, 0.2f, 1.7f, 0, 1)));
+  list.push_back(
+      nested("coating_anisotropic_metal", conductor(kGgx, 0.08f, 0.4f), layer(kGgx, 0.05f, 1.33f, 0, 1)));
+  list.push_back(
+      nested("coating_half_metal", conductor(kGgx, 0.3f, 0.3f), layer(kGgx, 0.05f, 1.5f, 0.2f, 0.5f)));
+  list.push_back(nested("coating_plastic", plastic(kGgx, 0.2f, true), layer(kGgx, 0, 1.6f, 0, 1)));
+  list.push_back(nested("coating_phong", PhongMaterial{gray(0.5f), gray(0.3f), number(30)},
+                        layer(kGgx, 0.2f, 1.5f, 0, 1)));
+  list.push_back(nested("coating_ward", WardMaterial{2, gray(0.3f), gray(0.6f), number(0.15f), number(0.3f)},
+                        layer(kBeckmann, 0, 1.5f, 0.1f, 1)));
+  list.push_back(nested("coating_thinner_than_air", conductor(kGgx, 0.3f, 0.3f), layer(kGgx, 0, 0.8f, 0, 1)));
+  list.push_back(
+      nested("coating_glass", dielectric(kGgx, 1.5f, 0.1f, 0.1f), layer(kGgx, 0.2f, 1.4f, 0.1f, 1)));
+  list.back().inside_too = true, list.back().eta = 1.5f;
+  BsdfCase coated_principled = principled("coated", 0.3f, 0.4f, 0.4f, 0.5f);
+  coated_principled.set.materials.push_back(layer(kGgx, 0.1f, 1.5f, 0.1f, 0.8f));
+  coated_principled.material = 1;
+  list.push_back(coated_principled);
 
   list.push_back(nested("mask_half", DiffuseMaterial{gray(0.5f)}, MaskMaterial{number(0.5f), 0}));
   list.push_back(nested("mask_plastic", plastic(kGgx, 0.2f, false), MaskMaterial{number(0.7f), 0}));

@@ -95,9 +95,10 @@ TEST_P(EveryBsdfPair, DeltaContinuationsAreWhatDeltaSamplesDraw) {
     ASSERT_TRUE(s->delta);
     bool found = false;
     for (int k = 0; k < n; ++k) {
-      if (all[k].kind != s->kind || length(all[k].wi - s->wi) > 1e-6f) continue;
-      found = true;
-      expect_close(all[k].weight, s->weight * s->pdf, 1e-5f, c.name);
+      // Two lobes may go the same way: a mirror's and its coating's.
+      const float off = norm2(all[k].weight - s->weight * s->pdf);
+      found = found || (all[k].kind == s->kind && length(all[k].wi - s->wi) <= 1e-6f &&
+                        off <= 2e-5f * norm2(all[k].weight));
     }
     EXPECT_TRUE(found) << c.name;
     // Smooth values do not see them.

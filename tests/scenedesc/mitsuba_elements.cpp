@@ -66,14 +66,14 @@ TEST(MitsubaAlias, IsASecondName) {
 TEST(MitsubaWarnings, NameTheLineAndWhatIsUsedInstead) {
   const SceneDesc scene =
       parse(kCamera +
-            "\n<shape type=\"hair\"/>\n<bsdf type=\"hair\"/>\n<bsdf type=\"coating\"><bsdf "
+            "\n<shape type=\"hair\"/>\n<bsdf type=\"hair\"/>\n<bsdf type=\"varnish\"><bsdf "
             "type=\"null\"/></bsdf>\n" +
             "<shape type=\"sphere\"><float name=\"raduis\" value=\"2\"/></shape>\n" +
             "<shape type=\"sphere\"><medium name=\"interior\" type=\"homogeneous\"/></shape>");
   ASSERT_EQ(scene.warnings.size(), 5u);
   const std::pair<int, const char*> expected[] = {{3, "shape \"hair\""},
                                                   {4, "BSDF \"hair\""},
-                                                  {5, "BSDF \"coating\""},
+                                                  {5, "BSDF \"varnish\""},
                                                   {6, "did you mean \"radius\"?"},
                                                   {7, "participating media"}};
   for (std::size_t i = 0; i < 5; ++i) {
@@ -222,6 +222,31 @@ TEST(MitsubaMixture, WeightsAndComplement) {
   EXPECT_FALSE(parts[1].complement);
   EXPECT_TRUE(
       std::holds_alternative<NullBsdfDesc>(scene.bsdfs.at(static_cast<std::size_t>(parts[0].bsdf)).kind));
+}
+
+TEST(MitsubaCoating, AbsorptionIsTimesThickness) {
+  const std::string inner = "<bsdf type=\"diffuse\"/></bsdf>";
+  const SceneDesc scene =
+      parse(kCamera + "<bsdf type=\"coating\"><float name=\"intIOR\" value=\"1.7\"/>" +
+                "<float name=\"extIOR\" value=\"1\"/><float name=\"thickness\" value=\"2\"/>" +
+                "<rgb name=\"sigmaA\" value=\"0.1, 0.25, 3\"/>" + inner +
+                "<bsdf type=\"roughcoating\"><float name=\"alpha\" value=\"0.3\"/>"
+                "<string name=\"distribution\" value=\"ggx\"/>" +
+                inner,
+            "0.6.0");
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto& smooth = std::get<CoatingDesc>(scene.bsdfs.at(1).kind);
+  EXPECT_EQ(smooth.eta, 1.7f);
+  EXPECT_EQ(smooth.absorption.value, Rgb(0.2f, 0.5f, 6));
+  EXPECT_EQ(smooth.alpha_u.value, 0);
+  EXPECT_EQ(smooth.nested, 0);
+  const auto& rough = std::get<CoatingDesc>(scene.bsdfs.at(3).kind);
+  EXPECT_EQ(rough.alpha_u.value, 0.3f);
+  EXPECT_EQ(rough.distribution, Distribution::ggx);
+  EXPECT_THROW(parse(kCamera + "<bsdf type=\"coating\"/>", "0.6.0"), InputError);
+  EXPECT_THROW(
+      parse(kCamera + "<bsdf type=\"coating\"><rgb name=\"sigmaA\" value=\"-1 0 0\"/>" + inner, "0.6.0"),
+      InputError);
 }
 
 // Fresnel reflectance at normal incidence: silver above 0.9 in every channel, gold and copper red before

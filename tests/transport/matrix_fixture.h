@@ -163,6 +163,18 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
   PrincipledDesc principled;
   principled.sheen = value(0.5f), principled.clearcoat = value(0.7f), principled.metallic = value(0.3f);
   all.push_back(add_bsdf(desc, principled));
+  for (const float alpha : {0.0f, 0.2f}) {  // metal and matt colour under varnish
+    CoatingDesc coating;
+    coating.alpha_u = coating.alpha_v = value(alpha);
+    coating.absorption = color(0.1f, 0.2f, 0.4f);
+    ConductorDesc metal;
+    metal.eta = Rgb(0.2f, 0.92f, 1.1f), metal.k = Rgb(3.9f, 2.4f, 2.2f);
+    metal.alpha_u = value(0.1f), metal.alpha_v = value(0.3f);
+    coating.nested = add_bsdf(desc, metal);
+    all.push_back(add_bsdf(desc, coating));
+    coating.nested = add_bsdf(desc, DiffuseDesc{color(0.7f, 0.5f, 0.3f)});
+    all.push_back(add_bsdf(desc, coating));
+  }
   for (std::size_t k = 0; k < all.size(); ++k)
     add_shape(desc, RectangleDesc{}, Transform::translate(1000 + 3.0 * static_cast<double>(k), 1000, 1000),
               all[k]);

@@ -17,11 +17,24 @@ BsdfKind phong(Reader& reader, Plugin& p);
 BsdfKind ward(Reader& reader, Plugin& p);
 BsdfKind principled(Reader& reader, Plugin& p);
 
+BsdfKind coating(Reader& reader, Plugin& p);
 BsdfKind mask(Reader& reader, Plugin& p);
 BsdfKind two_sided(Reader& reader, Plugin& p);
 BsdfKind bump_map(Reader& reader, Plugin& p);
 BsdfKind normal_map(Reader& reader, Plugin& p);
 BsdfKind mixture(Reader& reader, Plugin& p);
 BsdfKind blend(Reader& reader, Plugin& p);
+
+// Shared by the files of BSDFs (bsdfs_plain.cpp, bsdfs_nested.cpp).
+// int_ior over ext_ior, each a number or the name of a material.
+float relative_index(Plugin& p, const std::string& interior);
+struct Roughness {
+  Distribution distribution = Distribution::beckmann;
+  FloatInput alpha_u, alpha_v;
+};
+// "distribution", "alpha", "alpha_u" and "alpha_v" of a rough… plugin.
+Roughness roughness(Reader& reader, Plugin& p, float fallback);
+// Whether the plugin's name begins with "rough".
+bool is_rough(const Plugin& p);
 
 }  // namespace lumirank::scenedesc::mitsuba

@@ -20,6 +20,8 @@ const std::map<std::string, Builder>& builders() {
       {"ward", ward},
       {"principled", principled},
       {"principledthin", principled},
+      {"coating", coating},
+      {"roughcoating", coating},
       {"mask", mask},
       {"twosided", two_sided},
       {"bumpmap", bump_map},

@@ -23,6 +23,31 @@ int only_texture(Reader& reader, Plugin& p, std::initializer_list<const char*> n
 
 }  // namespace
 
+BsdfKind coating(Reader& reader, Plugin& p) {
+  CoatingDesc out;
+  out.eta = relative_index(p, "bk7");
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
+  const float thickness = p.number("thickness", 1);
+  if (!(thickness >= 0))
+    throw InputError(p.where_of("thickness"), "\"thickness\" of " + p.title() + " is negative");
+  out.absorption = p.color("sigma_a", Rgb(0), Intent::index);
+  if (out.absorption.texture == kNone) {
+    const Rgb a = out.absorption.value;
+    if (a.r < 0 || a.g < 0 || a.b < 0)
+      throw InputError(p.where_of("sigma_a"), "\"sigma_a\" of " + p.title() + " is negative");
+    out.absorption.value *= thickness;
+  } else if (thickness != 1) {
+    out.absorption.texture =
+        reader.add_texture("", p.where_of("sigma_a"), ScaleTextureDesc{out.absorption, Rgb(thickness)});
+  }
+  if (is_rough(p)) {
+    const Roughness r = roughness(reader, p, 0.1f);
+    out.distribution = r.distribution, out.alpha_u = r.alpha_u, out.alpha_v = r.alpha_v;
+  }
+  out.nested = only_bsdf(reader, p);
+  return out;
+}
+
 BsdfKind mask(Reader& reader, Plugin& p) {
   MaskDesc out;
   out.opacity = p.scalar("opacity", 0.5f);

@@ -26,20 +26,17 @@ float index_of(Plugin& p, const std::string& name, const std::string& fallback) 
                    "give a number, or one of: " + dielectric_names());
 }
 
-float relative_index(Plugin& p, const std::string& interior) {
-  const float inside = index_of(p, "int_ior", interior);
-  return inside / index_of(p, "ext_ior", "air");
-}
-
-struct Roughness {
-  Distribution distribution = Distribution::beckmann;
-  FloatInput alpha_u, alpha_v;
-};
-
 void check_alpha(Plugin& p, const std::string& name, const FloatInput& alpha) {
   if (alpha.texture == kNone && !(alpha.value >= 0))
     throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is negative",
                      "give a roughness from 0 to 1");
+}
+
+}  // namespace
+
+float relative_index(Plugin& p, const std::string& interior) {
+  const float inside = index_of(p, "int_ior", interior);
+  return inside / index_of(p, "ext_ior", "air");
 }
 
 Roughness roughness(Reader& reader, Plugin& p, float fallback) {
@@ -65,8 +62,6 @@ Roughness roughness(Reader& reader, Plugin& p, float fallback) {
 }
 
 bool is_rough(const Plugin& p) { return p.type().rfind("rough", 0) == 0; }
-
-}  // namespace
 
 BsdfKind diffuse(Reader&, Plugin& p) {
   DiffuseDesc out;

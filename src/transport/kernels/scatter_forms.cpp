@@ -8,6 +8,7 @@ namespace {
 using scatter::LobeKind;
 
 bool has_lane_code(const scatter::Lobe& lobe) {
+  if (lobe.coat) return false;
   switch (lobe.kind) {
     case LobeKind::diffuse:
     case LobeKind::interfaced_diffuse:

@@ -1,0 +1,262 @@
+// A dielectric layer over any material, as a sum of lobes: the layer's own reflection; every nested lobe seen
+// through it (coat.h), widened by what a rough layer scatters; and one diffuse lobe for the light that the
+// layer throws back inside.
+//
+// Light that the layer returns at the least reflectance R0 it can have stays in its lobe: 1 + a·R0 + … =
+// 1/(1 - a·R0), a being the lobe's albedo. What is returned beyond that (total internal reflection of broad
+// lobes) has forgotten its direction: with r the share returned of a lobe and rd that of diffuse light,
+// M = (Σ a)·Σ a·(r - R0)/(1 - rd·Σ a) is the reflectance of the diffuse lobe. For a diffuse base the sum is
+// the exact ρ/(1 - ρ·rd). No choice of a ≤ 1 makes energy (r ≥ R0), and every term is reciprocal.
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "scatter/albedo_table.h"
+#include "scatter/closure_builder.h"
+#include "scatter/coat.h"
+#include "scatter/interface.h"
+#include "scatter/microfacet.h"
+
+namespace lumirank::scatter {
+namespace {
+
+// What one layer is, at a point.
+struct Layer {
+  Coat coat;
+  NormalDistribution distribution = NormalDistribution::ggx;
+  float alpha = 0;  // 0: smooth
+  float diffuse_transmittance = 1;
+  float least = 0;        // R0
+  Rgb diffuse_return{0};  // rd, absorption on the way up and down included
+};
+
+// Four-point Gauss-Legendre rule on [0, 1].
+constexpr std::array<float, 4> kNodes{0.0694318f, 0.3300095f, 0.6699905f, 0.9305682f};
+constexpr std::array<float, 4> kWeights{0.1739274f, 0.3260726f, 0.3260726f, 0.1739274f};
+
+// The share of the light returned inside that is not absorbed on its way up and down, light being diffuse:
+// ∫R(μ)·exp(-2·depth/μ)μ dμ / ∫R(μ)μ dμ, split at the critical angle.
+float left_by_absorption(float eta, float depth) {
+  if (!(depth > 0)) return 1;
+  const float critical = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : 0.0f;
+  float all = 0, left = 0;
+  const auto add = [&](float from, float to) {
+    for (std::size_t k = 0; k < kNodes.size(); ++k) {
+      const float mu = from + (to - from) * kNodes[k];
+      const float flux = (to - from) * kWeights[k] * mu * fresnel_dielectric(mu, 1 / eta);
+      all += flux, left += flux * std::exp(-2 * depth / mu);
+    }
+  };
+  add(0, critical), add(critical, 1);
+  return all > 0 ? left / all : 1.0f;
+}
+
+Layer make_layer(float eta, float weight, Rgb depth, NormalDistribution distribution, float alpha) {
+  const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
+  Layer layer;
+  layer.distribution = distribution, layer.alpha = alpha;
+  Coat& coat = layer.coat;
+  coat.eta = eta, coat.bend = 1 + weight * (eta - 1), coat.depth = depth * weight;
+  for (int i = 0; i < 6; ++i) coat.t[i] = weight * k.c[i];
+  coat.t[0] += 1 - weight;
+  layer.diffuse_transmittance = 1 - weight + weight * k.diffuse_transmittance;
+  layer.least = weight * square((eta - 1) / (eta + 1));
+  // What the interface neither transmits nor reflects (masked by its own facets) is lost.
+  const float lost = 1 - k.internal_reflectance - k.diffuse_transmittance / (eta * eta);
+  const float returned =
+      std::max(0.0f, 1 - layer.diffuse_transmittance / (coat.bend * coat.bend) - weight * lost);
+  for (int c = 0; c < 3; ++c) layer.diffuse_return[c] = returned * left_by_absorption(eta, coat.depth[c]);
+  return layer;
+}
+
+// The share of a glossy lobe's light that the layer returns: light falls in vertically, facets of roughness
+// alpha reflect it, the layer reflects what comes at a slant. No direction of incidence has less.
+Rgb glossy_return(const Layer& layer, NormalDistribution distribution, float alpha) {
+  Rgb sum(0);
+  float all = 0;
+  for (std::size_t k = 0; k < kNodes.size(); ++k) {
+    const float u = kNodes[k];
+    const float tan2 =
+        alpha * alpha * (distribution == NormalDistribution::ggx ? u / (1 - u) : -std::log(1 - u));
+    const float cos_m2 = 1 / (1 + tan2), mu = 2 * cos_m2 - 1;
+    if (!(mu > 0)) continue;
+    const float g = kWeights[k];
+    const float r = fresnel_dielectric(mu, 1 / layer.coat.eta);
+    all += g;
+    for (int c = 0; c < 3; ++c) sum[c] += g * r * std::exp(-2 * layer.coat.depth[c] / mu);
+  }
+  const float weight = layer.least / square((layer.coat.eta - 1) / (layer.coat.eta + 1) + 1e-12f);
+  return all > 0 ? sum * (weight / all) : Rgb(0);
+}
+
+float phong_alpha(float exponent) { return std::sqrt(2 / (exponent + 2)); }
+
+// Directions that a rough layer bends on the way in and out: the variance of slopes that it adds to facets
+// underneath, as in Belcour 2018: half of (1 - 1/eta)²·alpha².
+float widened(const Layer& layer, float alpha) {
+  const float scattered = (1 - 1 / layer.coat.bend) * layer.alpha;
+  return std::sqrt(alpha * alpha + 0.5f * scattered * scattered);
+}
+
+void widen(const Layer& layer, Lobe& lobe) {
+  if (!(layer.alpha > 0)) return;
+  switch (lobe.kind) {
+    case LobeKind::delta_reflect:
+      if (lobe.variant == kThinSlab) return;
+      lobe.kind = LobeKind::microfacet_reflect;
+      lobe.distribution = layer.distribution;
+      lobe.alpha_u = lobe.alpha_v = std::max(kMinAlpha, widened(layer, 0));
+      return;
+    case LobeKind::microfacet_reflect:
+    case LobeKind::ward:
+      lobe.alpha_u = widened(layer, lobe.alpha_u), lobe.alpha_v = widened(layer, lobe.alpha_v);
+      return;
+    case LobeKind::phong:
+      lobe.alpha_u = std::max(0.0f, 2 / square(widened(layer, phong_alpha(lobe.alpha_u))) - 2);
+      return;
+    default:
+      return;
+  }
+}
+
+struct Base {
+  Rgb albedo{0};    // of light that comes vertically
+  Rgb returned{0};  // the part of it that the layer returns beyond R0 and to all directions
+};
+Base look_at(const Layer& layer, LobeView view) {
+  const Lobe& lobe = view.lobe;
+  const auto glossy = [&](Rgb albedo, NormalDistribution distribution, float alpha) {
+    Rgb beyond = glossy_return(layer, distribution, alpha);
+    for (int c = 0; c < 3; ++c)
+      beyond[c] = std::max(0.0f, beyond[c] - layer.least * std::exp(-2 * layer.coat.depth[c]));
+    return Base{albedo, albedo * beyond};
+  };
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+    case LobeKind::oren_nayar:
+    case LobeKind::disney_diffuse:
+      return {lobe.color, lobe.color * layer.diffuse_return};
+    case LobeKind::interfaced_diffuse: {
+      const Rgb albedo = lobe.color * (lobe.alpha_v * lobe.alpha_v);
+      return {albedo, albedo * layer.diffuse_return};
+    }
+    case LobeKind::microfacet_reflect: {
+      Lobe round = lobe;
+      round.alpha_u = round.alpha_v = std::min(1.0f, std::sqrt(lobe.alpha_u * lobe.alpha_v));
+      return glossy(microfacet_reflect_albedo({round, view.eta, view.outside}, 1), lobe.distribution,
+                    round.alpha_u);
+    }
+    case LobeKind::ward:
+      return glossy(lobe.color, NormalDistribution::beckmann, std::sqrt(lobe.alpha_u * lobe.alpha_v));
+    case LobeKind::phong:
+      return glossy(lobe.color, NormalDistribution::beckmann, phong_alpha(lobe.alpha_u));
+    default:
+      // Sheen and clear coat send back next to nothing, and what is transmitted is gone.
+      return {};
+  }
+}
+
+bool is_glossy(LobeKind kind) {
+  return kind == LobeKind::microfacet_reflect || kind == LobeKind::ward || kind == LobeKind::phong;
+}
+
+// A Lambertian lobe under the layer; without absorption it is plastic's base, which needs no coat.
+Lobe diffuse_under(const Layer& layer, Rgb color) {
+  Lobe lobe;
+  lobe.color = color;
+  lobe.coat = layer.coat;
+  if (!is_black(layer.coat.depth)) return lobe;
+  lobe.kind = LobeKind::interfaced_diffuse;
+  lobe.coat = Coat{};
+  lobe.distribution = layer.distribution;
+  lobe.alpha_u = layer.alpha;
+  lobe.alpha_v = layer.diffuse_transmittance;
+  lobe.eta = layer.coat.eta;
+  const float* t = layer.coat.t;
+  lobe.conductor_eta = {t[0], t[1], t[2]};
+  lobe.conductor_k = {t[3], t[4], t[5]};
+  lobe.color = color / (layer.coat.bend * layer.coat.bend);
+  return lobe;
+}
+
+struct LayerHere {
+  Layer layer;
+  float covered = 0, alpha_u = 0, alpha_v = 0;
+};
+LayerHere layer_at(const TextureSet& textures, const CoatingMaterial& m, const SurfacePoint& at) {
+  LayerHere here;
+  here.covered = fraction(textures, m.weight, at.uv);
+  if (here.covered == 0) return here;
+  if (!m.smooth) {
+    here.alpha_u = rough_alpha(textures, m.alpha_u, at.uv);
+    here.alpha_v = rough_alpha(textures, m.alpha_v, at.uv);
+  }
+  here.layer = make_layer(m.eta, here.covered, positive_color(textures, m.absorption, at.uv), m.distribution,
+                          std::sqrt(here.alpha_u * here.alpha_v));
+  return here;
+}
+
+}  // namespace
+
+Rgb coating_passage(const TextureSet& textures, const CoatingMaterial& m, const SurfacePoint& at, Vec3f w) {
+  const LayerHere here = layer_at(textures, m, at);
+  return here.covered > 0 ? coat_passage(here.layer.coat, std::abs(dot(w, at.shading.n))) : Rgb(1);
+}
+
+void ClosureBuilder::leaf(const CoatingMaterial& m, const SurfacePoint& at, float weight) {
+  const LayerHere here = layer_at(set_.textures, m, at);
+  if (here.covered == 0) return add(m.nested, at, weight);
+  const Layer& layer = here.layer;
+
+  ClosureBuilder inner(set_, wo_);
+  inner.add(m.nested, at, 1);
+  const Closure nested = inner.finish(at);
+  SurfacePoint point = at;
+  point.shading = nested.frame, point.ng = nested.ng;
+
+  if (front(at)) {
+    Lobe own;
+    own.kind = m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect;
+    own.color = reflectance(set_.textures, m.specular_reflectance, at.uv) * here.covered;
+    own.fresnel = FresnelKind::dielectric;
+    own.distribution = m.distribution;
+    own.alpha_u = here.alpha_u, own.alpha_v = here.alpha_v;
+    own.eta = m.eta;
+    if (m.eta != 1) push(own, point, weight);
+  }
+
+  Rgb albedo(0), returned(0);
+  for (int k = 0; k < nested.count; ++k) {
+    Lobe lobe = nested.lobes[k];
+    if (lobe.coat) throw InternalError("a coating over a coating");
+    // From behind there is no layer before what is reflected there.
+    if (!front(at) && !transmits(lobe.kind)) {
+      push(lobe, point, weight);
+      continue;
+    }
+    widen(layer, lobe);
+    const Base base = look_at(layer, view_from(lobe, true));
+    albedo += base.albedo, returned += base.returned;
+    if (lobe.kind == LobeKind::diffuse) {
+      push(diffuse_under(layer, lobe.color), point, weight);
+      continue;
+    }
+    lobe.coat = layer.coat;
+    if (is_glossy(lobe.kind)) {
+      for (int c = 0; c < 3; ++c) {
+        const float stays = layer.least * std::exp(-2 * layer.coat.depth[c]);
+        lobe.color[c] /= 1 - std::min(base.albedo[c], 1.0f) * stays;
+      }
+    }
+    push(lobe, point, weight);
+  }
+  if (!front(at)) return;
+  Rgb again(0);
+  for (int c = 0; c < 3; ++c) {
+    const float a = std::min(albedo[c], 1.0f);
+    again[c] = a * returned[c] / (1 - a * layer.diffuse_return[c]);
+  }
+  push(diffuse_under(layer, again), point, weight);
+}
+
+}  // namespace lumirank::scatter
