@@ -180,7 +180,12 @@ std::string kind(const ShapeDesc& s) {
             for (const int shape : x.shapes) text += " " + std::to_string(shape);
             return text;
           },
-          [](const InstanceDesc& x) { return "instance of shape " + std::to_string(x.group); }},
+          [](const InstanceDesc& x) { return "instance of shape " + std::to_string(x.group); },
+          [](const InlineMeshDesc& x) {
+            if (!x.mesh) return "mesh " + x.name + " (missing)";
+            return "mesh " + x.name + " of " + std::to_string(x.mesh->triangle_count()) + " triangles" +
+                   (x.mesh->normals.empty() ? ", face normals" : "");
+          }},
       s.kind);
 }
 

@@ -32,6 +32,11 @@ MeshData parse_obj(const std::string& bytes, const std::string& filename);
 MeshData parse_ply(const std::string& bytes, const std::string& filename);
 MeshData parse_serialized(const std::string& bytes, const std::string& filename, int shape_index);
 
+// For readers whose scene files hold meshes themselves: what parse_* do to every mesh. Lists that are not as
+// long as the positions and indices beyond them are an error at `where`, as are a vertex that is not finite
+// and a mesh without any triangle that has an area; the rest is mended and noted.
+MeshData check_mesh(MeshData mesh, const SourceLocation& where);
+
 // Human-readable listing, for `lumirank info` and debugging.
 std::string describe(const SceneDesc& scene);
 

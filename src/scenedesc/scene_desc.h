@@ -14,6 +14,7 @@
 #include "base/rgb.h"
 #include "base/transform.h"
 #include "base/vec.h"
+#include "scenedesc/mesh.h"
 
 namespace lumirank::scenedesc {
 
@@ -206,6 +207,12 @@ struct MeshFileDesc {
   bool flip_tex_coords = false;
   std::optional<float> max_smooth_angle;  // degrees; normals are made anew
 };
+// A mesh that the reader already holds: checked (see check_mesh) and never changed again. Shapes that share
+// it share its geometry.
+struct InlineMeshDesc {
+  std::shared_ptr<const MeshData> mesh;
+  std::string name;  // for messages and listings
+};
 struct RectangleDesc {};  // [-1,1]² in z = 0, normal +z
 struct CubeDesc {};       // [-1,1]³
 struct SphereDesc {
@@ -251,7 +258,7 @@ struct ShapeDesc {
   std::optional<AreaEmitterDesc> emitter;
   bool in_group = false;  // a member of a shape group: not in the world by itself
   std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, CurvesDesc,
-               ShapeGroupDesc, InstanceDesc>
+               ShapeGroupDesc, InstanceDesc, InlineMeshDesc>
       kind;
 };
 

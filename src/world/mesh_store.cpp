@@ -17,9 +17,8 @@ namespace {
 // All shining spheres together get about this many triangles: each of their triangles is kept in world space.
 constexpr double kShiningSphereTriangles = 1 << 20;
 
-geometry::TriangleMesh from_file(const sd::MeshFileDesc& file, std::vector<std::string>& left_out,
-                                 std::vector<sd::MeshData::Mended>& mended) {
-  sd::MeshData data = sd::read_mesh(file);
+geometry::TriangleMesh convert(sd::MeshData data, std::vector<std::string>& left_out,
+                               std::vector<sd::MeshData::Mended>& mended) {
   left_out = std::move(data.left_out);
   mended = std::move(data.mended);
   geometry::TriangleMesh mesh;
@@ -33,6 +32,12 @@ geometry::TriangleMesh from_file(const sd::MeshFileDesc& file, std::vector<std::
     n = len > 0 && std::isfinite(len) ? n / len : Vec3f{};
   }
   return mesh;
+}
+
+// What messages about a shape's mesh call it.
+const std::string& mesh_name(const sd::ShapeDesc& shape) {
+  if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind)) return held->name;
+  return std::get<sd::MeshFileDesc>(shape.kind).filename;
 }
 
 void check_numbers(const sd::ShapeDesc& shape, const std::vector<float>& numbers) {
@@ -60,13 +65,16 @@ void restore_area(geometry::TriangleMesh& mesh, Vec3f center, float radius) {
 }  // namespace
 
 int MeshStore::use(const sd::ShapeDesc& shape) {
-  Key key{shape.kind.index(), {}, {}, false};
-  auto& [kind, name, numbers, shines] = key;
+  Key key{shape.kind.index(), {}, {}, false, nullptr};
+  auto& [kind, name, numbers, shines, held] = key;
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind)) {
     name = file->filename;
     numbers = {static_cast<float>(file->format), static_cast<float>(file->shape_index),
                file->face_normals ? 1.0f : 0.0f, file->flip_tex_coords ? 1.0f : 0.0f,
                file->max_smooth_angle.value_or(-1.0f)};
+  } else if (const auto* mesh = std::get_if<sd::InlineMeshDesc>(&shape.kind)) {
+    if (!mesh->mesh) throw InternalError("MeshStore: an inline mesh without its data");
+    held = mesh->mesh.get();
   } else if (const auto* sphere = std::get_if<sd::SphereDesc>(&shape.kind)) {
     numbers = {sphere->center.x, sphere->center.y, sphere->center.z, sphere->radius};
     shines = shape.emitter.has_value();
@@ -87,7 +95,9 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
 geometry::TriangleMesh MeshStore::make(Source& source) const {
   const sd::ShapeDesc& shape = *source.shape;
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind))
-    return from_file(*file, source.left_out, source.mended);
+    return convert(sd::read_mesh(*file), source.left_out, source.mended);
+  if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind))
+    return convert(*held->mesh, source.left_out, source.mended);
   if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
   if (std::holds_alternative<sd::CubeDesc>(shape.kind)) return geometry::make_cube();
   if (std::holds_alternative<sd::DiskDesc>(shape.kind)) return geometry::make_disk();
@@ -118,11 +128,10 @@ void MeshStore::load(Notes& notes) {
   for (const auto& failure : failures)
     if (failure) std::rethrow_exception(failure);
   for (const auto& source : sources_) {
-    const auto* file = std::get_if<sd::MeshFileDesc>(&source.shape->kind);
     for (const std::string& what : source.left_out)
-      notes.note(source.shape->where, file->filename + ": " + what + " left out");
+      notes.note(source.shape->where, mesh_name(*source.shape) + ": " + what + " left out");
     for (const auto& mended : source.mended)
-      notes.warn(source.shape->where, file->filename + ": " + mended.what, mended.used_instead);
+      notes.warn(source.shape->where, mesh_name(*source.shape) + ": " + mended.what, mended.used_instead);
   }
 }
 

@@ -28,8 +28,9 @@ class MeshStore {
   geometry::TriangleMesh take(int index) { return std::move(meshes_[static_cast<std::size_t>(index)]); }
 
  private:
-  // Kind of shape, its file and options, its numbers, whether it shines: equal keys are the same mesh.
-  using Key = std::tuple<std::size_t, std::string, std::vector<float>, bool>;
+  // Kind of shape, its file and options, its numbers, whether it shines, the mesh that the reader holds:
+  // equal keys are the same mesh.
+  using Key = std::tuple<std::size_t, std::string, std::vector<float>, bool, const void*>;
   struct Source {
     const scenedesc::ShapeDesc* shape;
     bool shines;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "film/image_io.h"
+#include "scenedesc/readers.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::world {
@@ -59,6 +60,30 @@ TEST(Build, RefusesWhatMakesNoScene) {
   mesh.filename = "/nowhere/at/all.obj";
   add_shape(missing, mesh, {}, 9);
   expect_refused(missing, 0, "/nowhere/at/all.obj");
+}
+
+TEST(Build, MeshesThatTheReaderHoldsAreSharedAndTheirNotesNameThem) {
+  auto desc = empty_scene();
+  sd::MeshData data;
+  data.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  data.indices = {0, 1, 2, 0, 1, 1};
+  data.uvs = {{0, 0}, {1, 0}, {std::nanf(""), 1}};
+  const sd::InlineMeshDesc mesh{std::make_shared<const sd::MeshData>(sd::check_mesh(data, {"scene.pbrt", 4})),
+                                "floor"};
+  const int lamp = add_shape(desc, mesh, Transform::translate(0, 0, 1), 7);
+  add_shape(desc, mesh, Transform::scale(3, 3, 3), 8);
+  shine(desc, lamp, {Rgb(2)});
+  std::vector<sd::Warning> warnings;
+  const auto world = build(desc, &warnings);
+  // One mesh in the file, two in the world; a triangle of legs 2 has area 2.
+  EXPECT_EQ(world.info().triangles, 2u);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].what.find("floor: 1 degenerate triangle"), std::string::npos);
+  EXPECT_NE(warnings[1].what.find("floor: 1 texture coordinate"), std::string::npos);
+  const auto& area = std::get<emitters::AreaEmitter>(world.emitters()[0].kind);
+  ASSERT_EQ(area.triangles.size(), 1u);
+  EXPECT_FLOAT_EQ(area.triangles[0].area, 2);
+  EXPECT_EQ(area.triangles[0].p0, (Vec3f{0, 0, 1}));
 }
 
 TEST(Build, RefusesCyclesAndDanglingReferences) {

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "scenedesc/meshes/mesh_parts.h"
+#include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -72,17 +73,14 @@ void mend_normals(MeshData& mesh) {
   note(mesh, missing, "missing normal", "missing normals", "the direction of the faces around");
 }
 
-}  // namespace
-
-MeshData checked(MeshData mesh, const std::string& filename) {
+MeshData mend(MeshData mesh, const SourceLocation& where) {
   for (std::size_t k = 0; k < mesh.positions.size(); ++k)
     if (!is_finite(mesh.positions[k]))
-      throw InputError({filename, 0}, "vertex " + std::to_string(k) + " is not finite", "repair the mesh");
+      throw InputError(where, "vertex " + std::to_string(k) + " is not finite", "repair the mesh");
   const bool had_triangles = !mesh.indices.empty();
   drop_degenerate(mesh);
   if (mesh.indices.empty())
-    throw InputError({filename, 0},
-                     had_triangles ? "all triangles are degenerate" : "the mesh has no triangle",
+    throw InputError(where, had_triangles ? "all triangles are degenerate" : "the mesh has no triangle",
                      "export it again, with faces");
   std::vector<std::uint32_t> bad;
   for (std::uint32_t k = 0; k < mesh.uvs.size(); ++k)
@@ -95,5 +93,32 @@ MeshData checked(MeshData mesh, const std::string& filename) {
   mend_normals(mesh);
   return mesh;
 }
+
+}  // namespace
+
+MeshData check_mesh(MeshData mesh, const SourceLocation& where) {
+  const std::size_t vertices = mesh.positions.size();
+  const auto check_list = [&](std::size_t size, const char* what) {
+    if (size != 0 && size != vertices)
+      throw InputError(
+          where,
+          "the mesh has " + std::to_string(vertices) + " vertices and " + std::to_string(size) + " " + what,
+          "give one for each vertex");
+  };
+  check_list(mesh.normals.size(), "normals");
+  check_list(mesh.uvs.size(), "texture coordinates");
+  check_list(mesh.colors.size(), "vertex colours");
+  if (mesh.indices.size() % 3 != 0)
+    throw InputError(where, "the mesh has " + std::to_string(mesh.indices.size()) + " indices",
+                     "three make a triangle");
+  for (const std::uint32_t k : mesh.indices)
+    if (k >= vertices)
+      throw InputError(
+          where, "the mesh refers to vertex " + std::to_string(k) + " and has " + std::to_string(vertices),
+          "indices start at 0");
+  return mend(std::move(mesh), where);
+}
+
+MeshData checked(MeshData mesh, const std::string& filename) { return mend(std::move(mesh), {filename, 0}); }
 
 }  // namespace lumirank::scenedesc

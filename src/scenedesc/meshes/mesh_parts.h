@@ -8,7 +8,7 @@
 
 namespace lumirank::scenedesc {
 
-// One triangle's corners must be below `vertices`; the caller has checked that. Leaves degenerate triangles
+// Every corner must be the number of a vertex; the caller has checked that. Leaves degenerate triangles
 // out, gives normals that are missing (zero or not finite) the direction of the faces around them, replaces
 // uvs and colours that are not finite by 0, and notes what it did to vertices in use. InputError if a vertex
 // is not finite or no triangle is left.
