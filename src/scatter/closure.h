@@ -51,17 +51,18 @@ enum class NormalDistribution : std::uint8_t { beckmann, ggx };
 
 inline constexpr std::uint8_t kThinSlab = 1;
 
-// A dielectric layer over a lobe, as seen from outside (coat.h). 44 bytes.
+// A dielectric layer over a lobe, as seen from outside (coat.h). 52 bytes.
 struct Coat {
   float eta = 0;                    // index of the layer over that of the outside; 0: there is no layer
   float bend = 1;                   // index by which directions are bent: eta where the layer covers all
   float t[6] = {0, 1, 0, 0, 0, 0};  // coefficients of its transmittance, as in interface.h
   Rgb depth{0};                     // optical thickness: absorption coefficient times thickness
+  float trapped = 0, width = 1;     // glossy lobes: see coat_return()
   explicit operator bool() const { return eta > 0; }
   friend bool operator==(const Coat&, const Coat&) = default;
 };
 
-// Plain data; which fields mean something depends on `kind`. 100 bytes.
+// Plain data; which fields mean something depends on `kind`. 108 bytes.
 struct Lobe {
   LobeKind kind = LobeKind::diffuse;
   FresnelKind fresnel = FresnelKind::none;

@@ -29,11 +29,24 @@ inline float coat_cosine(const Coat& coat, float cos_theta) {
   return std::sqrt(std::max(0.0f, 1 - (1 - cos_theta * cos_theta) / (coat.bend * coat.bend)));
 }
 
+// A glossy lobe near the critical angle loses light to total internal reflection, of which most comes back to
+// the same lobe after another bounce. The square of this factor, one for either direction, is what leaves in
+// the end over what leaves at once: 1 + trapped·(1/p - 1) with p = (1 + x/√(1 + x²))/2, a smooth step in the
+// distance x of the direction's cosine from the critical one in units of the lobe's width. A hundredth is
+// taken off, so that far from the critical angle the factor is 1.
+inline float coat_return(const Coat& coat, float inside) {
+  const float critical = std::sqrt(std::max(0.0f, 1 - 1 / (coat.bend * coat.bend)));
+  const float x = (inside - critical) / coat.width;
+  const float y = std::sqrt(1 + x * x) - x;
+  return std::sqrt(1 + coat.trapped * std::max(0.0f, y * y - 0.01f));
+}
+
 // T·A for one direction outside.
 inline Rgb coat_passage(const Coat& coat, float cos_theta) {
   const float inside = coat_cosine(coat, cos_theta);
   if (!(inside > 0)) return Rgb(0);
-  const float t = coat_transmittance(coat, cos_theta);
+  float t = coat_transmittance(coat, cos_theta);
+  if (coat.trapped > 0) t *= coat_return(coat, inside);
   if (is_black(coat.depth)) return Rgb(t);
   const Rgb d = coat.depth;
   return Rgb(std::exp(-d.r / inside), std::exp(-d.g / inside), std::exp(-d.b / inside)) * t;

@@ -6,7 +6,10 @@
 // 1/(1 - a·R0), a being the lobe's albedo. What is returned beyond that (total internal reflection of broad
 // lobes) has forgotten its direction: with r the share returned of a lobe and rd that of diffuse light,
 // M = (Σ a)·Σ a·(r - R0)/(1 - rd·Σ a) is the reflectance of the diffuse lobe. For a diffuse base the sum is
-// the exact ρ/(1 - ρ·rd). No choice of a ≤ 1 makes energy (r ≥ R0), and every term is reciprocal.
+// the exact ρ/(1 - ρ·rd). Every term is reciprocal. Glossy lobes: part of what is returned beyond R0 comes
+// back to the lobe (coat_return()) and the rest is lost in the masking of further bounces; the two numbers
+// kTrapped and kBeyond were chosen by comparison with a random walk between the two surfaces
+// (docs/decisions.md).
 #include <array>
 #include <cmath>
 
@@ -22,7 +25,8 @@ namespace {
 
 // What one layer is, at a point.
 struct Layer {
-  Coat coat;
+  Coat coat;                            // over diffuse and transmitting lobes
+  float twice[6] = {0, 1, 0, 0, 0, 0};  // the transmittance's coefficients over glossy lobes
   NormalDistribution distribution = NormalDistribution::ggx;
   float alpha = 0;  // 0: smooth
   float diffuse_transmittance = 1;
@@ -57,8 +61,8 @@ Layer make_layer(float eta, float weight, Rgb depth, NormalDistribution distribu
   layer.distribution = distribution, layer.alpha = alpha;
   Coat& coat = layer.coat;
   coat.eta = eta, coat.bend = 1 + weight * (eta - 1), coat.depth = depth * weight;
-  for (int i = 0; i < 6; ++i) coat.t[i] = weight * k.c[i];
-  coat.t[0] += 1 - weight;
+  for (int i = 0; i < 6; ++i) coat.t[i] = weight * k.c[i], layer.twice[i] = weight * k.twice[i];
+  coat.t[0] += 1 - weight, layer.twice[0] += 1 - weight;
   layer.diffuse_transmittance = 1 - weight + weight * k.diffuse_transmittance;
   layer.least = weight * square((eta - 1) / (eta + 1));
   // What the interface neither transmits nor reflects (masked by its own facets) is lost.
@@ -91,10 +95,18 @@ Rgb glossy_return(const Layer& layer, NormalDistribution distribution, float alp
 
 float phong_alpha(float exponent) { return std::sqrt(2 / (exponent + 2)); }
 
+// Of a glossy lobe.
+float round_alpha(const Lobe& lobe) {
+  return lobe.kind == LobeKind::phong ? phong_alpha(lobe.alpha_u) : std::sqrt(lobe.alpha_u * lobe.alpha_v);
+}
+
 // Directions that a rough layer bends on the way in and out: the variance of slopes that it adds to facets
-// underneath, as in Belcour 2018: half of (1 - 1/eta)²·alpha².
+// underneath, as in Belcour 2018. A facet that tilts by δ turns the direction inside by (1 -
+// cos/(eta·cos'))·δ, so more at a slant: taken at the mean cosine.
 float widened(const Layer& layer, float alpha) {
-  const float scattered = (1 - 1 / layer.coat.bend) * layer.alpha;
+  constexpr float cosine = 2.0f / 3;
+  const float turned = 1 - cosine / (layer.coat.bend * coat_cosine(layer.coat, cosine));
+  const float scattered = turned * layer.alpha;
   return std::sqrt(alpha * alpha + 0.5f * scattered * scattered);
 }
 
@@ -119,18 +131,26 @@ void widen(const Layer& layer, Lobe& lobe) {
   }
 }
 
+constexpr float kTrapped = 1.5f, kBeyond = 0.7f;
+
 struct Base {
-  Rgb albedo{0};    // of light that comes vertically
-  Rgb returned{0};  // the part of it that the layer returns beyond R0 and to all directions
+  Rgb albedo{0};      // of light that comes vertically
+  Rgb returned{0};    // the part of it that the layer returns beyond R0 and that leaves in all directions
+  float trapped = 0;  // of Coat
 };
+Base glossy_base(const Layer& layer, Rgb albedo, Rgb slanted, NormalDistribution distribution, float alpha) {
+  Rgb beyond = glossy_return(layer, distribution, alpha);
+  for (int c = 0; c < 3; ++c)
+    beyond[c] = std::max(0.0f, beyond[c] - layer.least * std::exp(-2 * layer.coat.depth[c]));
+  const float again = mean(slanted);  // the albedo of a further bounce
+  // A layer rougher than what it covers has no sharp critical angle.
+  const float sharp = alpha * alpha / (alpha * alpha + layer.alpha * layer.alpha);
+  return {albedo, albedo * beyond * (kBeyond * again), kTrapped * mean(albedo) * again * again * sharp};
+}
+
+// What the layer needs to know of a nested lobe.
 Base look_at(const Layer& layer, LobeView view) {
   const Lobe& lobe = view.lobe;
-  const auto glossy = [&](Rgb albedo, NormalDistribution distribution, float alpha) {
-    Rgb beyond = glossy_return(layer, distribution, alpha);
-    for (int c = 0; c < 3; ++c)
-      beyond[c] = std::max(0.0f, beyond[c] - layer.least * std::exp(-2 * layer.coat.depth[c]));
-    return Base{albedo, albedo * beyond};
-  };
   switch (lobe.kind) {
     case LobeKind::diffuse:
     case LobeKind::oren_nayar:
@@ -142,14 +162,15 @@ Base look_at(const Layer& layer, LobeView view) {
     }
     case LobeKind::microfacet_reflect: {
       Lobe round = lobe;
-      round.alpha_u = round.alpha_v = std::min(1.0f, std::sqrt(lobe.alpha_u * lobe.alpha_v));
-      return glossy(microfacet_reflect_albedo({round, view.eta, view.outside}, 1), lobe.distribution,
-                    round.alpha_u);
+      round.alpha_u = round.alpha_v = std::min(1.0f, round_alpha(lobe));
+      const LobeView seen{round, view.eta, view.outside};
+      return glossy_base(layer, microfacet_reflect_albedo(seen, 1), microfacet_reflect_albedo(seen, 0.5f),
+                         lobe.distribution, round.alpha_u);
     }
     case LobeKind::ward:
-      return glossy(lobe.color, NormalDistribution::beckmann, std::sqrt(lobe.alpha_u * lobe.alpha_v));
+      return glossy_base(layer, lobe.color, lobe.color, NormalDistribution::beckmann, round_alpha(lobe));
     case LobeKind::phong:
-      return glossy(lobe.color, NormalDistribution::beckmann, phong_alpha(lobe.alpha_u));
+      return glossy_base(layer, lobe.color, lobe.color, NormalDistribution::beckmann, round_alpha(lobe));
     default:
       // Sheen and clear coat send back next to nothing, and what is transmitted is gone.
       return {};
@@ -243,6 +264,12 @@ void ClosureBuilder::leaf(const CoatingMaterial& m, const SurfacePoint& at, floa
     }
     lobe.coat = layer.coat;
     if (is_glossy(lobe.kind)) {
+      std::copy(layer.twice, layer.twice + 6, lobe.coat.t);
+      lobe.coat.trapped = base.trapped;
+      // Normals of GGX have long tails.
+      const bool long_tail =
+          lobe.kind == LobeKind::microfacet_reflect && lobe.distribution == NormalDistribution::ggx;
+      lobe.coat.width = (long_tail ? 1.0f : 0.6f) * round_alpha(lobe) / lobe.coat.bend;
       for (int c = 0; c < 3; ++c) {
         const float stays = layer.least * std::exp(-2 * layer.coat.depth[c]);
         lobe.color[c] /= 1 - std::min(base.albedo[c], 1.0f) * stays;

@@ -87,7 +87,7 @@ std::array<double, kTerms> solve(Matrix m) {
 }
 
 // Fits T at the rule's cosines by the terms of interface_transmittance(), starting from the smooth interface.
-InterfaceCoefficients fit(const Rule& rule, float eta, const std::array<double, kCosines>& t) {
+void fit(const Rule& rule, float eta, const std::array<double, kCosines>& t, float out[kTerms]) {
   Matrix m{};
   for (int k = 0; k < kCosines; ++k) {
     const double s = 1 - fresnel_dielectric(static_cast<float>(rule.x[k]), eta);
@@ -100,9 +100,24 @@ InterfaceCoefficients fit(const Rule& rule, float eta, const std::array<double, 
   // A whiff of regularisation: near eta = 1 all s are 1 and the powers cannot be told apart.
   for (int i = 0; i < kTerms; ++i) m[i][i] += 1e-9;
   const std::array<double, kTerms> x = solve(m);
-  InterfaceCoefficients out;
-  for (int i = 0; i < kTerms; ++i) out.c[i] = static_cast<float>(x[i] + (i == 1 ? 1.0 : 0.0));
-  return out;
+  for (int i = 0; i < kTerms; ++i) out[i] = static_cast<float>(x[i] + (i == 1 ? 1.0 : 0.0));
+}
+
+// Transmittance from inside at the angle refracted from `mu` outside. Interpolated between the rule's cosines
+// is the difference from the smooth interface, which is small where that one changes fast.
+double out_again(const Rule& rule, float eta, double mu, const std::array<InterfaceMeans, kCosines>& inside) {
+  const double sin2 = (1 - mu * mu) / (eta * eta);
+  if (sin2 >= 1) return 0;
+  const auto smooth = [&](double c) { return 1.0 - fresnel_dielectric(static_cast<float>(c), 1 / eta); };
+  const auto difference = [&](std::size_t k) { return inside[k].transmittance - smooth(rule.x[k]); };
+  const double c = std::sqrt(1 - sin2);
+  // The rule's cosines fall or rise; either way a neighbour pair encloses c, or c lies beyond the last.
+  double found = difference(rule.x[0] > rule.x[kCosines - 1] ? 0 : kCosines - 1);
+  for (std::size_t k = 0; k + 1 < kCosines; ++k) {
+    const double f = (c - rule.x[k]) / (rule.x[k + 1] - rule.x[k]);
+    if (f >= 0 && f <= 1) found = difference(k) + f * (difference(k + 1) - difference(k));
+  }
+  return std::max(0.0, smooth(c) + found);
 }
 
 }  // namespace
@@ -132,7 +147,12 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
       const auto eta = static_cast<float>(std::exp(kLogRange * (2.0 * e / (kEtas - 1) - 1)));
       std::array<double, kCosines> t;
       for (int k = 0; k < kCosines; ++k) t[k] = means[e][k].transmittance;
-      InterfaceCoefficients cell = fit(rule, eta, t);
+      InterfaceCoefficients cell;
+      fit(rule, eta, t, cell.c);
+      std::array<double, kCosines> twice;
+      for (int k = 0; k < kCosines; ++k)
+        twice[k] = std::sqrt(t[k] * out_again(rule, eta, rule.x[k], means[kEtas - 1 - e]));
+      fit(rule, eta, twice, cell.twice);
       // From inside, the relative index is the inverse one, whose means stand in the mirrored column.
       // Reflectance jumps at the critical angle, which the rule cannot integrate; what is lost does not.
       double outside = 0, lost_inside = 0;
@@ -158,14 +178,14 @@ InterfaceCoefficients InterfaceTable::lookup(float alpha, float eta) const {
   const float fa = a - static_cast<float>(a0), fe = e - static_cast<float>(e0);
   InterfaceCoefficients out;
   const float held = std::exp(static_cast<float>(kLogRange) * (2 * e / (kEtas - 1) - 1));
-  out.c[1] = 0;
+  out.c[1] = out.twice[1] = 0;
   out.diffuse_transmittance = 1 - fresnel_diffuse_reflectance(held);
   out.internal_reflectance = fresnel_diffuse_reflectance(1 / held);
   for (int da = 0; da < 2; ++da) {
     for (int de = 0; de < 2; ++de) {
       const float w = (da ? fa : 1 - fa) * (de ? fe : 1 - fe);
       const InterfaceCoefficients& cell = cells_[static_cast<std::size_t>(a0 + da) * kEtas + (e0 + de)];
-      for (int i = 0; i < kTerms; ++i) out.c[i] += w * cell.c[i];
+      for (int i = 0; i < kTerms; ++i) out.c[i] += w * cell.c[i], out.twice[i] += w * cell.twice[i];
       out.diffuse_transmittance += w * cell.diffuse_transmittance;
       out.internal_reflectance += w * cell.internal_reflectance;
     }

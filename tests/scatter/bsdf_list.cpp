@@ -166,6 +166,9 @@ std::vector<BsdfCase> build() {
   list.push_back(
       nested("coating_half_metal", conductor(kGgx, 0.3f, 0.3f), layer(kGgx, 0.05f, 1.5f, 0.2f, 0.5f)));
   list.push_back(nested("coating_plastic", plastic(kGgx, 0.2f, true), layer(kGgx, 0, 1.6f, 0, 1)));
+  list.push_back(nested("coating_sharp_mirror", perfect_mirror(kGgx, 0.05f), layer(kGgx, 0, 2, 0, 1)));
+  list.push_back(
+      nested("coating_sharp_beckmann_mirror", perfect_mirror(kBeckmann, 0.1f), layer(kGgx, 0, 1.2f, 0, 1)));
   list.push_back(nested("coating_phong", PhongMaterial{gray(0.5f), gray(0.3f), number(30)},
                         layer(kGgx, 0.2f, 1.5f, 0, 1)));
   list.push_back(nested("coating_ward", WardMaterial{2, gray(0.3f), gray(0.6f), number(0.15f), number(0.3f)},

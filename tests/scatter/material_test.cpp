@@ -260,7 +260,7 @@ TEST(Closure, AddRefusesWhatDoesNotFit) {
   lobe.color = Rgb(0.1f);
   for (int i = 0; i < kMaxLobes; ++i) c.add(lobe);
   EXPECT_THROW(c.add(lobe), InternalError);
-  EXPECT_LE(sizeof(Lobe), 104u);
+  EXPECT_LE(sizeof(Lobe), 112u);
 }
 
 TEST(Closure, RoughnessIsThatOfTheSharpestLobe) {
