@@ -59,7 +59,7 @@ linalg::ColumnSketch& explored(std::size_t lights, std::size_t rows) {
   if (last != lights) {
     last = lights;
     sketch.reset();
-    sketch = std::make_unique<linalg::ColumnSketch>(lights, 50, 1);
+    sketch = std::make_unique<linalg::ColumnSketch>(linalg::ColumnSketch::Shape{lights, 50}, 1);
     for (std::size_t i = 0; i < rows; ++i) sketch->add_row(i, 1, wall_row(i, lights));
     sketch->points();
   }
@@ -70,9 +70,9 @@ void take_rows(benchmark::State& state) {
   const auto lights = static_cast<std::size_t>(state.range(0));
   const auto row = wall_row(0, lights);
   for (auto _ : state) {
-    linalg::ColumnSketch sketch(lights, 50, 1);
+    linalg::ColumnSketch sketch({lights, 50}, 1);
     for (std::uint64_t i = 0; i < 300; ++i) sketch.add_row(i, 1, row);
-    benchmark::DoNotOptimize(sketch.points().data);
+    benchmark::DoNotOptimize(sketch.points().units);
   }
 }
 
@@ -96,7 +96,8 @@ void cluster_columns(benchmark::State& state) {
   }
   const auto points = sketch.points();
   linalg::PointSum sum(points.dimension);
-  for (std::size_t j = 0; j < lights; ++j) sum.add(points[j], 0);
+  linalg::PointReader reader(points);
+  for (std::size_t j = 0; j < lights; ++j) sum.add(reader[j], 0);
   state.counters["relative_error"] = std::sqrt(cost / sum.squared_length());
 }
 

@@ -2,6 +2,7 @@
 // grain, and what is reduced is reduced in the order of the pieces.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -26,6 +27,19 @@ T parallel_sum(std::size_t n, std::size_t grain, const T& zero, Piece&& piece) {
   T sum = zero;
   for (const T& p : partial) sum = sum + p;
   return sum;
+}
+
+// Sorts; elements that are equal under `less` may end in any order, so it should leave no two of them equal.
+template <typename Iterator, typename Less>
+void parallel_sort(Iterator begin, Iterator end, const Less& less) {
+  constexpr std::size_t kPiece = 1 << 15;
+  const auto n = static_cast<std::size_t>(end - begin);
+  const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(std::min(k, n)); };
+  parallel_for(n, kPiece, [&](std::size_t b, std::size_t e) { std::sort(at(b), at(e), less); });
+  for (std::size_t sorted = kPiece; sorted < n; sorted *= 2)
+    parallel_for(n, 2 * sorted, [&](std::size_t b, std::size_t e) {
+      std::inplace_merge(at(b), at(b + sorted), at(e), less);
+    });
 }
 
 }  // namespace lumirank

@@ -16,8 +16,9 @@ constexpr std::size_t kGrain = 4096;
 
 PointSum sum_of(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members) {
   return parallel_sum(members.size(), kGrain, PointSum(points.dimension), [&](std::size_t b, std::size_t e) {
+    PointReader reader(points);
     PointSum s(points.dimension);
-    for (std::size_t k = b; k < e; ++k) s.add(points[members[k]], norms[members[k]]);
+    for (std::size_t k = b; k < e; ++k) s.add(reader[members[k]], norms[members[k]]);
     return s;
   });
 }
@@ -31,12 +32,11 @@ std::vector<double> edge_costs(const Points& points, std::span<const double> nor
     const PointSum sum = sum_of(points, norms, members);
     double* out = alpha.data() + groups.starts[g];
     parallel_for(members.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      PointReader reader(points);
       for (std::size_t k = begin; k < end; ++k) {
-        const auto x = points[members[k]];
-        double dot = 0;
-        for (std::size_t d = 0; d < x.size(); ++d) dot += static_cast<double>(x[d]) * sum.vector[d];
         const double product = norms[members[k]] * sum.weight;
-        out[k] = product - dot > kZeroCost * product ? product - dot : 0.0;
+        const double cost = product - dot(reader[members[k]], sum.vector.data());
+        out[k] = cost > points.zero_cost() * product ? cost : 0.0;
       }
     });
   }
@@ -73,7 +73,7 @@ Centres draw_centres(std::span<const double> alpha, std::size_t count, std::uint
 namespace {
 
 constexpr std::size_t kPointBlock = 256, kCentreBlock = 256;
-// Cosines nearer to 1 than this differ only by rounding of single precision.
+// Cosines nearer to 1 than this differ only by rounding, of single precision or of 16-bit points.
 constexpr float kSameDirection = 1e-6f;
 // Centres of one direction have equal scales (1/p falls with the length), so distances to them differ by
 // rounding; so little nearer is not nearer, or parallel points would be torn apart.
@@ -84,34 +84,34 @@ void nearest_centres(const Points& points, std::span<const double> norms,
                      std::span<const std::uint32_t> members, std::span<const float> units,
                      std::span<const float> scales, std::uint32_t* label) {
   const std::size_t dim = points.dimension;
+  const PointReader reader(points);
   std::vector<float> block(kPointBlock * dim), cosine(kPointBlock * kCentreBlock), best(kPointBlock);
   for (std::size_t p = 0; p < members.size(); p += kPointBlock) {
-    const std::size_t rows = std::min(kPointBlock, members.size() - p);
-    for (std::size_t a = 0; a < rows; ++a) {
+    const std::size_t count = std::min(kPointBlock, members.size() - p);
+    for (std::size_t a = 0; a < count; ++a) {
       const std::uint32_t j = members[p + a];
-      const float inverse = norms[j] > 0 ? static_cast<float>(1.0 / norms[j]) : 0.0f;
-      for (std::size_t d = 0; d < dim; ++d) block[a * dim + d] = inverse * points[j][d];
+      reader.read(j, block.data() + a * dim, norms[j] > 0 ? static_cast<float>(1.0 / norms[j]) : 0.0f);
       best[a] = std::numeric_limits<float>::infinity();
       label[p + a] = 0;
     }
+    std::uint32_t* at = label + p;
+    float* least = best.data();
     for (std::size_t q = 0; q < scales.size(); q += kCentreBlock) {
-      const std::size_t columns = std::min(kCentreBlock, scales.size() - q);
-      gemm({rows, columns, dim, false, true}, block.data(), dim, units.data() + q * dim, dim, cosine.data(),
-           kCentreBlock);
-      for (std::size_t a = 0; a < rows; ++a) {
-        const float* row = cosine.data() + a * kCentreBlock;
-        float least = best[a];
-        std::uint32_t at = label[p + a];
-        for (std::size_t k = 0; k < columns; ++k) {
-          const float angle = 1.0f - row[k];
-          const float distance = angle > kSameDirection ? scales[q + k] * angle : 0.0f;
-          if (distance < kNearer * least) {
-            least = distance;
-            at = static_cast<std::uint32_t>(q + k);
-          }
+      const std::size_t centres = std::min(kCentreBlock, scales.size() - q);
+      gemm({centres, count, dim, false, true}, units.data() + q * dim, dim, block.data(), dim, cosine.data(),
+           kPointBlock);
+      // Points side by side, centres one after the other.
+      for (std::size_t k = 0; k < centres; ++k) {
+        const float* row = cosine.data() + k * kPointBlock;
+        const float scale = scales[q + k];
+        const auto number = static_cast<std::uint32_t>(q + k);
+        for (std::size_t a = 0; a < count; ++a) {
+          const float angle = 1.0f - row[a];
+          const float distance = angle > kSameDirection ? scale * angle : 0.0f;
+          const bool nearer = distance < kNearer * least[a];
+          least[a] = nearer ? distance : least[a];
+          at[a] = nearer ? number : at[a];
         }
-        best[a] = least;
-        label[p + a] = at;
       }
     }
   }
@@ -139,11 +139,11 @@ Partition assign_to_centres(const Points& points, std::span<const double> norms,
     std::vector<std::uint32_t> label(members.size(), 0);
     if (count > 1) {
       std::vector<float> units(count * dim), scales(count);
+      const PointReader reader(points);
       for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t j = groups.order[centres.position[first + k]];
         scales[k] = static_cast<float>(centres.weight[first + k] * norms[j] / largest);
-        for (std::size_t d = 0; d < dim; ++d)
-          units[k * dim + d] = static_cast<float>(points[j][d] / norms[j]);
+        reader.read(j, units.data() + k * dim, static_cast<float>(1 / norms[j]));
       }
       parallel_for(members.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         nearest_centres(points, norms, members.subspan(begin, end - begin), units, scales,

@@ -25,7 +25,8 @@ double cluster_cost(const Points& points, std::span<const double> norms,
                     std::span<const std::uint32_t> members) {
   if (members.size() < 2) return 0;
   PointSum sum(points.dimension);
-  for (std::uint32_t j : members) sum.add(points[j], norms[j]);
+  PointReader reader(points);
+  for (std::uint32_t j : members) sum.add(reader[j], norms[j]);
   return std::max(0.0, sum.weight * sum.weight - sum.squared_length());
 }
 

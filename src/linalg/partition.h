@@ -30,7 +30,4 @@ double cluster_cost(const Points& points, std::span<const double> norms,
                     std::span<const std::uint32_t> members);
 double total_cost(const Points& points, std::span<const double> norms, const Partition& partition);
 
-// Costs below this share of (Σ‖x‖)² are rounding of floats: the members are parallel.
-inline constexpr double kZeroCost = 1e-12;
-
 }  // namespace lumirank::linalg

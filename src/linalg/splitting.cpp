@@ -2,49 +2,91 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/random.h"
 
 namespace lumirank::linalg {
 
-Cut best_cut(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> sorted) {
-  const std::size_t dim = points.dimension;
-  PointSum all(dim);
-  for (std::uint32_t j : sorted) all.add(points[j], norms[j]);
-  const double all_squared = all.squared_length();
+namespace {
 
-  Cut best;
-  double least = std::numeric_limits<double>::infinity();
-  std::vector<double> left(dim, 0.0);
-  double left_weight = 0, left_squared = 0, left_dot_all = 0;
-  for (std::size_t k = 0; k + 1 < sorted.size(); ++k) {
-    const std::uint32_t j = sorted[k];
-    const float* x = points.data + j * dim;
-    double x_left = 0, x_all = 0;
-    for (std::size_t d = 0; d < dim; ++d) {
-      const double v = static_cast<double>(x[d]);
-      x_left += v * left[d];
-      x_all += v * all.vector[d];
-      left[d] += v;
-    }
-    left_weight += norms[j];
-    left_squared += 2 * x_left + norms[j] * norms[j];
-    left_dot_all += x_all;
-    const double right_weight = all.weight - left_weight;
+// Members that one task sweeps over.
+constexpr std::size_t kStretch = 8192;
+
+PointSum sum_of(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members) {
+  PointReader reader(points);
+  PointSum sum(points.dimension);
+  for (std::uint32_t j : members) sum.add(reader[j], norms[j]);
+  return sum;
+}
+
+double cost_of(const PointSum& sum) { return std::max(0.0, sum.weight * sum.weight - sum.squared_length()); }
+
+struct Best {
+  double cost = std::numeric_limits<double>::infinity();
+  std::size_t left = 0;
+  Best operator+(const Best& later) const { return later.cost < cost ? later : *this; }
+};
+
+// The best cut after one of `members` but the last of all, with `before` the sum of all before them.
+Best sweep(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members,
+           const PointSum& before, const PointSum& all, std::size_t cuts) {
+  const double all_squared = all.squared_length();
+  Best best;
+  PointSum left = before;
+  double left_squared = before.squared_length(), left_dot_all = 0;
+  for (std::size_t d = 0; d < points.dimension; ++d) left_dot_all += before.vector[d] * all.vector[d];
+  PointReader reader(points);
+  for (std::size_t k = 0; k < std::min(cuts, members.size()); ++k) {
+    const std::uint32_t j = members[k];
+    const auto x = reader[j];
+    left_squared += 2 * dot(x, left.vector.data()) + norms[j] * norms[j];
+    left_dot_all += dot(x, all.vector.data());
+    left.add(x, norms[j]);
+    const double right_weight = all.weight - left.weight;
     const double right_squared = all_squared - 2 * left_dot_all + left_squared;
-    const double left_cost = left_weight * left_weight - left_squared;
-    const double right_cost = right_weight * right_weight - right_squared;
-    if (left_cost + right_cost < least) {
-      least = left_cost + right_cost;
-      best.left = k + 1;
-    }
+    const double cost =
+        left.weight * left.weight - left_squared + right_weight * right_weight - right_squared;
+    if (cost < best.cost) best = {cost, k + 1};
   }
+  return best;
+}
+
+}  // namespace
+
+Cut best_cut(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> sorted) {
+  const std::size_t stretches = (sorted.size() + kStretch - 1) / kStretch;
+  const auto stretch = [&](std::size_t s) {
+    return sorted.subspan(s * kStretch, std::min(kStretch, sorted.size() - s * kStretch));
+  };
+  std::vector<PointSum> sums(stretches, PointSum(points.dimension));
+  parallel_for(stretches, 1,
+               [&](std::size_t s, std::size_t) { sums[s] = sum_of(points, norms, stretch(s)); });
+  std::vector<PointSum> before(1, PointSum(points.dimension));
+  for (const PointSum& s : sums) before.push_back(before.back() + s);
+
+  const Best best = parallel_sum(stretches, 1, Best{}, [&](std::size_t s, std::size_t) {
+    const std::size_t first = s * kStretch;
+    Best here = sweep(points, norms, stretch(s), before[s], before.back(), sorted.size() - 1 - first);
+    here.left += first;
+    return here;
+  });
   // The running sums choose the place; the two costs are then summed afresh, so that no rounding is carried
   // on.
-  best.left_cost = cluster_cost(points, norms, sorted.first(best.left));
-  best.right_cost = cluster_cost(points, norms, sorted.subspan(best.left));
-  return best;
+  Cut cut;
+  cut.left = best.left;
+  const std::size_t s = best.left / kStretch, within = best.left % kStretch;
+  PointSum left = before[s], right(points.dimension);
+  if (s < stretches) {
+    left = left + sum_of(points, norms, stretch(s).first(within));
+    right = sum_of(points, norms, stretch(s).subspan(within));
+  }
+  for (std::size_t t = s + 1; t < stretches; ++t) right = right + sums[t];
+  cut.left_cost = cost_of(left);
+  cut.right_cost = cost_of(right);
+  return cut;
 }
 
 Splitter::Splitter(const Points& points, std::span<const double> norms, Partition start, std::uint64_t seed)
@@ -59,7 +101,7 @@ Splitter::Splitter(const Points& points, std::span<const double> norms, Partitio
       node.cost = cluster_cost(points_, norms_, members);
       double weight = 0;
       for (std::uint32_t j : members) weight += norms_[j];
-      if (node.cost <= kZeroCost * weight * weight) node.cost = 0;
+      if (node.cost <= points_.zero_cost() * weight * weight) node.cost = 0;
     }
   });
   for (std::uint32_t k = 0; k < nodes_.size(); ++k)
@@ -69,25 +111,24 @@ Splitter::Splitter(const Points& points, std::span<const double> norms, Partitio
 void Splitter::find_cut(Node& node) {
   const std::size_t dim = points_.dimension, size = node.end - node.begin;
   Rng rng(seed_, Stage::clustering, 1 + node.begin, node.end);
-  std::vector<float> line(dim);
-  for (float& v : line) v = static_cast<float>(rng.next_gaussian());
+  std::vector<double> line(dim);
+  for (double& v : line) v = rng.next_gaussian();
   std::vector<std::pair<float, std::uint32_t>> keys(size);
   parallel_for(size, 8192, [&](std::size_t b, std::size_t e) {
+    PointReader reader(points_);
     for (std::size_t k = b; k < e; ++k) {
       const std::uint32_t j = order_[node.begin + k];
-      float dot = 0;
-      for (std::size_t d = 0; d < dim; ++d) dot += line[d] * points_.data[j * dim + d];
-      keys[k] = {norms_[j] > 0 ? dot / static_cast<float>(norms_[j]) : 0.0f, j};
+      keys[k] = {norms_[j] > 0 ? static_cast<float>(dot(reader[j], line.data()) / norms_[j]) : 0.0f, j};
     }
   });
-  std::sort(keys.begin(), keys.end());
+  parallel_sort(keys.begin(), keys.end(), std::less<>());
   for (std::size_t k = 0; k < size; ++k) order_[node.begin + k] = keys[k].second;
   const std::span<const std::uint32_t> sorted{order_.data() + node.begin, size};
   node.cut = best_cut(points_, norms_, sorted);
   double left = 0, right = 0;
   for (std::size_t k = 0; k < size; ++k) (k < node.cut.left ? left : right) += norms_[sorted[k]];
-  if (node.cut.left_cost <= kZeroCost * left * left) node.cut.left_cost = 0;
-  if (node.cut.right_cost <= kZeroCost * right * right) node.cut.right_cost = 0;
+  if (node.cut.left_cost <= points_.zero_cost() * left * left) node.cut.left_cost = 0;
+  if (node.cut.right_cost <= points_.zero_cost() * right * right) node.cut.right_cost = 0;
   node.cut_known = true;
 }
 

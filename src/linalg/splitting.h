@@ -13,7 +13,7 @@
 namespace lumirank::linalg {
 
 // The best cut of a sorted sequence into two: `left` members, with the least sum of the two costs, found in
-// one sweep over running sums. Scratch-free O(n · dimension).
+// one sweep over running sums, O(n · dimension). Stretches of the sequence are swept side by side.
 struct Cut {
   std::size_t left = 0;
   double left_cost = 0, right_cost = 0;

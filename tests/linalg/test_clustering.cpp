@@ -144,7 +144,7 @@ TEST(MultisetSampling, AssignsToTheNearestWeightedCentre) {
     const std::uint32_t i = centres.position[k];
     double dot = 0;
     for (std::size_t d = 0; d < 10; ++d)
-      dot += static_cast<double>(cloud.points()[i][d]) * static_cast<double>(cloud.points()[j][d]);
+      dot += static_cast<double>(cloud[i][d]) * static_cast<double>(cloud[j][d]);
     return centres.weight[k] * (norms[i] * norms[j] - dot);
   };
   const Partition p = assign_to_centres(cloud.points(), norms, whole, centres);

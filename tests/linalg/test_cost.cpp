@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 
 // d(x,y) = ½‖x‖‖y‖·‖x̄ − ȳ‖²
-double distance(const Points& p, std::size_t i, std::size_t j) {
+double distance(const PointCloud& p, std::size_t i, std::size_t j) {
   double nx = 0, ny = 0, d2 = 0;
   for (std::size_t d = 0; d < p.dimension; ++d) {
     nx += std::pow(static_cast<double>(p[i][d]), 2);
@@ -26,7 +26,7 @@ double distance(const Points& p, std::size_t i, std::size_t j) {
   return 0.5 * nx * ny * d2;
 }
 
-double pairwise_cost(const Points& p, std::span<const std::uint32_t> members) {
+double pairwise_cost(const PointCloud& p, std::span<const std::uint32_t> members) {
   double cost = 0;
   for (std::uint32_t i : members)
     for (std::uint32_t j : members) cost += distance(p, i, j);
@@ -37,7 +37,7 @@ TEST(Cost, EqualsThePairwiseDefinition) {
   const PointCloud cloud = random_cloud(60, 7, 1);
   const auto all = all_of(cloud);
   const auto norms = own_norms(cloud.points());
-  const double expected = pairwise_cost(cloud.points(), all);
+  const double expected = pairwise_cost(cloud, all);
   // Both are sums in double precision of numbers up to (Σ‖x‖)²: a relative 1e-12 is four digits above
   // rounding.
   EXPECT_NEAR(cluster_cost(cloud.points(), norms, all), expected, 1e-12 * expected);
@@ -48,7 +48,7 @@ TEST(Cost, IsZeroForParallelPoints) {
   const auto norms = own_norms(cloud.points());
   double weight = 0;
   for (double n : norms) weight += n;
-  EXPECT_LE(cluster_cost(cloud.points(), norms, all_of(cloud)), kZeroCost * weight * weight);
+  EXPECT_LE(cluster_cost(cloud.points(), norms, all_of(cloud)), cloud.points().zero_cost() * weight * weight);
   Splitter splitter(cloud.points(), norms, partition_by_group(all_of(cloud), {}), 1);
   EXPECT_FALSE(splitter.split_to(2));
   EXPECT_EQ(splitter.clusters(), 1u);
@@ -67,7 +67,7 @@ TEST(Cost, EdgeCostsAreRowSumsOfTheDistances) {
     double expected = 0, scale = 0;
     for (std::uint32_t j = 0; j < 40; ++j)
       if (groups[i] == groups[j]) {
-        expected += distance(cloud.points(), i, j);
+        expected += distance(cloud, i, j);
         scale += norms[i] * norms[j];
       }
     EXPECT_NEAR(alpha[k], expected, 1e-12 * scale);
@@ -82,8 +82,7 @@ TEST(Cost, BestCutEqualsTheExhaustiveSearch) {
     double least = INFINITY;
     for (std::size_t left = 1; left < 30; ++left) {
       const std::span<const std::uint32_t> s(sorted);
-      least = std::min(least, pairwise_cost(cloud.points(), s.first(left)) +
-                                  pairwise_cost(cloud.points(), s.subspan(left)));
+      least = std::min(least, pairwise_cost(cloud, s.first(left)) + pairwise_cost(cloud, s.subspan(left)));
     }
     const Cut cut = best_cut(cloud.points(), norms, sorted);
     EXPECT_NEAR(cut.left_cost + cut.right_cost, least, 1e-12 * least);

@@ -11,6 +11,9 @@ namespace lumirank::linalg::test {
 struct PointCloud {
   std::size_t dimension;
   std::vector<float> values;
+  std::span<const float> operator[](std::size_t j) const {
+    return {values.data() + j * dimension, dimension};
+  }
   Points points() const { return {values.data(), values.size() / dimension, dimension}; }
 };
 

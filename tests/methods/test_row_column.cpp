@@ -69,8 +69,9 @@ TEST(RowColumn, GroupsKeepTheirTotals) {
   for (std::size_t j = 0; j < 300; ++j) m.group[j] = j < 100 ? 0 : 7;
   RowColumnSettings settings;
   settings.colour = ColourMode::scalar;
-  Exploration seen(m, 0, 1);
-  for (const SampledRow& row : RowSampler(m, 1).stratified(40)) seen.read(row);
+  Exploration seen(m, {m.columns(), 40, false}, 1);
+  std::vector<Rgb> values(m.columns());
+  for (const SampledRow& row : RowSampler(m, 1).stratified(40)) seen.read(row, values);
   const ColumnsKnown known(m, seen, settings, 1);
   const auto clusters = known.cluster(8, linalg::ClusteringAlgorithm::combined);
   ASSERT_EQ(clusters.clusters(), 8u);
@@ -102,11 +103,12 @@ Errors errors_over_draws(const matrix::DenseMatrix& coloured) {
   m.power = coloured.power;
   RowColumnSettings settings;
   settings.colour = ColourMode::scalar;
-  Exploration seen(m, 0, 1);
-  std::vector<Exploration> unseen;  // one row each
+  Exploration seen(m, {m.columns(), 40, false}, 1);
+  std::vector<Rgb> values(m.columns());
+  std::vector<HeldOutRows> unseen;  // one row each
   RowSampler sampler(m, 1);
-  for (const SampledRow& row : sampler.next(40)) seen.read(row);
-  for (const SampledRow& row : sampler.next(10)) unseen.emplace_back(m, 0, 1).read(row);
+  for (const SampledRow& row : sampler.next(40)) seen.read(row, values);
+  for (const SampledRow& row : sampler.next(10)) unseen.emplace_back(m).read(row, values);
   const ColumnsKnown known(m, seen, settings, 1);
   const auto clusters = known.cluster(25, linalg::ClusteringAlgorithm::combined);
 

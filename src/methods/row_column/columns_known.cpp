@@ -41,6 +41,11 @@ struct Spread {
     }
     weight += q;
   }
+  friend Spread operator+(Spread a, const Spread& b) {
+    for (std::size_t d = 0; d < a.sums.size(); ++d) a.sums[d] += b.sums[d], a.squares[d] += b.squares[d];
+    a.weight += b.weight;
+    return a;
+  }
   // Of one member drawn in proportion to q.
   double expected_square(std::size_t d) const {
     return std::max(0.0, weight * squares[d] - sums[d] * sums[d]);
@@ -59,48 +64,72 @@ struct Squares {
 };
 }  // namespace
 
-std::vector<double> ColumnsKnown::expected_squares(const linalg::Partition& partition,
-                                                   const linalg::Points& points) const {
-  const Squares zero{std::vector<double>(points.dimension, 0.0)};
+template <typename Reader>
+std::vector<double> ColumnsKnown::expected_squares(const linalg::Partition& partition, std::size_t dimension,
+                                                   const Reader& reader) const {
+  const Squares zero{std::vector<double>(dimension, 0.0)};
   return parallel_sum(partition.clusters(), 32, zero,
                       [&](std::size_t begin, std::size_t end) {
                         Squares all = zero;
-                        Spread cluster(points.dimension);
+                        Spread cluster(dimension);
+                        std::vector<float> x(dimension);
                         for (std::size_t k = begin; k < end; ++k) {
                           cluster.clear();
-                          for (std::uint32_t j : partition.members(k))
-                            cluster.add(points[j], static_cast<double>(weights_[j]));
-                          for (std::size_t d = 0; d < all.v.size(); ++d)
-                            all.v[d] += cluster.expected_square(d);
+                          for (std::uint32_t j : partition.members(k)) {
+                            reader(j, x.data());
+                            cluster.add(x, static_cast<double>(weights_[j]));
+                          }
+                          for (std::size_t d = 0; d < dimension; ++d) all.v[d] += cluster.expected_square(d);
                         }
                         return all;
                       })
       .v;
 }
 
+template <typename Reader>
+void ColumnsKnown::add_zero_squares(std::size_t draws, std::size_t dimension, const Reader& reader,
+                                    std::vector<double>& squares) const {
+  const auto power = matrix_.column_features().power;
+  const Spread all =
+      parallel_sum(zero_.size(), 8192, Spread(dimension), [&](std::size_t begin, std::size_t end) {
+        Spread some(dimension);
+        std::vector<float> x(dimension);
+        for (std::size_t k = begin; k < end; ++k) {
+          const double p = power.empty() ? 1.0 : static_cast<double>(power[zero_[k]]);
+          if (!(p > 0)) continue;
+          reader(zero_[k], x.data());
+          some.add(x, p);
+        }
+        return some;
+      });
+  const bool ignored = settings_.zero_columns == ZeroColumns::ignore;
+  const auto count = static_cast<double>(std::max<std::size_t>(1, draws));
+  for (std::size_t d = 0; d < dimension; ++d)
+    squares[d] += ignored ? all.sums[d] * all.sums[d] : all.expected_square(d) / count;
+}
+
 double ColumnsKnown::expected_error(const linalg::Splitter& clusters) const {
   if (exploration_.squared_sum() == 0) return 0;
+  const linalg::PointReader points(points_);
   double sum = 0;
-  for (double square : expected_squares(clusters.partition(), points_)) sum += square;
+  for (double square : expected_squares(clusters.partition(), points_.dimension,
+                                        [&](std::uint32_t j, float*out) { points.read(j, out); }))
+    sum += square;
   return exploration_.l1_over_l2() * std::sqrt(sum / exploration_.squared_sum());
 }
 
-double ColumnsKnown::expected_error(const linalg::Splitter& clusters, Exploration& unseen) const {
+double ColumnsKnown::expected_error(const linalg::Splitter& clusters, const HeldOutRows& unseen) const {
   if (unseen.image_sum() == 0) return 0;
-  const linalg::Points values = unseen.sketch().points();
-  std::vector<double> squares = expected_squares(clusters.partition(), values);
-  if (!zero_.empty()) {
-    const auto power = matrix_.column_features().power;
-    Spread all(values.dimension);
-    for (matrix::Index j : zero_) {
-      const double p = power.empty() ? 1.0 : static_cast<double>(power[j]);
-      if (p > 0) all.add(values[j], p);
-    }
-    const bool ignored = settings_.zero_columns == ZeroColumns::ignore;
-    const auto draws = static_cast<double>(std::max<std::size_t>(1, zero_draws(clusters.clusters())));
-    for (std::size_t d = 0; d < squares.size(); ++d)
-      squares[d] += ignored ? all.sums[d] * all.sums[d] : all.expected_square(d) / draws;
+  constexpr std::size_t kRows = linalg::SampledRows::kBlockRows;
+  const linalg::Partition partition = clusters.partition();
+  std::vector<double> squares;
+  for (std::size_t block = 0; block < unseen.entries().blocks(); ++block) {
+    const auto reader = [&](std::uint32_t j, float* out) { unseen.entries().read(block, j, out); };
+    std::vector<double> some = expected_squares(partition, kRows, reader);
+    if (!zero_.empty()) add_zero_squares(zero_draws(clusters.clusters()), kRows, reader, some);
+    squares.insert(squares.end(), some.begin(), some.end());
   }
+  squares.resize(unseen.rows());
   // Coordinates are rows, times their weights.
   double error = 0;
   for (std::size_t d = 0; d < squares.size(); ++d) {
@@ -110,7 +139,7 @@ double ColumnsKnown::expected_error(const linalg::Splitter& clusters, Exploratio
   return kMeanOfNormal * error / unseen.image_sum();
 }
 
-void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, Exploration& unseen) {
+void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, const HeldOutRows& unseen) {
   const auto power = matrix_.column_features().power;
   double least = expected_error(clusters, unseen);
   std::vector<float> best = weights_;

@@ -6,6 +6,7 @@
 
 #include "linalg/clustering.h"
 #include "methods/row_column/exploration.h"
+#include "methods/row_column/held_out.h"
 #include "methods/row_column/representatives.h"
 #include "methods/row_column/settings.h"
 
@@ -26,11 +27,11 @@ class ColumnsKnown {
   double expected_error(const linalg::Splitter& clusters) const;
   // The same by rows that it has not seen: the exact standard deviation of the estimate at each of them,
   // times √(2/π), summed. No column is rendered for it.
-  double expected_error(const linalg::Splitter& clusters, Exploration& unseen) const;
+  double expected_error(const linalg::Splitter& clusters, const HeldOutRows& unseen) const;
 
   // Takes, of 0, 0.1, 0.3 and 0.6, the share of the lights' power in the choice of representatives that
   // promises the least error on the unseen rows. It depends on rows alone, so the estimate stays unbiased.
-  void tune_power_share(const linalg::Splitter& clusters, Exploration& unseen);
+  void tune_power_share(const linalg::Splitter& clusters, const HeldOutRows& unseen);
   double power_share() const { return power_share_; }
 
   // Draws for zero columns that go with that many clusters.
@@ -40,9 +41,14 @@ class ColumnsKnown {
  private:
   // For a representative drawn with probability q_j/s: Σ_clusters (s Σ_j ‖x_j‖²/q_j − ‖Σ_j x_j‖²), the
   // expected squared error of the sum of the points x; with q_j = ‖x_j‖ it is the cost that the clustering
-  // minimises. One number per coordinate of the points.
-  std::vector<double> expected_squares(const linalg::Partition& partition,
-                                       const linalg::Points& points) const;
+  // minimises. One number per coordinate of the points. `Reader`: reader(j, out) writes them as floats.
+  template <typename Reader>
+  std::vector<double> expected_squares(const linalg::Partition& partition, std::size_t dimension,
+                                       const Reader& reader) const;
+  // What the draws among zero columns add to that.
+  template <typename Reader>
+  void add_zero_squares(std::size_t draws, std::size_t dimension, const Reader& reader,
+                        std::vector<double>& squares) const;
 
   const matrix::LightingMatrix& matrix_;
   const Exploration& exploration_;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "linalg/column_sketch.h"
 #include "methods/known_rows.h"
@@ -16,11 +16,13 @@ inline constexpr double kMeanOfNormal = 0.79788456080286536;
 
 class Exploration {
  public:
-  Exploration(const matrix::LightingMatrix& matrix, std::size_t projection, std::uint64_t seed)
-      : sketch_(matrix.columns(), projection, seed), known_(matrix), buffer_(matrix.columns()) {}
+  Exploration(const matrix::LightingMatrix& matrix, const linalg::ColumnSketch::Shape& shape,
+              std::uint64_t seed)
+      : sketch_(shape, seed), known_(matrix) {}
 
-  // Evaluates the row and takes it in. The random numbers of the projection are keyed by the row.
-  void read(const SampledRow& row);
+  // Evaluates the row into `values` (one per column) and takes it in. The random numbers of the projection
+  // are keyed by the row.
+  void read(const SampledRow& row, std::span<Rgb> values);
 
   linalg::ColumnSketch& sketch() { return sketch_; }
   const linalg::ColumnSketch& sketch() const { return sketch_; }
@@ -38,7 +40,6 @@ class Exploration {
  private:
   linalg::ColumnSketch sketch_;
   KnownRows known_;
-  std::vector<Rgb> buffer_;
   double squared_sum_ = 0, image_sum_ = 0;
 };
 

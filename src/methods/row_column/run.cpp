@@ -9,9 +9,11 @@
 namespace lumirank::methods {
 
 namespace {
-std::size_t projection_for(const RowColumnSettings& settings) {
+linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, const RowColumnSettings& settings) {
   // Fewer rows than projected dimensions are better kept as they are.
-  return settings.rows > 0 && settings.rows <= settings.projection ? 0 : settings.projection;
+  const bool few = settings.rows > 0 && settings.rows <= settings.projection;
+  if (few || settings.projection == 0) return {columns, settings.rows, false};
+  return {columns, settings.projection, true};
 }
 }  // namespace
 
@@ -24,8 +26,9 @@ RowColumnRun::RowColumnRun(const matrix::LightingMatrix& matrix, const RunOption
       rows_(matrix.rows()),
       columns_(matrix.columns()),
       sampler_(matrix, options.seed),
-      seen_(matrix, projection_for(settings), options.seed),
-      unseen_(matrix, 0, options.seed),
+      seen_(matrix, sketch_shape(matrix.columns(), settings), options.seed),
+      unseen_(matrix),
+      row_(matrix.columns()),
       afterwards_(matrix) {}
 
 Estimate RowColumnRun::fixed() {
@@ -54,7 +57,10 @@ void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold
                                 : until > 0 && timer_.seconds() > until && rows_read() >= 8;
     if (cancelled_ || enough) break;
     const bool apart = hold_out > 0 && k % hold_out == hold_out / 2 && unseen_.rows() < kMostHeldOut;
-    (apart ? unseen_ : seen_).read(rows[k]);
+    if (apart)
+      unseen_.read(rows[k], row_);
+    else
+      seen_.read(rows[k], row_);
     options_.sinks.report("rows", static_cast<double>(k + 1) / static_cast<double>(rows.size()));
   }
   if (choices) choices->record("rows", static_cast<std::int64_t>(k));

@@ -63,7 +63,9 @@ class RowColumnRun {
   double target_;
   std::size_t rows_, columns_;  // of the matrix
   RowSampler sampler_;
-  Exploration seen_, unseen_;
+  Exploration seen_;
+  HeldOutRows unseen_;
+  std::vector<Rgb> row_;  // the last row that was read
   Blend blend_;
   std::vector<matrix::ScaledColumn> combination_;  // whose sums are the blend's
   Trace trace_;
