@@ -10,7 +10,7 @@
 namespace lumirank::linalg {
 
 enum class ClusteringAlgorithm {
-  combined,  // two thirds of the clusters by sampling, the rest by splitting these
+  combined,  // two thirds of the clusters (two fifths of many) by sampling, the rest by splitting these
   sampling,
   splitting,
 };

@@ -20,7 +20,8 @@ const Fields<RowColumnSettings>& row_column_fields() {
                       "clustering are in proportion."},
                      &S::projection, 0),
       choice_field<S>({"clustering", "",
-                       "combined: two thirds by sampling, the rest by splitting; or one of them alone."},
+                       "combined: some by sampling (two thirds; two fifths of many), the rest by splitting; "
+                       "or one of them alone."},
                       &S::clustering, {"combined", "sampling", "splitting"}),
       choice_field<S>({"colour", "",
                        "averaged: a representative gets its cluster's total colour (less colour noise, a "
