@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/photometry.h"
+
 namespace lumirank::emitters {
 
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
-constexpr double kLumensPerWatt = 683, kLuminosityIntegral = 106.857;
 
 Rgb from_xyz(double X, double Y, double Z) {
   const Rgb c(static_cast<float>(3.2404542 * X - 1.5371385 * Y - 0.4985314 * Z),
@@ -85,8 +86,7 @@ Rgb PreethamSky::radiance(Vec3f direction) const {
   if (!(direction.y > 0)) return Rgb{};
   const double cos_theta = std::max(static_cast<double>(direction.y), 1e-4);
   const double gamma = std::acos(std::clamp(static_cast<double>(dot(direction, to_sun_)), -1.0, 1.0));
-  const double Y =
-      std::max(0.0, zenith_Y_ * Y_.eval(cos_theta, gamma)) * 1000 / (kLumensPerWatt * kLuminosityIntegral);
+  const double Y = std::max(0.0, zenith_Y_ * Y_.eval(cos_theta, gamma)) * 1000 / kLumensPerUnit;
   const double x = zenith_x_ * x_.eval(cos_theta, gamma), y = zenith_y_ * y_.eval(cos_theta, gamma);
   return from_xyz(Y / y * x, Y, Y / y * (1 - x - y));
 }

@@ -44,6 +44,9 @@ struct Power {
   }
   Rgb operator()(const PointEmitter& e) const { return e.intensity * (4 * kPi); }
   Rgb operator()(const SpotEmitter& e) const { return e.intensity * static_cast<float>(spot_solid_angle(e)); }
+  Rgb operator()(const ProfileEmitter& e) const {
+    return e.scale * static_cast<float>(e.profile->integral());
+  }
   Rgb operator()(const DirectionalEmitter& e) const { return directional_value(e) * (kPi * square(radius)); }
   Rgb operator()(const EnvironmentEmitter& e) const { return total_radiance(e) * (kPi * square(radius)); }
 };
@@ -88,8 +91,12 @@ struct Direct {
     const float d2 = length_squared(e.position - point);
     return from_point(e.position, e.intensity / d2, d2);
   }
-  DirectSample operator()(const SpotEmitter& e) const {
+  DirectSample operator()(const SpotEmitter& e) const { return towards(e); }
+  DirectSample operator()(const ProfileEmitter& e) const { return towards(e); }
+  template <typename PointLike>
+  DirectSample towards(const PointLike& e) const {
     const float d2 = length_squared(e.position - point);
+    if (!(d2 > 0)) return {};
     return from_point(e.position, e.intensity_towards((point - e.position) / std::sqrt(d2)) / d2, d2);
   }
 
@@ -147,6 +154,16 @@ struct Emit {
     out.direction = e.frame.to_world(warp_cone(u_direction, e.cos_cutoff));
     out.normal = out.direction;
     out.weight = e.intensity_towards(out.direction) * (2 * kPi * (1 - e.cos_cutoff));
+    return out;
+  }
+  Emission operator()(const ProfileEmitter& e) const {
+    Emission out;
+    out.origin = e.position;
+    const auto drawn = e.profile->sample(u_direction);
+    if (!(drawn.pdf > 0)) return out;
+    out.direction = e.frame.to_world(drawn.local);
+    out.normal = out.direction;
+    out.weight = e.scale * (e.profile->eval(drawn.local) / drawn.pdf);
     return out;
   }
   Emission operator()(const DirectionalEmitter& e) const {

@@ -13,6 +13,7 @@
 #include "base/frame.h"
 #include "base/rgb.h"
 #include "base/vec.h"
+#include "emitters/profile.h"
 
 namespace lumirank::emitters {
 
@@ -43,6 +44,13 @@ struct SpotEmitter {
   float cutoff = 0, beam = 0;          // radians
   Rgb intensity_towards(Vec3f direction) const;
 };
+struct ProfileEmitter {  // a point whose intensity follows an angular table
+  Vec3f position;
+  Frame frame;  // the profile's axes in the world; may mirror
+  Rgb scale;    // W/sr where the profile is 1
+  std::shared_ptr<const AngularProfile> profile;
+  Rgb intensity_towards(Vec3f direction) const { return scale * profile->eval(frame.to_local(direction)); }
+};
 struct DirectionalEmitter {
   Vec3f direction;           // in which the light travels
   Rgb irradiance;            // on a surface facing it
@@ -69,7 +77,8 @@ struct EnvironmentEmitter {
 struct Emitter {
   std::string name;         // its id in the scene, made unique
   std::uint16_t group = 0;  // emitters that share an id share a group
-  std::variant<AreaEmitter, PointEmitter, SpotEmitter, DirectionalEmitter, EnvironmentEmitter> kind;
+  std::variant<AreaEmitter, PointEmitter, SpotEmitter, ProfileEmitter, DirectionalEmitter, EnvironmentEmitter>
+      kind;
 };
 
 // Emitted power in watts, given the sphere that bounds the scene (infinitely far emitters fill its disc).

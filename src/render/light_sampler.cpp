@@ -44,6 +44,18 @@ LightBound bound_of(const emitters::SpotEmitter& e) {
   return b;
 }
 
+// Full within the polar angles that are not dark, about whichever pole is nearer; nothing beyond.
+LightBound bound_of(const emitters::ProfileEmitter& e) {
+  LightBound b;
+  b.bounds.extend(e.position);
+  const float down = e.profile->greatest_theta(), up = kPi - e.profile->least_theta();
+  b.axis = down <= up ? e.frame.n : -e.frame.n;
+  b.spread = std::min(down, up);
+  b.reach = std::min(0.01f, kPi - b.spread);
+  b.intensity = luminance(e.scale) * e.profile->highest();
+  return b;
+}
+
 }  // namespace
 
 emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Vec3f wo) {
@@ -76,6 +88,9 @@ LightSampler::LightSampler(const world::World& world) : world_(world) {
       near_power += power;
     } else if (const auto* spot = std::get_if<emitters::SpotEmitter>(&all[e].kind)) {
       leaves_.push_back({id, 0}), bounds.push_back(bound_of(*spot));
+      near_power += power;
+    } else if (const auto* profile = std::get_if<emitters::ProfileEmitter>(&all[e].kind)) {
+      leaves_.push_back({id, 0}), bounds.push_back(bound_of(*profile));
       near_power += power;
     } else {
       far_.push_back(id), far_weights.push_back(power);

@@ -198,6 +198,12 @@ std::string kind(const EmitterDesc& e) {
                    return "spot, intensity " + show(x.intensity) + ", cutoff " + num(x.cutoff_angle) +
                           "°, beam " + num(x.beam_width) + "°" + show(x.to_world);
                  },
+                 [](const ProfileLightDesc& x) {
+                   return std::string(x.kind == ProfileLightDesc::Kind::ies ? "ies " : "goniometric ") +
+                          x.filename + ", intensity × " + show(x.intensity) +
+                          (x.tilt_angle != 0 ? ", tilted by " + num(x.tilt_angle) + "°" : "") +
+                          show(x.to_world);
+                 },
                  [](const DirectionalLightDesc& x) {
                    return "directional " + show(x.direction) + ", irradiance " + show(x.irradiance);
                  },

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/photometry.h"
 #include "base/rgb.h"
 #include "base/transform.h"
 #include "base/vec.h"
@@ -275,6 +276,26 @@ struct SpotLightDesc {  // at the origin of to_world, along its +z
   float cutoff_angle = 20;              // degrees: no light beyond
   float beam_width = 20 * 3.0f / 4.0f;  // degrees: full intensity within
 };
+// A point light whose intensity depends on the direction as a file says; the file is opened by the world.
+struct ProfileLightDesc {
+  enum class Kind {
+    // Photometric data (IES LM-63). At the origin of to_world; its +z is the luminaire's nadir (vertical
+    // angle
+    // 0), so that it is aimed like a spot light; +x is horizontal angle 0, -y horizontal angle 90 (type C;
+    // counter-clockwise seen from above an upright luminaire).
+    ies,
+    // A square picture in the equal-area octahedral map of the directions of the local frame (as in pbrt-v4);
+    // the mean of its channels.
+    image
+  };
+  Kind kind = Kind::ies;
+  Transform to_world;  // may mirror; scales mean nothing
+  // ies: factor of the file's candela, which count as white divided by SceneDesc::lumens_per_unit;
+  // image: W/sr where the picture is 1.
+  Rgb intensity{1};
+  std::string filename;
+  float tilt_angle = 0;  // ies: degrees away from the position in which it was measured, for its TILT factors
+};
 struct DirectionalLightDesc {
   Vec3f direction{0, 0, 1};  // in which the light travels
   Rgb irradiance{1};
@@ -299,7 +320,7 @@ struct SunSkyDesc {  // the models "sun", "sky" and "sunsky"
 struct EmitterDesc {
   std::string id;
   SourceLocation where;
-  std::variant<PointLightDesc, SpotLightDesc, DirectionalLightDesc, ConstantEnvironmentDesc,
+  std::variant<PointLightDesc, SpotLightDesc, ProfileLightDesc, DirectionalLightDesc, ConstantEnvironmentDesc,
                EnvironmentMapDesc, SunSkyDesc>
       kind;
 };
@@ -347,6 +368,9 @@ struct Warning {
 struct SceneDesc {
   std::string source_file;
   std::string format;  // "mitsuba 0.6", "mitsuba 3.0", …
+  // Photometric value of a radiometric quantity whose luminance() is 1: cd/m² of radiance, lux of irradiance,
+  // cd of intensity. The default: units of W/nm (base/photometry.h); 1: the scene is in photometric units.
+  double lumens_per_unit = kLumensPerUnit;
   std::vector<TextureDesc> textures;
   std::vector<BsdfDesc> bsdfs;
   std::vector<ShapeDesc> shapes;

@@ -20,6 +20,16 @@ struct SampleNumbers {
   Vec2f u2;
 };
 
+// No light leaves farther from the axis than where the table ends; rounding must not cut the edge off.
+SpotShape profile_shape(const emitters::ProfileEmitter& e) {
+  SpotShape shape;
+  shape.cutoff = std::min(kPi, e.profile->greatest_theta() + 1e-3f);
+  shape.cos_cutoff = shape.cutoff < kPi ? std::cos(shape.cutoff) : -2.0f;
+  shape.profile = e.profile;
+  shape.frame = e.frame;
+  return shape;
+}
+
 // One sample of one emitter as a light. `share`: 1 over the number of samples that stand for the emitter, all
 // of them chosen at random unless `half` is kNoHalf.
 class SampleMaker {
@@ -65,7 +75,15 @@ class SampleMaker {
     light_.normal = e.frame.n;
     light_.power = e.intensity * share();
     light_.closure = static_cast<std::uint32_t>(batch.spots.size());
-    batch.spots.push_back({e.cos_cutoff, e.cos_beam, e.cutoff, e.beam});
+    batch.spots.push_back({e.cos_cutoff, e.cos_beam, e.cutoff, e.beam, nullptr, {}});
+  }
+  void fill(const emitters::ProfileEmitter& e, LightBatch& batch) {
+    light_.kind = LightKind::spot;
+    light_.position = e.position;
+    light_.normal = e.frame.n;
+    light_.power = e.scale * share();
+    light_.closure = static_cast<std::uint32_t>(batch.spots.size());
+    batch.spots.push_back(profile_shape(e));
   }
   void fill(const emitters::DirectionalEmitter&, LightBatch&) { fill_far(); }
   void fill(const emitters::EnvironmentEmitter&, LightBatch&) { fill_far(); }

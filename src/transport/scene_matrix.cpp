@@ -33,6 +33,7 @@ float emitted_power(const VirtualLights& lights, std::size_t j, float scene_radi
       return power * kPi * scene_radius * scene_radius;
     case LightKind::spot: {
       const SpotShape& spot = lights.spots[lights.closure[j]];
+      if (spot.profile) return power * static_cast<float>(spot.profile->integral());
       return power * 2 * kPi * (1 - 0.5f * (spot.cos_beam + spot.cos_cutoff));
     }
     case LightKind::surface:

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "base/frame.h"
 #include "base/rgb.h"
 #include "base/sinks.h"
 #include "base/vec.h"
+#include "emitters/profile.h"
 #include "scatter/closure.h"
 #include "transport/closure_pool.h"
 #include "world/world.h"
@@ -22,7 +25,8 @@ enum class LightKind : std::uint8_t {
             // (Where the shading normal n is not the geometric one ng, power is Φ·|incoming·n|/|incoming·ng|,
             // and cosθy of the entry is taken with ng: then the entry is what an eye path would find there.)
   directional,  // power: irradiance; `normal` is the direction in which the light travels
-  spot,         // power: intensity on the axis; `normal` is the axis; `closure` is an index into `spots`
+  spot,  // point with a direction. power: intensity on the axis (W/sr where the profile is 1, if it has one);
+         // `normal` is the axis; `closure` is an index into `spots`
 };
 
 // Fall-off of a spot light: 1 within the beam, 0 outside the cutoff, linear in the angle between (as in
@@ -30,6 +34,9 @@ enum class LightKind : std::uint8_t {
 struct SpotShape {
   float cos_cutoff = 0, cos_beam = 1;
   float cutoff = 0, beam = 0;  // radians
+  // If given, its table is the fall-off, and the angles only bound it.
+  std::shared_ptr<const emitters::AngularProfile> profile;
+  Frame frame;  // the profile's axes in the world
 };
 
 struct LightSettings {

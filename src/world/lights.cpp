@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "emitters/area.h"
 #include "world/environment_builder.h"
+#include "world/profile_builder.h"
 #include "world/surface.h"
 
 namespace lumirank::world {
@@ -110,6 +111,9 @@ int add_lights(const sd::SceneDesc& desc, EmitterNames& names, Notes& notes, std
     } else if (const auto* spot = std::get_if<sd::SpotLightDesc>(&e.kind)) {
       check_color(spot->intensity, "the intensity", e.where);
       push(make_spot(*spot, e.where), e);
+    } else if (const auto* profile = std::get_if<sd::ProfileLightDesc>(&e.kind)) {
+      check_color(profile->intensity, "the intensity", e.where);
+      push(make_profile_light(*profile, e.where, desc.lumens_per_unit, notes), e);
     } else if (const auto* sun = std::get_if<sd::DirectionalLightDesc>(&e.kind)) {
       check_color(sun->irradiance, "the irradiance", e.where);
       push(em::DirectionalEmitter{checked_direction(sun->direction, e.where), sun->irradiance, 1}, e);

@@ -104,10 +104,16 @@ SCENES = {
 }
 
 
+def ies():
+    for path in sorted((HERE.parent.parent / "data" / "ies").glob("*.ies")):
+        write("ies", path.name, path.read_bytes())
+
+
 def main():
     obj()
     ply()
     serialized()
+    ies()
     for name, text in SCENES.items():
         write("mitsuba", name, text)
 

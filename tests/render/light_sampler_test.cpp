@@ -40,6 +40,9 @@ world::World every_emitter() {
     <emitter type="point"><point name="position" x="0" y="1" z="2"/><rgb name="intensity" value="2"/></emitter>
     <emitter type="spot"><transform name="to_world"><lookat origin="0,2,-3" target="0,0,-2" up="1,0,0"/></transform>
       <rgb name="intensity" value="9"/></emitter>
+    <emitter type="ies"><string name="filename" value=")" LUMIRANK_TEST_DATA
+                                        R"(/ies/downlight.ies"/><float name="scale" value="100"/>
+      <transform name="to_world"><lookat origin="-2,2,1" target="-1,0,1" up="1,0,0"/></transform></emitter>
     <emitter type="directional"><vector name="direction" x="1" y="-2" z="0"/><rgb name="irradiance" value="0.5"/></emitter>
     <emitter type="constant"><rgb name="radiance" value="0.3"/></emitter>
     </scene>)",

@@ -236,7 +236,15 @@ inline RandomEnds random_ends(const world::World& world, std::size_t rows, std::
     if (kind == LightKind::spot) {
       ends.lights.closure.back() = static_cast<std::uint32_t>(ends.lights.spots.size());
       const float cutoff = 0.5f + rng.next_float(), beam = 0.7f * cutoff;
-      ends.lights.spots.push_back({std::cos(cutoff), std::cos(beam), cutoff, beam});
+      ends.lights.spots.push_back({std::cos(cutoff), std::cos(beam), cutoff, beam, nullptr, {}});
+      if (rng.next_float() < 0.5f) {
+        // A table: 1 in the middle, falling to half at the cutoff and turning with the azimuth.
+        SpotShape& shape = ends.lights.spots.back();
+        shape.profile = std::make_shared<emitters::AngularProfile>(
+            std::vector<float>{0, cutoff}, std::vector<float>{0, 2, 2 * kPi},
+            std::vector<float>{1, 1, 1, 0.5f, 2, 0.5f});
+        shape.frame = Frame::from_normal(ends.lights.normal.back());
+      }
     }
   }
   return ends;

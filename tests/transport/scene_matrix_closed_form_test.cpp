@@ -80,13 +80,34 @@ TEST(SceneMatrixClosedForm, SpotFallsOffLinearlyInTheAngle) {
   const float beam = 0.2f, cutoff = 0.8f;
   add_light(plane.lights, LightKind::spot, {0, 0, 2}, {0, 0, -1}, Rgb(3));
   plane.lights.closure.back() = 0;
-  plane.lights.spots.push_back({std::cos(cutoff), std::cos(beam), cutoff, beam});
+  plane.lights.spots.push_back({std::cos(cutoff), std::cos(beam), cutoff, beam, nullptr, {}});
   const SceneMatrix matrix(plane.world, plane.receivers, plane.lights, unclamped());
   EXPECT_NEAR(entry(matrix, 0, 0).r, 3 / 4.0f * 0.5f / kPi, 1e-7f);
   const float angle = std::atan2(1.0f, 2.0f), d = std::sqrt(5.0f);
   const float expected = 3 * (cutoff - angle) / (cutoff - beam) * 2 / (d * d * d) * 0.5f / kPi;
   EXPECT_NEAR(entry(matrix, 1, 0).r, expected, 2e-6f * expected);
   EXPECT_EQ(entry(matrix, 2, 0), Rgb(0));  // atan(3/2) = 0.98 is beyond the cutoff
+}
+
+// 4 W/sr straight down, 1 W/sr at 90°, linear in the angle between.
+TEST(SceneMatrixClosedForm, AnAngularTableIsLookedUpForEachReceiver) {
+  Plane plane{0.0f, 1.0f, 3.0f};
+  add_light(plane.lights, LightKind::spot, {0, 0, 2}, {0, 0, -1}, Rgb(1, 2, 3));
+  plane.lights.closure.back() = 0;
+  SpotShape shape;
+  shape.cos_cutoff = -2;
+  shape.profile = std::make_shared<emitters::AngularProfile>(
+      std::vector<float>{0, kPi / 2}, std::vector<float>{0, 2 * kPi}, std::vector<float>{4, 4, 1, 1});
+  shape.frame = Frame::from_normal({0, 0, -1});
+  plane.lights.spots.push_back(shape);
+  const SceneMatrix matrix(plane.world, plane.receivers, plane.lights, unclamped());
+  for (matrix::Index i = 0; i < 3; ++i) {
+    const float x = plane.receivers.position[i].x, d = std::sqrt(4 + x * x);
+    const float intensity = 4 - 3 * std::atan2(x, 2.0f) / (kPi / 2);
+    const float expected = intensity * 2 / (d * d * d) * 0.5f / kPi;
+    EXPECT_NEAR(entry(matrix, i, 0).r, expected, 2e-6f * expected);
+    EXPECT_NEAR(entry(matrix, i, 0).b, 3 * expected, 6e-6f * expected);
+  }
 }
 
 // Square light of side 2a at height c above the receiver: the form factor from a differential element to a

@@ -52,6 +52,24 @@ SpotLightDesc spot_light(Reader& reader, Plugin& p) {
   return out;
 }
 
+// Lumirank's own: <emitter type="ies"> with "filename", "to_world", "scale", "color" and "tilt". Colours are
+// taken relative to their luminance, so that they leave the illuminance as it is.
+ProfileLightDesc ies_light(Reader& reader, Plugin& p) {
+  ProfileLightDesc out;
+  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "IES profile");
+  out.to_world = p.regular_transform();
+  Rgb color(1);
+  if (p.has("color")) {
+    color = emission(p, "color");
+    if (!(luminance(color) > 0))
+      throw InputError(p.where_of("color"), "\"color\" of " + p.title() + " is black");
+    color *= 1 / luminance(color);
+  }
+  out.intensity = color * not_negative(p, "scale", 1);
+  out.tilt_angle = p.number("tilt", 0);
+  return out;
+}
+
 DirectionalLightDesc directional_light(Plugin& p) {
   DirectionalLightDesc out;
   const auto direction = p.vec3("direction");
@@ -160,6 +178,8 @@ void Reader::build_emitter(const Element& element) {
     out.kind = point_light(p);
   } else if (p.type() == "spot") {
     out.kind = spot_light(*this, p);
+  } else if (p.type() == "ies") {
+    out.kind = ies_light(*this, p);
   } else if (p.type() == "directional") {
     out.kind = directional_light(p);
   } else if (p.type() == "constant") {

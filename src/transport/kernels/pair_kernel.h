@@ -33,6 +33,11 @@ inline float spot_fall_off(const SpotShape& spot, float cosine) {
   return (spot.cutoff - std::acos(cosine)) / (spot.cutoff - spot.beam);
 }
 
+// Of the intensity on the axis, or of the profile's unit; `direction` (unit) is away from the light.
+inline float spot_share(const SpotShape& spot, float cosine, Vec3f direction) {
+  return spot.profile ? spot.profile->eval(spot.frame.to_local(direction)) : spot_fall_off(spot, cosine);
+}
+
 // What depends on the places and normals alone.
 struct PairGeometry {
   LaneMask alive;     // E may differ from 0
@@ -123,8 +128,11 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
   }
   if constexpr (column_kind == kColumnSpot) {
     Lane fall_off;
+    const Lane3 away = w * (-inv_d);
     for (int k = 0; k < kLanes; ++k)
-      fall_off[k] = extras.spots[k] ? spot_fall_off(*extras.spots[k], at.spot_cosine[k]) : 0;
+      fall_off[k] = extras.spots[k] && (bits(alive) >> k & 1)
+                        ? spot_share(*extras.spots[k], at.spot_cosine[k], {away.x[k], away.y[k], away.z[k]})
+                        : 0;
     power = power * fall_off;
   }
 

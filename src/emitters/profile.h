@@ -1,0 +1,55 @@
+// How strongly a point light shines in each direction: a table over two angles (a luminaire's photometric
+// file, a goniometric picture).
+#pragma once
+
+#include <vector>
+
+#include "base/distribution.h"
+#include "base/vec.h"
+
+namespace lumirank::emitters {
+
+// Bilinear in the angles between the entries, 0 beyond the first and last polar angle. Local directions:
+// theta is measured from +z, phi from +x towards +y.
+class AngularProfile {
+ public:
+  // Radians, both ascending: theta within [0, π] with two or more entries, phi from exactly 0 to 2π (float)
+  // with two or more, the last column equal to the first. values: theta.size() × phi.size(), phi fastest,
+  // finite and not negative. InternalError otherwise.
+  AngularProfile(std::vector<float> theta, std::vector<float> phi, std::vector<float> values);
+
+  float eval(Vec3f local) const;  // of a unit vector
+
+  struct Sample {
+    Vec3f local;
+    float pdf = 0;  // in solid angle; 0: the profile is black
+  };
+  // Follows the table: the cell by its integral, evenly over the solid angle of the cell.
+  Sample sample(Vec2f u) const;
+  float pdf(Vec3f local) const;
+
+  double integral() const { return rows_.total(); }  // ∫ eval dω, exact
+  float highest() const { return highest_; }
+  // All directions that are not dark lie between these polar angles.
+  float least_theta() const { return least_theta_; }
+  float greatest_theta() const { return greatest_theta_; }
+  std::size_t memory_bytes() const;
+
+ private:
+  // The interval of `angles` that x lies in and how far, from 0 to 1.
+  struct Place {
+    std::size_t index;
+    float fraction;
+  };
+  static Place locate(const std::vector<float>& angles, float x);
+  float value(std::size_t row, std::size_t column) const { return values_[row * phi_.size() + column]; }
+  double cell_integral(std::size_t row, std::size_t column) const;
+  float cell_solid_angle(std::size_t row, std::size_t column) const;
+
+  std::vector<float> theta_, phi_, values_, cos_theta_;
+  Distribution1D rows_;
+  std::vector<Distribution1D> columns_;  // of each row of cells
+  float highest_ = 0, least_theta_ = 0, greatest_theta_ = 0;
+};
+
+}  // namespace lumirank::emitters
