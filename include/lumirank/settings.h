@@ -33,6 +33,7 @@ struct RenderSettings {
   std::string direct =
       "auto";  // matrix, traced, auto: traced where the receiver is glossier than a measured roughness
   std::string rest = "skip";  // skip, trace
+  int compensate = 0;  // paths per pixel that give back what clamping took from indirect light; 0: none
   std::string visibility = "exact";
   std::string camera;          // "": the scene's first
   int crop[4] = {0, 0, 0, 0};  // x, y, width, height; width 0: none

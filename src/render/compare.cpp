@@ -317,6 +317,8 @@ class Comparison {
 bool compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
              const Sinks& sinks) {
   validate(settings.base);
+  if (settings.base.compensate > 0)
+    throw InputError("a comparison cannot compensate for clamping", "leave out 'compensate'");
   bool whole = false;
   with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
   return whole;

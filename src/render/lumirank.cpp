@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "base/timer.h"
 #include "film/atomic_file.h"
 #include "film/image_io.h"
@@ -90,6 +91,26 @@ film::DisplayOptions to_display_options(const DisplaySettings& display) {
 }
 
 int rest_paths(const RenderSettings& settings) { return std::max(16, settings.spp); }
+
+// Adds what clamping took from indirect light. False if it was interrupted: the picture is then without.
+bool add_compensation(Setup& setup, const RenderSettings& settings, film::Image& image, const Sinks& sinks) {
+  const Timer timer;
+  RenderSettings own = settings;
+  own.seed =
+      hash_ids(settings.seed, Stage::reference, 1);  // a reference with the same seed is independent of it
+  ReferenceSettings how;
+  how.paths = "columns";
+  how.spp = settings.compensate;
+  try {
+    const auto traced = rendering::path_trace(*setup.world, setup.view, own, how, sinks, {}, setup.held);
+    if (traced.interrupted) return false;
+    for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += traced.indirect.pixels[p];
+  } catch (const Cancelled&) {
+    return false;
+  }
+  setup.seconds["compensation"] = timer.seconds();
+  return true;
+}
 
 // Seconds of a budget that are kept for the film: a twentieth, or less where that would be wasted.
 double film_reserve(const Setup& setup, double budget) {
@@ -266,6 +287,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
     if (rest)
       for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += rest->image.pixels[p];
+    if (settings.compensate > 0 && !result.interrupted && !add_compensation(setup, settings, image, sinks))
+      result.interrupted = true;
     result.picture = rendering::to_picture(image);
     // The report counts what the method looked at; layers look at the chosen columns once more.
     auto& counters = setup.matrix->counters();

@@ -23,6 +23,7 @@ struct PathTracer::Walk {
   float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
   emitters::LitPoint from{};  // that vertex
   float travelled = 0;        // since the last vertex
+  float receiver_term = 0;    // π f_x·cosθx of the step away from the receiver
   float eta_scale = 1;        // undoes refraction's scaling for Russian roulette
   Radiance sum{};
 
@@ -82,12 +83,13 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
 }
 
 void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
-                               double u_light) const {
+                               double u_light, float connection) const {
   const Vec3f wo = -walk.ray.direction;
   walk.from = lit_point(hit.point.position, closure, wo);
   const auto s = lights_.sample(walk.from, u_light, walk.random.next_2d());
   if (!(s.pdf > 0)) return;
-  const Rgb f = scatter::eval(closure, wo, s.direct.direction);
+  Rgb f = scatter::eval(closure, wo, s.direct.direction);
+  if (connection > 0) f *= missing(connection, closure, wo, s.direct.direction);
   if (is_black(f)) return;
   const Rgb visible =
       visible_fraction(world_, hit.point.position, hit.point.ng, s.direct.direction, s.direct.distance,
@@ -95,6 +97,19 @@ void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const C
   if (is_black(visible)) return;
   const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
   walk.add(walk.throughput * f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf)));
+}
+
+Rgb PathTracer::missing(float connection, const Closure& closure, Vec3f wo, Vec3f wi) const {
+  const Rgb f = scatter::eval_f(closure, wo, wi);
+  const Rgb light =
+      settings_.held.diffuse_only ? scatter::eval_f(scatter::broad_part(closure, 1), wo, wi) : f;
+  const float top = connection * kPi * max_component(light);
+  if (!(top > 0)) return Rgb(1);
+  const float share = std::min(1.0f, settings_.held.bound / top);
+  Rgb part{0};
+  for (int c = 0; c < 3; ++c)
+    if (f[c] > 0) part[c] = std::max(0.0f, 1 - share * light[c] / f[c]);
+  return part;
 }
 
 // Light sampling and the next direction; false ends the path.
@@ -112,11 +127,15 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     }
     closure.count = kept;
   }
+  float connection = 0;
+  if (first_after_receiver && settings_.held.bound > 0)
+    connection =
+        walk.receiver_term * std::abs(dot(hit.point.ng, walk.ray.direction)) / square(walk.travelled);
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_smooth() && may_continue) {
     // The vertex itself is non-specular for light that is found here.
     ++walk.smooth_vertices;
-    sample_lights(walk, hit, closure, u_light);
+    sample_lights(walk, hit, closure, u_light, connection);
     --walk.smooth_vertices;
   }
 
@@ -134,7 +153,15 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     walk.bsdf_pdf = next->pdf;
     if (first_after_receiver && next->delta) walk.counts = settings_.paths != Paths::columns;
     walk.after_receiver = false;
-    if (!next->delta && ++walk.smooth_vertices == 1) walk.after_receiver = true;
+    if (!next->delta && ++walk.smooth_vertices == 1) {
+      walk.after_receiver = true;
+      if (settings_.held.bound > 0)
+        walk.receiver_term = kPi * max_component(scatter::eval(closure, wo, next->wi));
+    }
+    if (connection > 0 && !next->delta) {
+      walk.throughput *= missing(connection, closure, wo, next->wi);
+      if (is_black(walk.throughput)) return false;
+    }
 
     const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
     if (walk.segments > 5) {

@@ -24,10 +24,20 @@ struct Radiance {
   Rgb total() const { return emission + direct + indirect; }
 };
 
+// What the columns of clamped virtual lights hold already. An entry is scaled down so that A·G·(π f_x)(π f_y)
+// ≤ X (docs/conventions.md); where A is the same for all lights, what is left of a path depends on its first
+// three vertices alone, and tracing the paths with the rest of their weight gives back what clamping took
+// (Kollig and Keller 2004).
+struct Clamped {
+  float bound = 0;            // X / A in 1/area; 0: the columns hold nothing, all paths count in full
+  bool diffuse_only = false;  // f_y of the lights is that of the diffuse lobes alone
+};
+
 struct PathSettings {
   std::uint64_t seed = 1;
   int max_depth = -1;  // Mitsuba's count; -1: unlimited
   Paths paths = Paths::all;
+  Clamped held;  // only with Paths::columns; says nothing about direct light
 };
 
 class PathTracer {
@@ -42,7 +52,10 @@ class PathTracer {
   struct Walk;
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
-                     double u_light) const;
+                     double u_light, float connection) const;
+  // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular
+  // vertices.
+  Rgb missing(float connection, const scatter::Closure& closure, Vec3f wo, Vec3f wi) const;
   bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
 
   const world::World& world_;

@@ -141,6 +141,19 @@ transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks&
 }
 }  // namespace
 
+namespace {
+// Clamping takes from an entry what belongs to its light's area, which other lights decide; to be given back
+// by tracing paths it must be the same for all. Lights spread over a sphere around the scene would have this
+// much each. Emitter samples are not clamped then: direct light is not given back.
+Clamped even_areas(transport::VirtualLights& lights, const world::World& world, double clamp,
+                   std::size_t count) {
+  const float area = 4 * kPi * square(world.bounds().radius()) / static_cast<float>(count);
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    lights.area[j] = lights.kind[j] == transport::LightKind::surface ? area : 0;
+  return {static_cast<float>(clamp) / area, false};
+}
+}  // namespace
+
 void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks) {
   const Timer timer;
   setup.matrix.reset();  // before its lights change
@@ -152,7 +165,13 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   ls.indirect = settings.only != "direct";
   const transport::Receivers aim = aim_at(setup, settings.seed, sinks);
   ls.receivers = &aim;
+  ls.diffuse_only = settings.light_type == "diffuse-point";
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
+  setup.held = {};
+  if (settings.compensate > 0) {
+    setup.held = even_areas(setup.lights, *setup.world, settings.clamp, count);
+    setup.held.diffuse_only = ls.diffuse_only;
+  }
   setup.seconds["lights"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
 
@@ -160,6 +179,7 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   transport::SceneMatrixSettings ms;
   ms.seed = settings.seed;
   ms.clamp = static_cast<float>(settings.clamp);
+  ms.compensated = settings.compensate > 0;
   ms.max_depth = setup.view.max_depth;
   ms.traced_direct_below = static_cast<float>(setup.traced_below);
   for (const auto& aov : settings.aovs)

@@ -9,6 +9,7 @@
 #include "lumirank/lumirank.h"
 #include "lumirank/settings.h"
 #include "methods/method.h"
+#include "render/path_tracer.h"
 #include "scenedesc/scene_desc.h"
 #include "transport/receivers.h"
 #include "transport/scene_matrix.h"
@@ -39,7 +40,8 @@ struct Setup {
   // Direct light of the receivers that are traced instead of going through the matrix; empty if there are
   // none.
   std::vector<Rgb> traced_direct;
-  double traced_below = 0;                // roughness under which receivers are traced
+  double traced_below = 0;  // roughness under which receivers are traced
+  Clamped held;             // what the columns hold, where the rest is to be traced; bound 0: it is not
   std::map<std::string, double> seconds;  // per phase
 };
 

@@ -70,8 +70,8 @@ double stated_error(const View& view, const Half& a, const Half& b, Wanted wante
 
 ReferenceResult path_trace(const world::World& world, const View& view, const RenderSettings& settings,
                            const ReferenceSettings& how, const Sinks& sinks,
-                           const std::function<void(const film::Image&)>& on_pass) {
-  const PathTracer tracer(world, {settings.seed, view.max_depth, parse_paths(how.paths)});
+                           const std::function<void(const film::Image&)>& on_pass, Clamped held) {
+  const PathTracer tracer(world, {settings.seed, view.max_depth, parse_paths(how.paths), held});
   const world::Camera camera(view.sensor);
   const FilterSampler filter(make_filter(view.sensor.film.filter));
   const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);

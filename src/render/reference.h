@@ -18,9 +18,10 @@ struct ReferenceResult {
   bool interrupted = false;
 };
 
-// `only` and `paths` as in the settings. `on_pass` (may be empty) gets the image so far.
+// `only` and `paths` as in the settings. `on_pass` (may be empty) gets the image so far. With `held` the
+// indirect part is only what clamped columns lack; `direct` and `emission` mean nothing then.
 ReferenceResult path_trace(const world::World& world, const View& view, const RenderSettings& settings,
                            const ReferenceSettings& how, const Sinks& sinks,
-                           const std::function<void(const film::Image&)>& on_pass = {});
+                           const std::function<void(const film::Image&)>& on_pass = {}, Clamped held = {});
 
 }  // namespace lumirank::rendering

@@ -166,7 +166,7 @@ const std::vector<Row>& table() {
          "virtual lights to generate, all kinds together; costs memory (about 400 B each) and time in rows"},
         &S::lights, 1, 5e7));
     t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"}, &S::light_type,
-                       {"point"}));
+                       {"point", "diffuse-point"}));
     t.push_back(size_row());
     t.push_back(
         number<int>({"spp", "", "4", "1 … 4096", "receivers per pixel", "film samples per pixel (4 = 2×2)"},
@@ -202,6 +202,10 @@ const std::vector<Row>& table() {
     t.push_back(choice({"rest", "", "skip", "", "",
                         "paths that columns cannot carry: leave out, or add by path tracing (noisy)"},
                        &S::rest, {"skip", "trace"}));
+    t.push_back(number<int>({"compensate", "", "0", "0 … 1048576", "paths per pixel",
+                             "give back what clamping took from indirect light by path tracing (unbiased, "
+                             "noisy); 0: do not"},
+                            &S::compensate, 0, 1 << 20));
     t.push_back(choice({"visibility", "", "exact", "", "", "how shadow rays are answered"}, &S::visibility,
                        {"exact"}));
     t.push_back(
@@ -297,6 +301,16 @@ void validate(const RenderSettings& settings) {
   }
   if (!settings.choices.empty() && settings.time <= 0)
     throw InputError("choices of a timed run need its time budget", "set 'time', or clear the choices");
+  if (settings.compensate > 0) {
+    const auto refuse = [](const char* what, const char* remedy) {
+      throw InputError(std::string("'compensate' ") + what, remedy);
+    };
+    if (settings.time > 0) refuse("cannot keep to a time budget", "leave out 'time', or 'compensate'");
+    if (!(settings.clamp > 0)) refuse("has nothing to give back without clamping", "set 'clamp' above 0");
+    if (settings.light_type != "point" && settings.light_type != "diffuse-point")
+      refuse("is for point lights", "set 'light-type' to point or diffuse-point");
+    if (settings.only == "direct") refuse("is for indirect light", "leave out 'only', or 'compensate'");
+  }
   if (settings.method != "auto") methods::find_method(settings.method).make(settings.method_settings);
 }
 

@@ -52,18 +52,19 @@ class Relevance {
 
 }  // namespace
 
-EmissionGuide learn_guide(const world::World& world, const EmitterChoice& choice, const Receivers& receivers,
-                          std::uint64_t seed, int deepest) {
+EmissionGuide learn_guide(const world::World& world, const EmitterChoice& choice, const LightSettings& asked,
+                          int deepest) {
+  const Receivers& receivers = *asked.receivers;
   EmissionGuide guide;
   if (receivers.size() == 0 || choice.empty()) return guide;
   const Relevance relevance(world, receivers);
   std::vector<EmissionGuide::Observation> seen;
   for (int round = 0; round < kRounds; ++round) {
     ParticleSettings settings;
-    settings.seed = seed, settings.stage = Stage::pilot;
+    settings.seed = asked.seed, settings.stage = Stage::pilot;
     settings.paths = kPathsPerRound, settings.deepest = deepest;
     settings.first_id = static_cast<std::uint64_t>(round + 1) << 40;  // numbers of its own
-    settings.guide = &guide;
+    settings.guide = &guide, settings.diffuse_only = asked.diffuse_only;
     const ParticleTracer tracer(world, choice, settings);
     const std::size_t first = seen.size();
     seen.resize(first + kPathsPerRound);
@@ -72,7 +73,7 @@ EmissionGuide learn_guide(const world::World& world, const EmitterChoice& choice
       for (std::size_t path = begin; path < end; ++path) {
         batch.lights.clear();
         const EmissionGuide::Start start = tracer.trace(path, batch);
-        Rng rng(seed, Stage::pilot, settings.first_id + path, 1);
+        Rng rng(asked.seed, Stage::pilot, settings.first_id + path, 1);
         auto& o = seen[first + path];
         o.at[0] = std::min(static_cast<float>(start.emitter), 0x1.fffffep-1f);
         std::copy(start.rest, start.rest + kStartDimensions - 1, o.at.begin() + 1);

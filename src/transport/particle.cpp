@@ -80,13 +80,15 @@ void ParticleTracer::follow(const EmissionGuide::Start& from, Rng& rng, LightBat
     const Vec3f incoming = -ray.direction;
     const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
     const bool sides_agree = dot(incoming, closure.frame.n) * dot(incoming, closure.ng) > 0;
-    if (closure.has_smooth() && sides_agree) {
-      LightRecord light = surface_light(hit->point.position, closure, incoming, batch.closures);
+    // Paths are those of the whole closure either way: what a light leaves out is only what it shines itself.
+    const Closure shining = settings_.diffuse_only ? scatter::broad_part(closure, 1) : closure;
+    if (shining.has_smooth() && sides_agree) {
+      LightRecord light = surface_light(hit->point.position, shining, incoming, batch.closures);
       light.power = flux * incident_correction(closure, incoming);
       light.emitter = static_cast<std::uint16_t>(start.emitter);
       light.depth = static_cast<std::uint16_t>(depth);
       batch.lights.push_back(light);
-      if (tally) tally->scattered_flux += mean(flux * scatter::albedo(closure, incoming));
+      if (tally) tally->scattered_flux += mean(flux * scatter::albedo(shining, incoming));
     }
     const float u_lobe = rng.next_float();
     const auto next = scatter::sample(closure, incoming, u_lobe, rng.next_2d(), scatter::Lobes::all, true);

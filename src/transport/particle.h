@@ -19,6 +19,7 @@ struct ParticleSettings {
   int deepest = -1;                      // greatest depth of a light; -1: unlimited
   std::uint64_t first_id = 0;            // random numbers belong to first_id + path
   const EmissionGuide* guide = nullptr;  // not owned; nullptr: uniform
+  bool diffuse_only = false;             // as in LightSettings
 };
 
 // What a path met, for the pilot.

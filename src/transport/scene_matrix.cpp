@@ -192,7 +192,9 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
       const std::size_t items = items_in_tile(plan, tile);
       for (const matrix::ScaledColumn& s : scaled) {
         if (sinks.cancelled()) throw Cancelled();
-        block->set_column(impl_->columns.plan.slot[s.column], clamp_of(s, impl_->context.clamp));
+        block->set_column(impl_->columns.plan.slot[s.column], impl_->settings.compensated
+                                                                  ? impl_->context.clamp
+                                                                  : clamp_of(s, impl_->context.clamp));
         block->trace();
         cost.evaluated += items;
         cost.culled += items - block->survivors();
@@ -222,7 +224,7 @@ matrix::ColumnFeatures SceneMatrix::column_features() const {
 
 double SceneMatrix::clamped_energy() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->energy_removed;
+  return impl_->settings.compensated ? 0 : impl_->energy_removed;
 }
 
 double SceneMatrix::clamped_fraction() const {

@@ -13,6 +13,8 @@ namespace lumirank::transport {
 struct SceneMatrixSettings {
   std::uint64_t seed = 1;
   float clamp = 1;  // X of the conventions; 0: off
+  // What clamping takes is given back elsewhere: nothing is lost by it, and nothing else may be bounded.
+  bool compensated = false;
   int max_depth =
       -1;  // Mitsuba's count; receiver depth + light depth + the connecting segment may not exceed it
   bool group_by_emitter = false;  // clusters may not cross emitters (for --aov light:NAME)

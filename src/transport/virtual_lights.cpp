@@ -31,14 +31,15 @@ struct Pilot {
 };
 
 Pilot run_pilot(const world::World& world, const EmitterChoice& choice, const EmissionGuide& guide,
-                std::uint64_t seed, int deepest) {
+                const LightSettings& settings, int deepest) {
   struct Sums {
     double lights = 0, first = 0, scattered = 0;
     Sums operator+(const Sums& o) const {
       return {lights + o.lights, first + o.first, scattered + o.scattered};
     }
   };
-  const ParticleTracer tracer(world, choice, {seed, Stage::pilot, kPilotPaths, deepest, 0, &guide});
+  const ParticleTracer tracer(
+      world, choice, {settings.seed, Stage::pilot, kPilotPaths, deepest, 0, &guide, settings.diffuse_only});
   const Sums sums =
       parallel_sum(kPilotPaths, std::size_t{256}, Sums{}, [&](std::size_t begin, std::size_t end) {
         LightBatch batch;
@@ -137,8 +138,8 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
   Pilot pilot;
   EmissionGuide guide;
   if (indirect) {
-    if (settings.receivers) guide = learn_guide(world, choice, *settings.receivers, settings.seed, deepest);
-    pilot = run_pilot(world, choice, guide, settings.seed, deepest);
+    if (settings.receivers) guide = learn_guide(world, choice, settings, deepest);
+    pilot = run_pilot(world, choice, guide, settings, deepest);
     // Nothing that the emitters reach scatters: all lights may go to them.
     if (pilot.lights_per_path == 0 && direct) indirect = false;
   }
@@ -147,8 +148,10 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
   batches[0] = emitter_lights(world, choice, settings.seed, counts.direct);
   const std::size_t direct_count = batches[0].lights.size();
   if (counts.paths > 0)
-    trace_particles(world, choice, {settings.seed, Stage::particles, counts.paths, deepest, 0, &guide},
-                    std::span(batches).subspan(1), sinks);
+    trace_particles(
+        world, choice,
+        {settings.seed, Stage::particles, counts.paths, deepest, 0, &guide, settings.diffuse_only},
+        std::span(batches).subspan(1), sinks);
   VirtualLights lights = lay_out(batches);
   lights.paths = counts.paths;
   lights.direct_count = direct_count;

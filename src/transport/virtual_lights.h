@@ -44,6 +44,9 @@ struct LightSettings {
   std::size_t count = 100000;  // target over all kinds
   int max_depth = -1;          // Mitsuba's count
   bool direct = true, indirect = true;
+  // Surface lights send on by the diffuse lobes of their surface alone (Hašan et al. 2009, section 2): the
+  // traditional approximation. Lights of surfaces without such a lobe are left out.
+  bool diffuse_only = false;
   // If given, particles are aimed so that their light reaches these receivers (an interior behind windows):
   // more of the lights are then of use to the image. The result is unbiased for every receiver either way.
   // Read during the call only.

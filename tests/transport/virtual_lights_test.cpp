@@ -283,6 +283,48 @@ TEST(VirtualLights, SomeLampsStandForAll) {
   expect_mean(sums, total, 1, "intensity of all lamps");
 }
 
+// Half of the box is glossy paint, the rest metal: diffuse lights sit where the full ones of the paint do,
+// with the same flux, and shine by its diffuse reflectance alone.
+TEST(VirtualLights, DiffuseOnlyKeepsThePlacesAndLeavesOutTheGlossyPart) {
+  SceneMaker scene;
+  scenedesc::WardDesc paint, metal;
+  paint.diffuse_reflectance.value = {0.4f, 0.3f, 0.2f};
+  metal.diffuse_reflectance.value = Rgb(0);
+  for (auto* d : {&paint, &metal}) {
+    d->specular_reflectance.value = Rgb(0.4f);
+    d->alpha_u.value = d->alpha_v.value = 0.2f;
+  }
+  scene.box_inside(1, scene.bsdf(metal));
+  scene.rectangle({0, 0, -0.5f}, {0.9f, 0, 0}, {0, 0.9f, 0}, scene.bsdf(paint));
+  scene.point_light({0.1f, 0.2f, 0.3f}, Rgb(1));
+  const auto world = scene.build();
+  auto settings = settings_of(1, 3000);
+  settings.direct = false;
+  settings.diffuse_only = true;
+  const auto lights = trace_virtual_lights(world, settings);
+  ASSERT_GT(lights.size(), 1000u);
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    EXPECT_NEAR(lights.position[j].z, -0.5f, 1e-5f);
+    EXPECT_EQ(lights.closure[j], VirtualLights::kLambertian);
+    EXPECT_EQ(lights.albedo[j], (Rgb{0.4f, 0.3f, 0.2f}));
+  }
+  EXPECT_EQ(lights.closures.size(), 0u);
+  // The flux that arrives at the paint is estimated alike: equal means over independent seeds.
+  std::vector<double> difference;
+  for (std::uint64_t seed = 10; seed < 30; ++seed) {
+    double sum = 0;
+    for (const bool diffuse_only : {true, false}) {
+      settings.seed = diffuse_only ? seed : seed + 100;
+      settings.diffuse_only = diffuse_only;
+      const auto some = trace_virtual_lights(world, settings);
+      for (std::size_t j = 0; j < some.size(); ++j)
+        if (std::abs(some.position[j].z + 0.5f) < 1e-4f) sum += (diffuse_only ? 1 : -1) * some.power[j].r;
+    }
+    difference.push_back(sum);
+  }
+  expect_mean(difference, 0, 1, "flux at the paint");
+}
+
 TEST(VirtualLights, SortedByKindThenAlongACurve) {
   SceneMaker scene;
   const int white = scene.diffuse(Rgb(0.5f));
