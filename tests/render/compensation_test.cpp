@@ -32,7 +32,7 @@ std::string wall(const std::string& transform, const std::string& specular) {
 // large along the edges and in the walls' mirror directions.
 Scene corner() {
   return test::load_text(
-      test::point_camera("0.4,0.5,1.2", "0,0.1,0", 10, 16) +
+      test::point_camera("0.4,0.5,1.2", "0,0.1,0", 7, 16) +
       wall("<rotate x=\"1\" angle=\"-90\"/>", "0.5, 0.5, 0.5") +
       wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", "0.4, 0.45, 0.5") +
       wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-0.5\" y=\"1\" z=\"0\"/>", "0.2, 0.2, 0.2") +
