@@ -1,0 +1,233 @@
+"""What the experiments' scripts share: images, errors against two independent references, plots, one HTML page, resumable runs. Only the standard library."""
+import array
+import html
+import json
+import math
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+
+def read_pfm(path):
+    """(width, height, floats row by row from the top, three to a pixel)."""
+    data = pathlib.Path(path).read_bytes()
+    kind, size, scale, body = data.split(b"\n", 3)
+    width, height = map(int, size.split())
+    if kind != b"PF" or float(scale) > 0:
+        raise ValueError(f"{path}: not a little-endian colour PFM")
+    values = array.array("f", body[:12 * width * height])
+    if sys.byteorder == "big":
+        values.byteswap()
+    rows = [values[3 * width * y:3 * width * (y + 1)] for y in reversed(range(height))]
+    return width, height, array.array("f", b"".join(r.tobytes() for r in rows))
+
+
+def write_png(path, width, height, pixels):
+    """pixels: bytes, three to a pixel."""
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    lines = b"".join(b"\0" + pixels[3 * width * y:3 * width * (y + 1)] for y in range(height))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) +
+                     chunk(b"IDAT", zlib.compress(lines, 9)) + chunk(b"IEND", b""))
+
+
+CODES = bytes(round(255 * (12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055)) for v in (k / 4095 for k in range(4096)))
+
+
+def to_display(values, exposure):
+    return bytes(CODES[min(4095, max(0, int(4095 * exposure * v)))] for v in values)
+
+
+def false_colour(x):
+    """Black, blue, magenta, orange, white for 0 … 1."""
+    stops = ((0, 0, 0), (40, 20, 140), (190, 40, 120), (250, 150, 30), (255, 255, 230))
+    x = min(max(x, 0.0), 1.0) * 4
+    k = min(int(x), 3)
+    return bytes(round(a + (b - a) * (x - k)) for a, b in zip(stops[k], stops[k + 1]))
+
+
+class Truth:
+    """Two independent references A and B of one picture.
+
+    ⟨I − A, I − B⟩ / ⟨A, B⟩ is the squared relative L2 error of I without the references' own noise, which is independent in the two and cancels
+    in the mean. Its 95 % interval comes from leaving out one of 48 blocks of the image at a time.
+    """
+
+    def __init__(self, a, b):
+        self.width, self.height, self.a = a
+        if b[:2] != a[:2]:
+            raise ValueError("the two references differ in size")
+        self.b = b[2]
+        self.mean = array.array("f", ((x + y) / 2 for x, y in zip(self.a, self.b)))
+        self.level = sum(self.mean) / len(self.mean)
+        # A quarter of the range for the mean leaves room for highlights.
+        self.exposure = 0.25 / self.level if self.level > 0 else 1.0
+
+    def error(self, image):
+        width, height, values = image
+        if (width, height) != (self.width, self.height):
+            raise ValueError(f"a picture of {width}x{height} against references of {self.width}x{self.height}")
+        across, down = 8, 6
+        top, bottom = [0.0] * (across * down), [0.0] * (across * down)
+        difference = absolute = 0.0
+        for y in range(height):
+            row = (y * down // height) * across
+            for x in range(width):
+                block = row + x * across // width
+                at = 3 * (y * width + x)
+                for k in (at, at + 1, at + 2):
+                    i, a, b = values[k], self.a[k], self.b[k]
+                    top[block] += (i - a) * (i - b)
+                    bottom[block] += a * b
+                    difference += i - 0.5 * (a + b)
+                    absolute += abs(i - 0.5 * (a + b))
+        def l2(t, b):
+            return math.sqrt(max(0.0, t / b)) if b > 0 else 0.0
+        t, b, n = sum(top), sum(bottom), across * down
+        parts = [l2(t - top[k], b - bottom[k]) for k in range(n)]
+        middle = sum(parts) / n
+        spread = math.sqrt((n - 1) / n * sum((p - middle) ** 2 for p in parts))
+        total = self.level * len(self.mean)
+        return {"l2": l2(t, b), "l2_width": 1.96 * spread, "l1": absolute / total, "bias": difference / total}
+
+    def difference_png(self, path, image, full=2.0):
+        """|I − R| per pixel, white at `full` times the mean of the reference."""
+        values, scale = image[2], 1 / (full * self.level * 3)
+        pixels = b"".join(false_colour(scale * sum(abs(values[k + c] - self.mean[k + c]) for c in range(3))) for k in range(0, len(values), 3))
+        write_png(path, self.width, self.height, pixels)
+
+
+class Runs:
+    """Runs of the program, each kept under a name: what is finished with the same arguments is not run again."""
+
+    def __init__(self, program, folder, threads):
+        self.program, self.folder, self.threads = program, folder, threads
+        (folder / "parts").mkdir(parents=True, exist_ok=True)
+
+    def run(self, name, command, scene, arguments):
+        """Returns (picture, report); the report has "wall", seconds of the whole process."""
+        base = self.folder / "parts" / name
+        record = base.with_name(base.name + ".run.json")
+        asked = [command, str(pathlib.Path(scene).name), pathlib.Path(scene).parent.name, *map(str, arguments)]
+        picture, report = base.with_name(base.name + ".pfm"), base.with_name(base.name + ".json")
+        if record.exists():
+            known = json.loads(record.read_text())
+            if known["asked"] == asked and picture.exists() and report.exists():
+                return read_pfm(picture), json.loads(report.read_text()) | {"wall": known["wall"]}
+        line = [str(self.program), command, str(scene), "-o", str(picture), "--report", str(report), "--quiet", "--threads", str(self.threads), *map(str, arguments)]
+        print("$", " ".join(line), flush=True)
+        start = time.monotonic()
+        subprocess.run(line, check=True)
+        wall = time.monotonic() - start
+        record.write_text(json.dumps({"asked": asked, "wall": wall}))
+        return read_pfm(picture), json.loads(report.read_text()) | {"wall": wall}
+
+
+def percent(x):
+    return f"{100 * x:.1f} %"
+
+
+def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=560, height=340):
+    """An SVG of {name: [(x, y), …]}; a point alone becomes a dashed level line."""
+    points = [p for c in curves.values() for p in c if p[1] > 0 and (p[0] > 0 or not log_x)]
+    if not points:
+        return ""
+    fx = math.log10 if log_x else float
+    fy = math.log10 if log_y else float
+    xs, ys = [fx(p[0]) for p in points], [fy(p[1]) for p in points]
+    x0, x1, y0, y1 = min(xs), max(xs), min(ys), max(ys)
+    if not log_y:
+        y0 = 0.0
+    x0, x1 = (x0 - 0.5, x1 + 0.5) if x0 == x1 else (x0 - 0.03 * (x1 - x0), x1 + 0.03 * (x1 - x0))
+    y0, y1 = (y0 - 0.5, y1 + 0.5) if y0 == y1 else (y0 - 0.06 * (y1 - y0) * log_y, y1 + 0.06 * (y1 - y0))
+    left, right, top, bottom = 62, 150, 34, 46
+
+    def px(x):
+        return left + (fx(x) - x0) / (x1 - x0) * (width - left - right)
+
+    def py(y):
+        return height - bottom - (fy(y) - y0) / (y1 - y0) * (height - top - bottom)
+
+    def ticks(low, high, log):
+        if log:
+            found = [m * 10.0 ** e for e in range(math.floor(low), math.ceil(high) + 1) for m in (1, 2, 5)]
+            return [t for t in found if low <= math.log10(t) <= high]
+        step = 10 ** math.floor(math.log10(max(high - low, 1e-9)))
+        step *= 0.2 if (high - low) / step < 2 else (0.5 if (high - low) / step < 5 else 1)
+        return [k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
+    out = [f'<svg viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="{html.escape(title)}">',
+           f'<text x="{left}" y="18" class="t">{html.escape(title)}</text>']
+    for t in ticks(x0, x1, log_x):
+        out.append(f'<line x1="{px(t):.1f}" y1="{top}" x2="{px(t):.1f}" y2="{height - bottom}" class="g"/><text x="{px(t):.1f}" y="{height - bottom + 15}" text-anchor="middle">{t:g}</text>')
+    for t in ticks(y0, y1, log_y):
+        out.append(f'<line x1="{left}" y1="{py(t):.1f}" x2="{width - right}" y2="{py(t):.1f}" class="g"/><text x="{left - 6}" y="{py(t) + 4:.1f}" text-anchor="end">{t:g}</text>')
+    out.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">{html.escape(x_label)}</text>'
+               f'<text transform="translate(14 {(top + height - bottom) / 2}) rotate(-90)" text-anchor="middle">{html.escape(y_label)}</text>')
+    colours = ("#1b6ca8", "#c8502a", "#3a8f4d", "#8a4fa3", "#b08a1e", "#4b4b4b")
+    for k, (name, curve) in enumerate(curves.items()):
+        colour = colours[k % len(colours)]
+        good = [p for p in curve if p[1] > 0]
+        if len(good) == 1 and good[0][0] == 0:
+            y = py(good[0][1])
+            out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - right}" y2="{y:.1f}" stroke="{colour}" stroke-dasharray="6 4" stroke-width="2"/>')
+        else:
+            path = " ".join(f"{px(x):.1f},{py(y):.1f}" for x, y in good)
+            out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>' +
+                       ("".join(f'<circle cx="{px(x):.1f}" cy="{py(y):.1f}" r="3" fill="{colour}"/>' for x, y in good) if len(good) < 30 else ""))
+        out.append(f'<text x="{width - right + 10}" y="{top + 16 + 18 * k}" fill="{colour}">{html.escape(name)}</text>')
+    return "\n".join(out + ["</svg>"])
+
+
+STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:1180px;margin:2em auto;padding:0 1em;color:#222;background:#fff}
+table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;border-bottom:1px solid #ddd;text-align:right}td:first-child,th:first-child{text-align:left}
+figure{display:inline-block;margin:.3em;vertical-align:top}figure img{display:block;image-rendering:auto;max-width:100%}figcaption{font-size:13px;max-width:380px}
+svg text{font:12px system-ui,sans-serif;fill:#333}svg .t{font-weight:600}svg .g{stroke:#e4e4e4}svg{max-width:100%;margin:.4em}
+@media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}td,th{border-color:#444}svg text{fill:#ccc}svg .g{stroke:#333}}"""
+
+
+class Page:
+    def __init__(self, title, folder):
+        self.title, self.folder, self.body, self.text = title, folder, [f"<h1>{html.escape(title)}</h1>"], [f"# {title}\n"]
+        (folder / "images").mkdir(parents=True, exist_ok=True)
+
+    def heading(self, words):
+        self.body.append(f"<h2>{html.escape(words)}</h2>")
+        self.text.append(f"\n## {words}\n")
+
+    def say(self, words):
+        self.body.append(f"<p>{html.escape(words)}</p>")
+        self.text.append(f"\n{words}\n")
+
+    def table(self, head, rows):
+        cells = "".join("<tr>" + "".join(f"<td>{html.escape(str(c))}</td>" for c in r) + "</tr>" for r in rows)
+        self.body.append("<table><tr>" + "".join(f"<th>{html.escape(h)}</th>" for h in head) + f"</tr>{cells}</table>")
+        self.text.append("\n| " + " | ".join(head) + " |\n|" + "---|" * len(head) + "\n" + "".join("| " + " | ".join(map(str, r)) + " |\n" for r in rows))
+
+    def picture(self, name, image, exposure, caption):
+        width, height, values = image
+        write_png(self.folder / "images" / f"{name}.png", width, height, to_display(values, exposure))
+        self.figure(name, width, caption)
+
+    def difference(self, name, truth, image, caption):
+        truth.difference_png(self.folder / "images" / f"{name}.png", image)
+        self.figure(name, truth.width, caption)
+
+    def figure(self, name, width, caption):
+        shown = max(256, min(width, 400))
+        self.body.append(f'<figure><img src="images/{name}.png" width="{shown}" alt="{html.escape(caption)}"><figcaption>{html.escape(caption)}</figcaption></figure>')
+
+    def svg(self, drawing):
+        self.body.append(drawing)
+
+    def write(self):
+        """Whole after every part, so that a run that is cut short leaves a page."""
+        page = (f'<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(self.title)}</title>'
+                f"<style>{STYLE}</style>" + "\n".join(self.body) + "</html>\n")
+        for name, content in (("index.html", page), ("tables.md", "".join(self.text))):
+            temporary = self.folder / (name + ".part")
+            temporary.write_text(content)
+            os.replace(temporary, self.folder / name)
