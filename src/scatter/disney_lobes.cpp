@@ -32,9 +32,10 @@ namespace {
 constexpr float kCoatF0 = 0.04f, kCoatMaskAlpha = 0.25f;
 
 // The generalised Trowbridge-Reitz distribution with exponent 1; alpha_u is its width.
-float gtr1_d(float cos_m, float alpha) {
+// sin² + α²·cos² instead of 1 + (α² - 1)·cos²: near the pole the latter has no digits left.
+float gtr1_d(Vec3f m, float alpha) {
   const float a2 = alpha * alpha;
-  return (a2 - 1) / (kPi * std::log(a2) * (1 + (a2 - 1) * cos_m * cos_m));
+  return (a2 - 1) / (kPi * std::log(a2) * (m.x * m.x + m.y * m.y + a2 * m.z * m.z));
 }
 
 }  // namespace
@@ -44,12 +45,12 @@ Rgb clearcoat_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
   const Vec3f m = normalize(wo + wi);
   const float f = lerp(schlick_weight(dot(wo, m)), 1.0f, kCoatF0);
   const float g = ggx_g1(wo, kCoatMaskAlpha, kCoatMaskAlpha) * ggx_g1(wi, kCoatMaskAlpha, kCoatMaskAlpha);
-  return lobe.color * (f * gtr1_d(m.z, lobe.alpha_u) * g);
+  return lobe.color * (f * gtr1_d(m, lobe.alpha_u) * g);
 }
 
 float clearcoat_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi) {
   const Vec3f m = normalize(wo + wi);
-  return gtr1_d(m.z, lobe.alpha_u) * m.z / (4 * dot(wo, m));
+  return gtr1_d(m, lobe.alpha_u) * m.z / (4 * dot(wo, m));
 }
 
 bool clearcoat_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi) {

@@ -160,8 +160,21 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
   all.push_back(add_bsdf(desc, coated));
   all.push_back(add_bsdf(desc, PhongDesc{}));
   all.push_back(add_bsdf(desc, WardDesc{}));
+  for (const auto variant :
+       {WardDesc::Variant::ward, WardDesc::Variant::ward_duer, WardDesc::Variant::balanced}) {
+    WardDesc brushed;
+    brushed.variant = variant;
+    brushed.diffuse_reflectance = color(0.1f, 0.2f, 0.05f);
+    brushed.specular_reflectance = color(0.5f, 0.3f, 0.7f);
+    brushed.alpha_u = value(0.12f), brushed.alpha_v = value(0.35f);
+    all.push_back(add_bsdf(desc, brushed));
+  }
   PrincipledDesc principled;
   principled.sheen = value(0.5f), principled.clearcoat = value(0.7f), principled.metallic = value(0.3f);
+  all.push_back(add_bsdf(desc, principled));
+  principled.flatness = value(0.6f), principled.anisotropic = value(0.7f), principled.spec_tint = value(0.4f);
+  principled.roughness = value(0.3f), principled.sheen_tint = value(0.5f),
+  principled.clearcoat_gloss = value(0.9f);
   all.push_back(add_bsdf(desc, principled));
   for (const float alpha : {0.0f, 0.2f}) {  // metal and matt colour under varnish
     CoatingDesc coating;
@@ -173,6 +186,10 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
     coating.nested = add_bsdf(desc, metal);
     all.push_back(add_bsdf(desc, coating));
     coating.nested = add_bsdf(desc, DiffuseDesc{color(0.7f, 0.5f, 0.3f)});
+    all.push_back(add_bsdf(desc, coating));
+    coating.nested = add_bsdf(desc, WardDesc{});
+    all.push_back(add_bsdf(desc, coating));
+    coating.nested = add_bsdf(desc, RoughDiffuseDesc{color(0.6f, 0.5f, 0.4f), value(0.3f)});
     all.push_back(add_bsdf(desc, coating));
   }
   for (std::size_t k = 0; k < all.size(); ++k)

@@ -1,142 +1,207 @@
 #include "transport/kernels/lobe_lanes.h"
 
+#include "transport/kernels/fresnel_lanes.h"
 #include "transport/kernels/lane_math.h"
+#include "transport/kernels/microfacet_lanes.h"
 
 namespace lumirank::transport {
 namespace {
 
-using scatter::FresnelKind;
 using scatter::LobeKind;
 using scatter::NormalDistribution;
 
 const Lane kZero{};
 constexpr float kGrazing = 1e-6f;  // as in scatter::eval_f
 inline Lane one() { return splat(1); }
-inline Lane saturate(Lane x) { return min(max(x, kZero), one()); }
 
-// scatter::fresnel_dielectric.
-Lane fresnel_dielectric(Lane cos_i, Lane eta) {
-  const Lane c = min(cos_i, one());
-  const Lane cos_t2 = one() - (one() - c * c) / (eta * eta);
-  const Lane cos_t = sqrt(max(cos_t2, kZero));
-  const Lane parallel = (eta * c - cos_t) / (eta * c + cos_t + splat(1e-20f));
-  const Lane perpendicular = (c - eta * cos_t) / (c + eta * cos_t + splat(1e-20f));
-  const Lane r = splat(0.5f) * (parallel * parallel + perpendicular * perpendicular);
-  return select(cos_t2 > kZero, min(r, one()), one());
+Lane3 black() { return {kZero, kZero, kZero}; }
+
+// scatter::schlick_weight.
+Lane schlick_weight(Lane cosine) {
+  const Lane m = saturated(one() - cosine), m2 = m * m;
+  return m2 * m2 * m;
 }
 
-// scatter::fresnel_conductor.
-Lane fresnel_conductor(Lane cos_i, Lane eta, Lane k) {
-  const Lane c = min(cos_i, one()), c2 = c * c, s2 = one() - c2;
-  const Lane t0 = eta * eta - k * k - s2;
-  const Lane a2_plus_b2 = sqrt(t0 * t0 + splat(4) * eta * eta * k * k);
-  const Lane a = sqrt(max(kZero, splat(0.5f) * (a2_plus_b2 + t0)));
-  const Lane t1 = a2_plus_b2 + c2, t2 = splat(2) * a * c;
-  const Lane perpendicular = (t1 - t2) / (t1 + t2 + splat(1e-20f));
-  const Lane t3 = c2 * a2_plus_b2 + s2 * s2, t4 = t2 * s2;
-  const Lane parallel = perpendicular * (t3 - t4) / (t3 + t4 + splat(1e-20f));
-  return saturate(splat(0.5f) * (perpendicular + parallel));
+// scatter::ward_value; the constants of each variant are in the colour.
+Lane ward(const ScatterGroup& group, int variant, const LobeLanes& lobe, const Meeting& at) {
+  const Lane z2 = at.cos_m * at.cos_m;
+  const Lane gaussian = exp_negative(-(shrunk(group, at.m, lobe) / z2));
+  if (variant == 0) return gaussian / sqrt(at.cos_i);
+  if (variant == 1) return gaussian / at.cos_i;
+  return gaussian / (at.len2 * (z2 * z2));
 }
 
-Lane3 fresnel(FresnelKind kind, const LobeLanes& lobe, Lane cos_m) {
-  switch (kind) {
-    case FresnelKind::dielectric: {
-      const Lane f = fresnel_dielectric(cos_m, lobe.eta);
-      return {f, f, f};
+// scatter::phong_value.
+Lane phong(const LobeLanes& lobe, const Meeting& at) {
+  const Lane c = splat(2) * at.cos_o * at.cos_i - dot(at.wo, at.wi);
+  const LaneMask near_mirror = c > kZero;
+  const Lane exponent = min(lobe.alpha_u * log_positive(select(near_mirror, c, one())), kZero);
+  return select(near_mirror, exp_negative(exponent), kZero);
+}
+
+// scatter::oren_nayar_value. tan((α + β)/2) = (sin α + sin β)/(cos α + cos β).
+Lane3 oren_nayar(const LobeLanes& lobe, const Meeting& at) {
+  const Lane sin_o = sqrt(max(kZero, one() - at.cos_o * at.cos_o)),
+             sin_i = sqrt(max(kZero, one() - at.cos_i * at.cos_i));
+  const Lane sin_sin = sin_o * sin_i;
+  const LaneMask slanted = sin_sin > splat(1e-12f);
+  const Lane across = (dot(at.wo, at.wi) - at.cos_o * at.cos_i) / select(slanted, sin_sin, one());
+  const Lane cos_phi = select(slanted, min(max(across, splat(-1)), one()), kZero);
+  const Lane theta_o = angle_of(at.cos_o, sin_o), theta_i = angle_of(at.cos_i, sin_i);
+  const LaneMask o_is_less = at.cos_o > at.cos_i;
+  const Lane alpha = max(theta_o, theta_i), beta = min(theta_o, theta_i);
+  const Lane sin_alpha = max(sin_o, sin_i);
+  const Lane tan_beta = select(o_is_less, sin_o / at.cos_o, sin_i / at.cos_i);
+  const Lane tan_half = (sin_o + sin_i) / (at.cos_o + at.cos_i);
+  const Lane two_beta_pi = splat(2 * kInvPi) * beta;
+  const Lane c2 =
+      lobe.b.y * (sin_alpha - select(cos_phi >= kZero, kZero, two_beta_pi * two_beta_pi * two_beta_pi));
+  const Lane both = splat(4 * kInvPi * kInvPi) * alpha * beta;
+  const Lane direct =
+      lobe.b.x + cos_phi * c2 * tan_beta + (one() - abs(cos_phi)) * (lobe.b.z * both * both) * tan_half;
+  const Lane indirect = lobe.eta * (one() - cos_phi * two_beta_pi * two_beta_pi);
+  return lobe.color * max(kZero, direct) + lobe.a * indirect;
+}
+
+// scatter::disney_diffuse_value.
+Lane disney_diffuse(const LobeLanes& lobe, const Meeting& at) {
+  const Lane fo = schlick_weight(at.cos_o), fi = schlick_weight(at.cos_i);
+  const Lane rr = splat(2) * lobe.alpha_u * at.cos_d * at.cos_d;
+  const Lane half = splat(0.5f);
+  const Lane smooth = (one() - half * fo) * (one() - half * fi) + rr * (fo + fi + fo * fi * (rr - one()));
+  const Lane ss90 = half * rr - one();
+  const Lane ss = (one() + ss90 * fo) * (one() + ss90 * fi);
+  const Lane flat = splat(1.25f) * (ss * (one() / (at.cos_o + at.cos_i) - half) + half);
+  return smooth + (flat - smooth) * lobe.b.x;
+}
+
+constexpr float kCoatMask2 = 0.25f * 0.25f;  // of Disney's clear coat
+
+// scatter::clearcoat_value.
+Lane clearcoat(const ScatterGroup& group, const LobeLanes& lobe, const Meeting& at) {
+  const Lane w = schlick_weight(at.cos_d), f = w + (one() - w) * splat(0.04f);
+  const Lane a2 = lobe.alpha_u * lobe.alpha_u;
+  const Lane g1 = masking(NormalDistribution::ggx, at.cos_i, splat(kCoatMask2) * sin2_of(group, at.i));
+  return f * g1 / (sin2_of(group, at.m) + a2 * at.cos_m * at.cos_m);
+}
+
+Lane3 microfacet(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe, const Meeting& at) {
+  const Lane d = normals(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
+  const Lane g1 = masking(form.distribution, at.cos_i, stretched(group, at.i, lobe));
+  return (lobe.color * fresnel(form.fresnel, lobe, at.cos_d)) * (d * g1 / at.cos_i);
+}
+
+Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe, const Meeting& at) {
+  switch (form.kind) {
+    case LobeKind::interfaced_diffuse:
+      return lobe.color * interface_transmittance(lobe, at.cos_i);
+    case LobeKind::oren_nayar:
+      return oren_nayar(lobe, at);
+    case LobeKind::microfacet_reflect:
+      return microfacet(group, form, lobe, at);
+    case LobeKind::phong:
+      return lobe.color * phong(lobe, at);
+    case LobeKind::ward:
+      return lobe.color * ward(group, form.variant, lobe, at);
+    case LobeKind::sheen:
+      return lobe.color * schlick_weight(at.cos_d);
+    case LobeKind::disney_diffuse:
+      return lobe.color * disney_diffuse(lobe, at);
+    case LobeKind::clearcoat:
+      return lobe.color * clearcoat(group, lobe, at);
+    default:
+      return lobe.color;
+  }
+}
+
+// Folds what a lobe makes of wo alone into its colour and its constants.
+void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, const Lane3& wo, Lane cos_o) {
+  const Lane inv_pi = splat(kInvPi);
+  switch (form.kind) {
+    case LobeKind::interfaced_diffuse:
+      lobe.color = lobe.color * (inv_pi * interface_transmittance(lobe, cos_o));
+      return;
+    case LobeKind::oren_nayar: {
+      const Lane s2 = lobe.alpha_u * lobe.alpha_u;
+      lobe.color = lobe.color * inv_pi, lobe.a = lobe.a * inv_pi;
+      lobe.b.x = one() - splat(0.5f) * s2 / (s2 + splat(0.33f));
+      lobe.b.y = splat(0.45f) * s2 / (s2 + splat(0.09f));
+      lobe.b.z = splat(0.125f) * s2 / (s2 + splat(0.09f));
+      lobe.eta = splat(0.17f) * s2 / (s2 + splat(0.13f));
+      return;
     }
-    case FresnelKind::conductor:
-      return {fresnel_conductor(cos_m, lobe.a.x, lobe.b.x), fresnel_conductor(cos_m, lobe.a.y, lobe.b.y),
-              fresnel_conductor(cos_m, lobe.a.z, lobe.b.z)};
-    case FresnelKind::schlick: {
-      const Lane m = saturate(one() - cos_m), m2 = m * m, w = m2 * m2 * m;
-      return lobe.a + (Lane3{one(), one(), one()} - lobe.a) * w;
+    case LobeKind::microfacet_reflect: {
+      const Lane g1 = masking(form.distribution, cos_o, stretched(group, across(group, wo, cos_o), lobe));
+      lobe.color = lobe.color * (g1 / (splat(4) * cos_o));
+      return;
     }
-    case FresnelKind::none:
-      break;
+    case LobeKind::phong:
+      lobe.color = lobe.color * ((lobe.alpha_u + splat(2)) * splat(0.5f * kInvPi));
+      return;
+    case LobeKind::ward: {
+      const Lane area = splat(kPi) * lobe.alpha_u * lobe.alpha_v;
+      const Lane slant =
+          form.variant == 0 ? splat(4) * sqrt(cos_o) : (form.variant == 1 ? splat(4) * cos_o : one());
+      lobe.color = lobe.color * (one() / (area * slant));
+      return;
+    }
+    case LobeKind::clearcoat: {
+      const Lane a2 = lobe.alpha_u * lobe.alpha_u, sin2 = sin2_of(group, across(group, wo, cos_o));
+      const Lane g1 = masking(NormalDistribution::ggx, cos_o, splat(kCoatMask2) * sin2);
+      lobe.color = lobe.color * (g1 * inv_pi * (a2 - one()) / log_positive(a2));
+      return;
+    }
+    case LobeKind::sheen:
+      return;
+    default:
+      lobe.color = lobe.color * inv_pi;
+      return;
   }
-  return {one(), one(), one()};
 }
 
-// scatter::interface_transmittance.
-Lane interface_transmittance(const LobeLanes& lobe, Lane cos_theta) {
-  const Lane s = one() - fresnel_dielectric(cos_theta, lobe.eta);
-  return saturate(lobe.a.x + s * (lobe.a.y + s * (lobe.a.z + s * lobe.b.x)) +
-                  cos_theta * (lobe.b.y + cos_theta * lobe.b.z));
+// A direction refracted into a coat, given its cosine there.
+Lane3 bent(const ScatterGroup& group, const CoatLanes& coat, const Lane3& w, Lane cos_out, Lane cos_in) {
+  return w * (one() / coat.bend) + group.n * (cos_in - cos_out / coat.bend);
 }
 
-// scatter::beckmann_lambda.
-Lane beckmann_lambda(Lane a) {
-  const Lane t = one() / (one() + splat(0.3275911f) * a);
-  const Lane poly =
-      t * (splat(0.254829592f) +
-           t * (splat(-0.284496736f) +
-                t * (splat(1.421413741f) + t * (splat(-1.453152027f) + t * splat(1.061405429f)))));
-  return max(kZero, splat(0.5f) * exp_negative(-(a * a)) * (splat(0.5641895835f) / a - poly));
+// scatter::coated_value.
+Lane3 under_coat(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe,
+                 const CoatLanes& coat, const Lane3& wi, Lane cos_i) {
+  const Lane inside = coat_cosine(coat, cos_i);
+  const LaneMask enters = inside > kZero;
+  Meeting at{coat.wo,    bent(group, coat, wi, cos_i, inside),
+             coat.cos_o, select(enters, inside, one()),
+             {},         {},
+             {},         {},
+             {}};
+  find_half_vector(group, at);
+  const Lane3 f = value(group, form, lobe, at) * coat_passage(coat, cos_i, inside);
+  return select(enters, f, black());
 }
 
-// Smith's masking for a direction at cosine z whose slopes across, stretched by the roughness, have the
-// square xy2.
-Lane masking(NormalDistribution distribution, Lane z, Lane xy2) {
-  if (distribution == NormalDistribution::ggx) return splat(2) * z / (z + sqrt(z * z + xy2));
-  const Lane a = max(z / sqrt(max(xy2, splat(1e-20f))), splat(1e-12f));
-  return one() / (one() + beckmann_lambda(a));
-}
-
-// The density of normals at cosine z; xy2: the square of the components across, over the roughness.
-Lane normals(NormalDistribution distribution, Lane alpha2, Lane z, Lane xy2) {
-  if (distribution == NormalDistribution::ggx) {
-    const Lane d = xy2 + z * z;
-    return splat(kInvPi) / (alpha2 * d * d);
-  }
-  const Lane z2 = max(z * z, splat(1e-12f));
-  return splat(kInvPi) * exp_negative(-(xy2 / z2)) / (alpha2 * z2 * z2);
-}
-
-// Components of a direction in the plane of the surface.
-struct Across {
-  Lane x, y;  // anisotropic: along s and t
-  Lane sin2;  // isotropic: x² + y²
-};
-Across across(const ScatterGroup& group, const Lane3& v, Lane cos_theta) {
-  Across out;
-  if (group.form->anisotropic) {
-    out.x = dot(v, group.s), out.y = dot(v, group.t);
-  } else {
-    // Not 1 - cos²: near the normal that difference has no digits left, and narrow lobes live there.
-    const Lane3 flat = v - group.n * cos_theta;
-    out.sin2 = dot(flat, flat);
-  }
-  return out;
-}
-Lane stretched(const ScatterGroup& group, const Across& v, const LobeLanes& lobe) {
-  if (!group.form->anisotropic) return v.sin2 * (lobe.alpha_u * lobe.alpha_u);
-  const Lane x = v.x * lobe.alpha_u, y = v.y * lobe.alpha_v;
-  return x * x + y * y;
-}
-Lane shrunk(const ScatterGroup& group, const Across& v, const LobeLanes& lobe) {
-  if (!group.form->anisotropic) return v.sin2 / (lobe.alpha_u * lobe.alpha_u);
-  const Lane x = v.x / lobe.alpha_u, y = v.y / lobe.alpha_v;
-  return x * x + y * y;
-}
+bool is_matt(LobeKind kind) { return kind == LobeKind::diffuse || kind == LobeKind::interfaced_diffuse; }
 
 }  // namespace
 
-void prepare(ScatterGroup& group, LobeLanes* lobes) {
+void prepare(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats) {
   const Lane cos_o = dot(group.n, group.wo);
   group.answers = (cos_o > splat(kGrazing)) & (dot(group.ng, group.wo) > kZero);
-  const Lane safe = select(group.answers, cos_o, one());
-  const Across o = across(group, group.wo, cos_o);
+  group.cos_o = select(group.answers, cos_o, one());
   for (std::size_t k = 0; k < group.form->lobes.size(); ++k) {
     const LobeForm& form = group.form->lobes[k];
-    LobeLanes& lobe = lobes[k];
-    if (form.kind == LobeKind::diffuse) {
-      lobe.color = lobe.color * splat(kInvPi);
-    } else if (form.kind == LobeKind::interfaced_diffuse) {
-      lobe.color = lobe.color * (splat(kInvPi) * interface_transmittance(lobe, safe));
-    } else {
-      const Lane g1 = masking(form.distribution, safe, stretched(group, o, lobe));
-      lobe.color = lobe.color * (g1 / (splat(4) * safe));
+    if (!form.coated) {
+      prepare(group, form, lobes[k], group.wo, group.cos_o);
+      continue;
     }
+    CoatLanes& coat = coats[k];
+    const Lane inside = coat_cosine(coat, group.cos_o);
+    const LaneMask enters = inside > kZero;
+    coat.cos_o = select(enters, inside, one());
+    coat.wo = bent(group, coat, group.wo, group.cos_o, coat.cos_o);
+    prepare(group, form, lobes[k], coat.wo, coat.cos_o);
+    const Lane3 passage = coat_passage(coat, group.cos_o, inside) * (one() / (coat.bend * coat.bend));
+    lobes[k].color = select(enters, lobes[k].color * passage, black());
+    if (form.kind == LobeKind::oren_nayar) lobes[k].a = select(enters, lobes[k].a * passage, black());
   }
 }
 
@@ -144,35 +209,21 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
   const ScatterForm& form = *group.form;
   const Lane cos_i = dot(group.n, wi);
   const LaneMask lit = group.answers & (cos_i > splat(kGrazing)) & (dot(group.ng, wi) > kZero);
-  Lane3 f{kZero, kZero, kZero};
+  Lane3 f = black();
   if (bits(lit) == 0) return f;
-  const Lane safe_cos = select(lit, cos_i, one());
 
-  Lane cos_m{}, cos_d{};
-  Across m{}, i{};
-  if (form.microfacets) {
-    const Lane3 half = group.wo + wi;
-    const Lane3 normal = half * (one() / sqrt(dot(half, half)));
-    cos_m = dot(group.n, normal), cos_d = dot(group.wo, normal);
-    m = across(group, normal, cos_m), i = across(group, wi, cos_i);
-  }
+  Meeting at{group.wo, wi, group.cos_o, select(lit, cos_i, one()), {}, {}, {}, {}, {}};
+  if (form.microfacets) find_half_vector(group, at);
   for (std::size_t k = 0; k < form.lobes.size(); ++k) {
     const LobeForm& kind = form.lobes[k];
     const LobeLanes& lobe = group.lobes[k];
-    if (kind.kind == LobeKind::diffuse) {
-      f = f + lobe.color;
-    } else if (kind.kind == LobeKind::interfaced_diffuse) {
-      f = f + lobe.color * interface_transmittance(lobe, safe_cos);
-    } else {
-      const Lane alpha2 = lobe.alpha_u * lobe.alpha_v;
-      const Lane d = normals(kind.distribution, alpha2, cos_m, shrunk(group, m, lobe));
-      const Lane g1 = masking(kind.distribution, safe_cos, stretched(group, i, lobe));
-      Lane3 value = (lobe.color * fresnel(kind.fresnel, lobe, cos_d)) * (d * g1 / safe_cos);
-      if (group.some_traced) value = select(direct & lobe.traced, Lane3{kZero, kZero, kZero}, value);
-      f = f + value;
-    }
+    Lane3 part = kind.coated ? under_coat(group, kind, lobe, group.coats[k], wi, at.cos_i)
+                             : value(group, kind, lobe, at);
+    // Matt lobes leave no direct light to tracing.
+    if (group.some_traced && !is_matt(kind.kind)) part = select(direct & lobe.traced, black(), part);
+    f = f + part;
   }
-  return select(lit, f, Lane3{kZero, kZero, kZero});
+  return select(lit, f, black());
 }
 
 }  // namespace lumirank::transport

@@ -8,7 +8,7 @@ namespace lumirank::transport {
 
 // Folds what depends on wo alone into the lobes' colours and sets `answers`. All plain parameters are in
 // place.
-void prepare(ScatterGroup& group, LobeLanes* lobes);
+void prepare(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats);
 
 // Σ f(wo, wi) of a prepared group whose form has lane code.
 Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct);

@@ -8,10 +8,15 @@ namespace {
 using scatter::LobeKind;
 
 bool has_lane_code(const scatter::Lobe& lobe) {
-  if (lobe.coat) return false;
   switch (lobe.kind) {
     case LobeKind::diffuse:
     case LobeKind::interfaced_diffuse:
+    case LobeKind::oren_nayar:
+    case LobeKind::phong:
+    case LobeKind::ward:
+    case LobeKind::sheen:
+    case LobeKind::disney_diffuse:
+    case LobeKind::clearcoat:
       return true;
     case LobeKind::microfacet_reflect:
       return lobe.variant == 0;
@@ -20,18 +25,30 @@ bool has_lane_code(const scatter::Lobe& lobe) {
   }
 }
 
+bool needs_half_vector(LobeKind kind) {
+  return kind == LobeKind::microfacet_reflect || kind == LobeKind::ward || kind == LobeKind::sheen ||
+         kind == LobeKind::disney_diffuse || kind == LobeKind::clearcoat;
+}
+
+bool is_anisotropic(const scatter::Lobe& lobe) {
+  return (lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::ward) &&
+         lobe.alpha_u != lobe.alpha_v;
+}
+
 ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
   ScatterForm form;
   form.in_lanes = std::all_of(lobes.begin(), lobes.end(), has_lane_code);
   for (const scatter::Lobe& lobe : lobes) {
     form.transmits = form.transmits || lobe.kind == LobeKind::microfacet_transmit;
-    form.microfacets = form.microfacets || lobe.kind == LobeKind::microfacet_reflect;
-    form.anisotropic =
-        form.anisotropic || (lobe.kind == LobeKind::microfacet_reflect && lobe.alpha_u != lobe.alpha_v);
-    if (form.in_lanes) form.lobes.push_back({lobe.kind, lobe.fresnel, lobe.distribution});
+    const bool coated = static_cast<bool>(lobe.coat);
+    form.microfacets = form.microfacets || (needs_half_vector(lobe.kind) && !coated);
+    form.anisotropic = form.anisotropic || is_anisotropic(lobe);
+    form.coated = form.coated || coated;
+    if (form.in_lanes)
+      form.lobes.push_back({lobe.kind, lobe.fresnel, lobe.distribution, lobe.variant, coated});
   }
   // One form for all that goes lane by lane, but for the side on which rays start.
-  if (!form.in_lanes) form.lobes.clear(), form.microfacets = form.anisotropic = false;
+  if (!form.in_lanes) form.lobes.clear(), form.microfacets = form.anisotropic = form.coated = false;
   return form;
 }
 

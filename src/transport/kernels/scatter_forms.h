@@ -13,6 +13,8 @@ struct LobeForm {
   scatter::LobeKind kind;
   scatter::FresnelKind fresnel;
   scatter::NormalDistribution distribution;
+  std::uint8_t variant;  // of ward
+  bool coated;
   friend bool operator==(const LobeForm&, const LobeForm&) = default;
 };
 
@@ -21,6 +23,7 @@ struct ScatterForm {
   bool in_lanes = false;  // there is vectorised code for all lobes; otherwise scatter::eval_f, lane by lane
   bool microfacets = false;  // some lobe needs the half vector
   bool anisotropic = false;  // some lobe needs the tangent
+  bool coated = false;       // some lobe has a coat
   bool transmits = false;    // some lobe shines through the surface
   friend bool operator==(const ScatterForm&, const ScatterForm&) = default;
 };

@@ -1,6 +1,7 @@
 #include "transport/kernels/scatter_group.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "transport/kernels/lobe_lanes.h"
 #include "transport/kernels/tile_plan.h"
@@ -13,8 +14,17 @@ constexpr std::size_t kChunk = 256;
 void put(Lane3& to, int lane, Vec3f v) { to.x[lane] = v.x, to.y[lane] = v.y, to.z[lane] = v.z; }
 void put(Lane3& to, int lane, Rgb c) { to.x[lane] = c.r, to.y[lane] = c.g, to.z[lane] = c.b; }
 
+void read(CoatLanes& lanes, int lane, const scatter::Coat& coat) {
+  lanes.eta[lane] = coat.eta, lanes.bend[lane] = coat.bend;
+  for (int i = 0; i < 6; ++i) lanes.t[i][lane] = coat.t[i];
+  put(lanes.depth, lane, coat.depth);
+  lanes.trapped[lane] = coat.trapped, lanes.width[lane] = coat.width;
+  lanes.critical[lane] = std::sqrt(std::max(0.0f, 1 - 1 / (coat.bend * coat.bend)));
+}
+
 // Reads the plain parameters of one closure into a lane.
-void read(ScatterGroup& group, LobeLanes* lobes, int lane, const ScatterSide& side, std::uint32_t item) {
+void read(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats, int lane, const ScatterSide& side,
+          std::uint32_t item) {
   const std::uint32_t closure = (*side.closure)[item];
   // The frame as ClosurePool::get() makes it, then mirrored to wo's side.
   const float outward = side.pool->side(closure);
@@ -39,6 +49,8 @@ void read(ScatterGroup& group, LobeLanes* lobes, int lane, const ScatterSide& si
     lobes[k].eta[lane] = inverse ? 1 / lobe.eta : lobe.eta;
     put(lobes[k].a, lane, lobe.conductor_eta);
     put(lobes[k].b, lane, lobe.conductor_k);
+    if (lobe.kind == scatter::LobeKind::disney_diffuse) lobes[k].b.x[lane] = lobe.extra;
+    if (lobe.coat) read(coats[k], lane, lobe.coat);
     const bool traced = scatter::lobe_roughness(lobe) < side.traced_below;
     lobes[k].traced[lane] = traced ? -1 : 0;
     group.some_traced = group.some_traced || traced;
@@ -55,7 +67,12 @@ void spread(T& lanes, std::size_t fields) {
 
 void ScatterArena::clear() {
   closures_.clear();
+  coats_.clear();
   chunk_ = used_ = 0;
+}
+
+CoatLanes* ScatterArena::new_coats(const ScatterForm& form) {
+  return form.coated ? coats_.emplace_back(form.lobes.size()).data() : nullptr;
 }
 
 LobeLanes* ScatterArena::new_lobes(std::size_t count) {
@@ -89,8 +106,10 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, const std::uint32_t it
   }
   LobeLanes* lobes = new_lobes(group.form->lobes.size());
   group.lobes = lobes;
-  for (int k = 0; k < 16; ++k) read(group, lobes, k, side, items[k] == kNoItem ? first : items[k]);
-  prepare(group, lobes);
+  CoatLanes* coats = new_coats(*group.form);
+  group.coats = coats;
+  for (int k = 0; k < 16; ++k) read(group, lobes, coats, k, side, items[k] == kNoItem ? first : items[k]);
+  prepare(group, lobes, coats);
   return group;
 }
 
@@ -108,12 +127,17 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, std::uint32_t item) {
   }
   LobeLanes* lobes = new_lobes(group.form->lobes.size());
   group.lobes = lobes;
-  read(group, lobes, 0, side, item);
+  CoatLanes* coats = new_coats(*group.form);
+  group.coats = coats;
+  read(group, lobes, coats, 0, side, item);
   for (Lane3* v : {&group.wo, &group.n, &group.ng}) spread(*v, 3);
   if (group.form->anisotropic) spread(group.s, 3), spread(group.t, 3);
   for (std::size_t k = 0; k < group.form->lobes.size(); ++k)
     spread(lobes[k], sizeof(LobeLanes) / sizeof(Lane));
-  prepare(group, lobes);
+  if (coats)
+    for (std::size_t k = 0; k < group.form->lobes.size(); ++k)
+      spread(coats[k], sizeof(CoatLanes) / sizeof(Lane));
+  prepare(group, lobes, coats);
   return group;
 }
 

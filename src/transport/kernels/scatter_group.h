@@ -31,11 +31,23 @@ struct ScatterSide {
 
 // One lobe of 16 closures. What the fields mean depends on the lobe's kind.
 struct LobeLanes {
-  Lane3 color;  // diffuse: color/π; interfaced_diffuse: color·T(wo)/π; microfacet: color·G1(wo)/(4·wo.z)
+  // diffuse: color/π; interfaced_diffuse: color·T(wo)/π; microfacet: color·G1(wo)/(4·wo.z); the others: see
+  // prepare(). Under a coat, what the coat does on wo's side is multiplied in.
+  Lane3 color;
   Lane alpha_u, alpha_v;
   Lane eta;         // seen from wo's side
   LaneMask traced;  // of direct light, this lobe's part is traced elsewhere
-  Lane3 a, b;       // conductor: eta and k; schlick: a is F0; interfaced_diffuse: the coefficients of T
+  Lane3 a, b;       // conductor: eta and k; schlick: a is F0; interfaced_diffuse: the coefficients of T;
+                    // oren_nayar: a is ρ², b and eta its constants; disney_diffuse: b.x is the flatness
+};
+
+// The coat over one lobe of 16 closures: scatter::Coat.
+struct CoatLanes {
+  Lane eta, bend, t[6];
+  Lane3 depth;
+  Lane trapped, width, critical;
+  Lane3 wo;    // refracted into the coat
+  Lane cos_o;  // its cosine
 };
 
 // All directions on the side of wo: n, ng and t are turned so that n·wo > 0.
@@ -46,7 +58,9 @@ struct ScatterGroup {
   Lane3 n, ng, wo;
   Lane3 s, t;                        // anisotropic forms only
   LaneMask answers;                  // n and ng agree about the side of wo
+  Lane cos_o;                        // n·wo; 1 in lanes that do not answer
   const LobeLanes* lobes = nullptr;  // form->lobes.size()
+  const CoatLanes* coats = nullptr;  // as many, if form->coated; meaningless for lobes without a coat
   // Forms without lane code: nullptr where padded.
   const scatter::Closure* closure[16];
   const scatter::Closure* broad[16];  // if some_traced: without the lobes that leave direct light to tracing
@@ -64,9 +78,11 @@ class ScatterArena {
  private:
   void keep(ScatterGroup& group, int lane, const ScatterSide& side, std::uint32_t item);
   LobeLanes* new_lobes(std::size_t count);
+  CoatLanes* new_coats(const ScatterForm& form);
 
   std::deque<scatter::Closure> closures_;  // does not move its elements
   std::vector<std::vector<LobeLanes>> chunks_;
+  std::deque<std::vector<CoatLanes>> coats_;
   std::size_t chunk_ = 0, used_ = 0;
 };
 
