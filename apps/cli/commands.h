@@ -25,7 +25,7 @@ void add_methods(CLI::App& app, Action& action);
 
 // What several commands share, collected as text and turned into settings when the command runs.
 struct CommonOptions {
-  std::string scene;
+  std::string scene, environment;
   std::vector<std::string> defines;
   bool strict = false, quiet = false, verbose = false;
   std::map<std::string, std::string> fields;  // render settings that were given, by key
@@ -37,7 +37,7 @@ struct CommonOptions {
   Verbosity verbosity() const;
 };
 
-// Scene, --define, --strict, --quiet, --verbose.
+// Scene, --define, --environment, --strict, --quiet, --verbose.
 void add_scene_options(CLI::App& command, CommonOptions& common);
 // An option for each of the named render settings ("" keys: all of them), --set and --replay.
 void add_setting_options(CLI::App& command, CommonOptions& common, const std::vector<std::string>& keys);

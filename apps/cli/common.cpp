@@ -17,6 +17,7 @@ std::pair<std::string, std::string> split_assignment(const std::string& text, co
 LoadOptions CommonOptions::load_options() const {
   LoadOptions options;
   options.strict = strict;
+  options.environment = environment;
   for (const auto& text : defines)
     options.defines.insert_or_assign(split_assignment(text, "--define").first,
                                      split_assignment(text, "--define").second);
@@ -47,9 +48,11 @@ Verbosity CommonOptions::verbosity() const {
 }
 
 void add_scene_options(CLI::App& command, CommonOptions& common) {
-  command.add_option("scene", common.scene, "scene file (Mitsuba XML 0.6 or 3)")->required();
+  command.add_option("scene", common.scene, "scene file (Mitsuba XML 0.6 or 3, glTF 2.0)")->required();
   command.add_option("--define", common.defines, "NAME=VALUE: a value for $NAME in the scene; repeatable")
       ->allow_extra_args(false);
+  command.add_option("--environment", common.environment,
+                     "FILE.exr (or .hdr): light from all around, in place of the scene's own environment");
   command.add_flag("--strict", common.strict, "warnings about the scene are errors");
   auto* quiet = command.add_flag("--quiet", common.quiet, "print nothing but errors");
   command.add_flag("--verbose", common.verbose, "say more")->excludes(quiet);

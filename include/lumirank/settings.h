@@ -12,6 +12,7 @@ namespace lumirank {
 struct LoadOptions {
   std::map<std::string, std::string> defines;  // values for the scene's $parameters
   bool strict = false;                         // warnings about the scene are errors
+  std::string environment = {};                // an image that replaces the scene's own environment
 };
 
 struct RenderSettings {

@@ -1,6 +1,7 @@
 // The public façade: loading, rendering, the reference, and files.
 #include "lumirank/lumirank.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -149,8 +150,8 @@ nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
   json["max_depth"] = desc.max_depth;
   json["memory.scene_bytes"] = info.memory_bytes;
   json["warnings"] = nlohmann::json::array();
-  for (const auto& w : desc.warnings) json["warnings"].push_back(warning_text(w));
   json["notes"] = nlohmann::json::array();
+  for (const auto& w : desc.warnings) json[w.harmless ? "notes" : "warnings"].push_back(warning_text(w));
   for (const auto& w : warnings) json[w.harmless ? "notes" : "warnings"].push_back(warning_text(w));
   return json;
 }
@@ -165,8 +166,10 @@ Scene Scene::load(const std::string& filename, const LoadOptions& options, const
   scenedesc::ReadOptions read;
   read.defines = options.defines;
   read.strict = options.strict;
+  read.environment = options.environment;
   impl->desc = scenedesc::read_scene(filename, read);
-  for (const auto& w : impl->desc.warnings) sinks.warn(warning_text(w));
+  for (const auto& w : impl->desc.warnings)
+    if (!w.harmless) sinks.warn(warning_text(w));
   Scene scene;
   scene.impl_ = std::move(impl);
   return scene;
@@ -192,7 +195,10 @@ std::string Scene::info_text(const Sinks& sinks) const {
     text += "  " + e["name"].get<std::string>() + "  " + e["power"].dump() + " W\n";
   }
   // The description above has listed the reader's own.
-  const std::size_t read = impl_->desc.warnings.size(), all = json["warnings"].size();
+  const auto& told = impl_->desc.warnings;
+  const auto read = static_cast<std::size_t>(
+      std::count_if(told.begin(), told.end(), [](const scenedesc::Warning& w) { return !w.harmless; }));
+  const std::size_t all = json["warnings"].size();
   text += "warnings while building: " + std::to_string(all - read) + "\n";
   for (std::size_t w = read; w < all; ++w) text += "  " + json["warnings"][w].get<std::string>() + "\n";
   if (!json["notes"].empty()) text += "notes (nothing that a picture shows):\n";

@@ -106,6 +106,8 @@ struct BumpMaterial {
 struct NormalMapMaterial {
   int texture;
   int nested;
+  float scale = 1;         // of the normal's first two components
+  bool follow_uv = false;  // second axis against dp/dv where uvs are mirrored; see NormalMapDesc
 };
 struct MixtureMaterial {
   struct Part {

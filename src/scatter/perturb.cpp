@@ -42,7 +42,8 @@ SurfacePoint bumped(const TextureSet& textures, const BumpMaterial& m, const Sur
 
 SurfacePoint normal_mapped(const TextureSet& textures, const NormalMapMaterial& m, const SurfacePoint& at) {
   const Rgb c = textures.lookup(m.texture, at.uv);
-  const Vec3f local{2 * c.r - 1, 2 * c.g - 1, 2 * c.b - 1};
+  Vec3f local{(2 * c.r - 1) * m.scale, (2 * c.g - 1) * m.scale, 2 * c.b - 1};
+  if (m.follow_uv && dot(at.shading.t, at.dpdv) > 0) local.y = -local.y;
   const float len = length(local);
   if (!(len > 1e-6f) || !std::isfinite(len)) return at;
   return with_normal(at, at.shading.to_world(local / len), at.shading.s);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -133,7 +134,9 @@ std::string kind(const BsdfDesc& desc) {
                           b(x.nested);
                  },
                  [](const NormalMapDesc& x) {
-                   return "normalmap texture " + std::to_string(x.texture) + " over " + b(x.nested);
+                   return "normalmap texture " + std::to_string(x.texture) +
+                          (x.scale == 1 ? "" : " × " + num(x.scale)) + (x.follow_uv ? ", following v" : "") +
+                          " over " + b(x.nested);
                  },
                  [](const MixtureDesc& x) {
                    std::string text = "mixture";
@@ -266,10 +269,15 @@ std::string describe(const SceneDesc& scene) {
             (s.flip_normals ? ", normals flipped" : "") + (s.in_group ? ", in a group" : "") +
             (s.emitter ? ", radiance " + show(s.emitter->radiance) : "") + show(s.to_world) + "\n";
   }
-  text += std::to_string(scene.warnings.size()) + " warnings\n";
-  for (const Warning& w : scene.warnings)
+  // Notes that no picture shows are not warnings.
+  const auto harmless = [](const Warning& w) { return w.harmless; };
+  const auto notes = std::count_if(scene.warnings.begin(), scene.warnings.end(), harmless);
+  text += std::to_string(scene.warnings.size() - static_cast<std::size_t>(notes)) + " warnings\n";
+  for (const Warning& w : scene.warnings) {
+    if (w.harmless) continue;
     text += "  " + to_string(w.where) + ": " + w.what +
             (w.used_instead.empty() ? ": left out" : ": instead " + w.used_instead) + "\n";
+  }
   return text;
 }
 

@@ -14,9 +14,11 @@ namespace lumirank::scenedesc {
 struct ReadOptions {
   std::map<std::string, std::string> defines;  // --define NAME=VALUE: win over <default>
   bool strict = false;                         // the first warning becomes an error
+  std::string environment = {};  // read_scene: an image that replaces whatever environment the scene has
 };
 
-// Any supported format, chosen by the file's extension.
+// Any supported format, chosen by the file's extension. A glTF scene without any light gets a white
+// environment, with a warning.
 SceneDesc read_scene(const std::string& filename, const ReadOptions& options = {});
 
 // Mitsuba XML, 0.6 and 3.x (by the version attribute).
@@ -24,6 +26,11 @@ SceneDesc read_mitsuba(const std::string& filename, const ReadOptions& options =
 // The same from memory (tests, fuzzing); relative names are taken from the folder of `filename`.
 SceneDesc parse_mitsuba(const std::string& text, const std::string& filename,
                         const ReadOptions& options = {});
+
+// glTF 2.0, .gltf or .glb (by the first bytes).
+SceneDesc read_gltf(const std::string& filename, const ReadOptions& options = {});
+// The same from memory; other files are taken from the folder of `filename`.
+SceneDesc parse_gltf(const std::string& bytes, const std::string& filename, const ReadOptions& options = {});
 
 MeshData read_mesh(const MeshFileDesc& file);
 // From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are
@@ -36,6 +43,12 @@ MeshData parse_serialized(const std::string& bytes, const std::string& filename,
 // long as the positions and indices beyond them are an error at `where`, as are a vertex that is not finite
 // and a mesh without any triangle that has an area; the rest is mended and noted.
 MeshData check_mesh(MeshData mesh, const SourceLocation& where);
+
+// The image (latitude-longitude, +y up) in place of every environment that the scene has. InputError if there
+// is no such file.
+void replace_environment(SceneDesc& scene, const std::string& filename);
+// A scene without any emitter gets an environment of radiance 1, and a warning.
+void light_if_dark(SceneDesc& scene);
 
 // Human-readable listing, for `lumirank info` and debugging.
 std::string describe(const SceneDesc& scene);

@@ -173,6 +173,10 @@ struct BumpMapDesc {
 struct NormalMapDesc {
   int texture = kNone;  // raw RGB, n = 2·rgb - 1 in the tangent frame
   int nested = kNone;
+  float scale = 1;  // of n's first two components
+  // The second axis points up in the picture, so against rising v, also where the uvs are mirrored (glTF);
+  // otherwise it is n × dp/du (Mitsuba).
+  bool follow_uv = false;
 };
 struct MixtureDesc {  // Σ weight_k · bsdf_k; "blendbsdf" has two entries and weights 1 - w, w
   struct Part {

@@ -236,7 +236,10 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
       return sc::BumpMaterial{texture(d.texture), d.scale, nested(d.nested)};
     }
     sc::Material operator()(const sd::NormalMapDesc& d) const {
-      return sc::NormalMapMaterial{texture(d.texture), nested(d.nested)};
+      if (!std::isfinite(d.scale))
+        throw InputError(where, "the normal map's scale is not finite", "give a number");
+      const int map = texture(d.texture);
+      return sc::NormalMapMaterial{map, nested(d.nested), d.scale, d.follow_uv};
     }
     sc::Material operator()(const sd::MixtureDesc& d) const {
       sc::MixtureMaterial m;

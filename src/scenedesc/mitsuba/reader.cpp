@@ -156,13 +156,4 @@ SceneDesc read_mitsuba(const std::string& filename, const ReadOptions& options) 
   return parse_mitsuba(mitsuba::read_file(filename, SourceLocation{}), filename, options);
 }
 
-SceneDesc read_scene(const std::string& filename, const ReadOptions& options) {
-  const std::string extension = std::filesystem::path(filename).extension().string();
-  if (extension == ".xml" || extension == ".XML") return read_mitsuba(filename, options);
-  if (std::error_code error; !std::filesystem::exists(filename, error))
-    throw InputError("file not found: " + filename, "check the name");
-  throw InputError(SourceLocation{filename, 0}, "no reader for files that end in \"" + extension + "\"",
-                   "Mitsuba scenes (.xml) can be read");
-}
-
 }  // namespace lumirank::scenedesc

@@ -1,0 +1,52 @@
+// KHR_lights_punctual. One candela counts as 1 W/sr and one lux as 1 W/m²: pictures are as bright as the
+// numbers say, and emissive strengths (in nits), environments and lamps keep their proportions.
+#include <cmath>
+
+#include "scenedesc/gltf/reader.h"
+
+namespace lumirank::scenedesc::gltf {
+namespace {
+
+constexpr float kDegrees = 57.29577951308232f;
+
+}  // namespace
+
+void Reader::build_light(const Node& node, const Element& light_index) {
+  const Element& light = lights_[index_of(light_index, lights_.size(), "light")];
+  Rgb color = color_input(light, "color", Rgb(1), "").value;
+  color *= light.real("intensity", 1, 0);
+  const Element type = light.at("type");
+  const std::string id = light.text("name", name_of(node));
+  // Lights shine along -z; nothing but the direction of the axes counts.
+  const Vec3f along = node.world.vector({0, 0, -1});
+  const Vec3f at = node.world.point({0, 0, 0});
+  EmitterDesc emitter{id, light.where(), PointLightDesc{at, color}};
+  if (type.text() == "directional") {
+    if (!(length(along) > 0)) node.element.fail("flattens its light", "give it a scale without zeros");
+    emitter.kind = DirectionalLightDesc{normalize(along), color};
+  } else if (type.text() == "spot") {
+    const Json nothing{Json::Kind::object, false, light.where().line, 0, {}, {}, {}};
+    const auto given = light.find("spot");
+    const Element cone = given ? *given : Element(nothing, light.path(), light.file());
+    SpotLightDesc spot;
+    const float inner = cone.real("innerConeAngle", 0, 0, 1.5707964f);
+    const float outer = cone.real("outerConeAngle", 0.7853982f, 0, 1.5707964f);
+    if (!(inner < outer)) cone.fail("has an innerConeAngle that is not below its outerConeAngle", "mend it");
+    if (!(length(along) > 0)) node.element.fail("flattens its light", "give it a scale without zeros");
+    spot.to_world =
+        Transform::look_at(at, at + normalize(along),
+                           std::abs(along.y) > 0.9f * length(along) ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0});
+    spot.intensity = color;
+    spot.cutoff_angle = outer * kDegrees;
+    spot.beam_width = inner * kDegrees;
+    warn_once(light, "a spot light's fall-off by the square of the cosine's share",
+              "a fall-off in proportion to the angle");
+    emitter.kind = spot;
+  } else if (type.text() != "point") {
+    type.fail("is \"" + type.text() + "\"", "point, spot and directional are known");
+  }
+  if (light.has("range")) warn_once(light, "a range of lights", "light without an end");
+  scene_.emitters.push_back(std::move(emitter));
+}
+
+}  // namespace lumirank::scenedesc::gltf

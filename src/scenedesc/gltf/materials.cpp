@@ -1,0 +1,241 @@
+// Metallic-roughness materials and their extensions as sums of BSDFs.
+//
+// glTF 2.0, appendix B: a metal is GGX with Schlick's Fresnel factor from the base colour: "principled" with
+// metallic 1 is that formula. A dielectric is a diffuse base under a GGX interface of index 1.5: "plastic",
+// which divides the light between the two without making any; the appendix's own base · (1 - F(half vector))
+// sends back more than it receives at grazing angles.
+#include "scenedesc/gltf/surface.h"
+
+namespace lumirank::scenedesc::gltf {
+namespace {
+
+bool is_constant(const FloatInput& input, float value) {
+  return input.texture == kNone && input.value == value;
+}
+bool is_black(const ColorInput& input) { return input.texture == kNone && input.value == Rgb(0); }
+
+}  // namespace
+
+int Reader::add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind) {
+  scene_.bsdfs.push_back({at.text("name", at.path()), at.where(), std::move(kind)});
+  return static_cast<int>(scene_.bsdfs.size()) - 1;
+}
+
+int Reader::mix(const Element& at, FloatInput weight, int one, int other) {
+  if (is_constant(weight, 1) || one == other) return one;
+  if (is_constant(weight, 0)) return other;
+  MixtureDesc mixture;
+  mixture.parts = {{weight, false, one}, {weight, true, other}};
+  return add_bsdf(at, std::move(mixture));
+}
+
+int Reader::opaque_bsdf(const Element& material, const Surface& s) {
+  int metal = kNone, dielectric = kNone;
+  if (!is_constant(s.metallic, 0)) {
+    PrincipledDesc principled;
+    principled.base_color = s.base;
+    principled.roughness = s.roughness;
+    principled.metallic = {1};
+    metal = add_bsdf(material, principled);
+  }
+  if (!is_constant(s.metallic, 1)) {
+    FloatInput weight{1};
+    ColorInput tint{Rgb(1)};
+    if (const auto specular = material.extension("KHR_materials_specular")) {
+      weight = float_input(*specular, "specularFactor", 1, "specularTexture", TextureChannel::alpha);
+      tint = color_input(*specular, "specularColorFactor", Rgb(1), "specularColorTexture");
+      const float most = max_component(tint.value);
+      if (tint.texture == kNone && most > 1) {
+        warn(specular->at("specularColorFactor"), "a specular colour above 1", "1");
+        tint.value = clamp_below(tint.value, 1.0f);
+      }
+    }
+    if (s.ior == 1 || is_black(tint)) weight = {0};
+    int plastic = kNone, diffuse = kNone;
+    if (!is_constant(weight, 0)) {
+      PlasticDesc desc;
+      desc.eta = s.ior;
+      desc.diffuse_reflectance = s.base;
+      desc.specular_reflectance = tint;
+      desc.distribution = Distribution::ggx;
+      desc.alpha = s.alpha;
+      plastic = add_bsdf(material, desc);
+    }
+    if (!is_constant(weight, 1)) diffuse = add_bsdf(material, DiffuseDesc{s.base});
+    dielectric = mix(material, weight, plastic, diffuse);
+  }
+  return mix(material, s.metallic, metal, dielectric);
+}
+
+int Reader::two_sided(const Element& at, int bsdf) { return add_bsdf(at, TwoSidedDesc{bsdf, bsdf}); }
+
+int Reader::transmitting_bsdf(const Element& material, const Surface& s, const Element& transmission) {
+  const FloatInput share =
+      float_input(transmission, "transmissionFactor", 0, "transmissionTexture", TextureChannel::red);
+  const auto volume = material.extension("KHR_materials_volume");
+  const bool solid = volume && volume->real("thicknessFactor", 0, 0) > 0;
+  const bool opaque_part = !is_constant(share, 1) || !is_constant(s.metallic, 0);
+  const int opaque = opaque_part ? two_sided(material, opaque_bsdf(material, s)) : kNone;
+  int clear = kNone;
+  if (solid) {
+    DielectricDesc glass;
+    glass.eta = s.ior;
+    glass.specular_transmittance = s.base;
+    glass.distribution = Distribution::ggx;
+    glass.alpha_u = glass.alpha_v = s.alpha;
+    clear = add_bsdf(material, glass);
+    if (volume->has("attenuationDistance")) warn(*volume, "absorption inside a volume", "a clear one");
+  } else {
+    if (!(s.roughness.texture == kNone && s.roughness.value <= 0.1f))
+      warn(material, "rough transmission through a thin surface", "smooth transmission");
+    clear = add_bsdf(material, ThinDielectricDesc{s.ior, {Rgb(1)}, s.base});
+  }
+  if (!opaque_part) return clear;
+  // share · (1 - metallic) of the light is transmitted.
+  return mix(material, s.metallic, opaque, mix(material, share, clear, opaque));
+}
+
+// The uv set that the material's textures read. A mesh carries one.
+int Reader::uv_set_of(const Element& material) {
+  int found = -1;
+  const auto visit = [&](const Element& object, const char* key) {
+    const auto info = object.find(key);
+    if (!info) return;
+    auto set = info->find("texCoord");
+    if (const auto transform = info->extension("KHR_texture_transform"))
+      if (const auto other = transform->find("texCoord")) set = other;
+    const int wanted = set ? static_cast<int>(set->integer(0, 99)) : 0;
+    if (found < 0) found = wanted;
+    if (wanted != found)
+      warn(*info, "textures of one material on different uv sets", "set " + std::to_string(found));
+  };
+  if (const auto pbr = material.find("pbrMetallicRoughness")) {
+    visit(*pbr, "baseColorTexture");
+    visit(*pbr, "metallicRoughnessTexture");
+  }
+  visit(material, "normalTexture");
+  visit(material, "emissiveTexture");
+  const std::pair<const char*, const char*> others[] = {
+      {"KHR_materials_transmission", "transmissionTexture"},
+      {"KHR_materials_specular", "specularTexture"},
+      {"KHR_materials_specular", "specularColorTexture"},
+      {"KHR_materials_clearcoat", "clearcoatTexture"},
+      {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"}};
+  for (const auto& [extension, texture] : others)
+    if (const auto object = material.extension(extension)) visit(*object, texture);
+  return std::max(found, 0);
+}
+
+Reader::BuiltMaterial Reader::make_material(const Element& material, bool colored) {
+  BuiltMaterial out;
+  out.uv_set = uv_set_of(material);
+  out.name = material.text("name", material.path());
+  const Json nothing{Json::Kind::object, false, material.where().line, 0, {}, {}, {}};
+  const auto given = material.find("pbrMetallicRoughness");
+  const Element pbr = given ? *given : Element(nothing, material.path(), material.file());
+
+  Surface s;
+  s.base = color_input(pbr, "baseColorFactor", Rgb(1), "baseColorTexture");
+  if (colored) {
+    const ColorInput vertex{Rgb(0), add_texture(material, VertexColorTextureDesc{"COLOR_0"})};
+    s.base = {Rgb(0), s.base.texture == kNone && s.base.value == Rgb(1) ? vertex.texture
+                                                                        : product(material, s.base, vertex)};
+  }
+  s.metallic = float_input(pbr, "metallicFactor", 1, "metallicRoughnessTexture", TextureChannel::blue);
+  s.roughness = float_input(pbr, "roughnessFactor", 1, "metallicRoughnessTexture", TextureChannel::green);
+  s.alpha = squared(material, s.roughness);
+  if (const auto ior = material.extension("KHR_materials_ior")) {
+    s.ior = ior->real("ior", 1.5f, 0, 100);
+    if (s.ior == 0) {
+      warn(*ior, "an index of refraction of 0 (a mirror of any colour)", "1.5");
+      s.ior = 1.5f;
+    } else if (s.ior < 1) {
+      ior->at("ior").fail("is less than 1", "give 1 or more, or 0");
+    }
+  }
+
+  if (material.extension("KHR_materials_unlit")) {
+    warn(material, "an unlit material", "a black surface that shines in its base colour");
+    out.bsdf = add_bsdf(material, DiffuseDesc{{Rgb(0)}});
+    out.emission = s.base;
+  } else {
+    const auto transmission = material.extension("KHR_materials_transmission");
+    const auto sheen = material.extension("KHR_materials_sheen");
+    const bool transmits = transmission && transmission->real("transmissionFactor", 0, 0, 1) > 0;
+    if (transmits && sheen) warn(material, "sheen on a surface that transmits light", "");
+    out.bsdf = transmits ? transmitting_bsdf(material, s, *transmission)
+                         : (sheen ? sheen_bsdf(material, s, *sheen) : opaque_bsdf(material, s));
+    if (const auto clearcoat = material.extension("KHR_materials_clearcoat"))
+      out.bsdf = coated_bsdf(*clearcoat, out.bsdf);
+    if (!transmits) out.bsdf = two_sided(material, out.bsdf);
+    out.bsdf = normal_mapped(material, out.bsdf);
+    const float strength = [&] {
+      const auto extension = material.extension("KHR_materials_emissive_strength");
+      return extension ? extension->real("emissiveStrength", 1, 0) : 1.0f;
+    }();
+    ColorInput emission = color_input(material, "emissiveFactor", Rgb(0), "emissiveTexture");
+    if (emission.texture != kNone)
+      emission.texture = scaled(material, emission.texture, Rgb(strength));
+    else
+      emission.value *= strength;
+    if (!is_black(emission) && strength > 0) out.emission = emission;
+    if (out.emission && material.flag("doubleSided", false))
+      warn(material, "emission from the back of a double-sided material", "emission from its front");
+    if (material.has("occlusionTexture"))
+      note(material, "baked occlusion, which light transport makes by itself, is left out");
+  }
+  out.bsdf = cut_out(material, pbr, out.bsdf);
+  if (given && !material.flag("doubleSided", false))
+    note(material, "back faces of single-sided materials are shown as well");
+  return out;
+}
+
+int Reader::normal_mapped(const Element& material, int base) {
+  const auto info = material.find("normalTexture");
+  if (!info) return base;
+  NormalMapDesc map;
+  map.texture = build_texture(*info, true, TextureChannel::rgb);
+  map.nested = base;
+  map.scale = info->real("scale", 1);
+  map.follow_uv = true;
+  return map.texture == kNone ? base : add_bsdf(material, map);
+}
+
+int Reader::cut_out(const Element& material, const Element& pbr, int base) {
+  const std::string mode = material.text("alphaMode", "OPAQUE");
+  if (mode == "OPAQUE") return base;
+  if (mode != "MASK" && mode != "BLEND")
+    material.at("alphaMode").fail("is \"" + mode + "\"", "OPAQUE, MASK and BLEND are known");
+  FloatInput opacity{1};
+  if (const auto factor = pbr.find("baseColorFactor"); factor && factor->size() == 4) {
+    const Element alpha = factor->item(3);
+    opacity.value = alpha.real();
+    if (opacity.value < 0 || opacity.value > 1) alpha.fail("is an alpha outside [0, 1]", "give a share");
+  }
+  if (const auto info = pbr.find("baseColorTexture")) {
+    const int texture = build_texture(*info, true, TextureChannel::alpha);
+    if (texture != kNone && !without_alpha(texture))
+      opacity = {0, scaled(*info, texture, Rgb(opacity.value))};
+  }
+  if (mode == "MASK") {
+    const float cutoff = material.real("alphaCutoff", 0.5f, 0);
+    if (opacity.texture != kNone)
+      opacity.texture = add_texture(material, ThresholdTextureDesc{{Rgb(0), opacity.texture}, cutoff});
+    else
+      opacity.value = opacity.value >= cutoff ? 1.0f : 0.0f;
+  }
+  return is_constant(opacity, 1) ? base : add_bsdf(material, MaskDesc{opacity, base});
+}
+
+const Reader::BuiltMaterial& Reader::build_material(int material, bool colored) {
+  const auto [found, fresh] = built_materials_.try_emplace({material, colored});
+  if (!fresh) return found->second;
+  const Json nothing{Json::Kind::object, false, 0, 0, {}, {}, {}};
+  found->second =
+      make_material(material == kNone ? Element(nothing, "the default material", scene_.source_file)
+                                      : materials_[static_cast<std::size_t>(material)],
+                    colored);
+  return found->second;
+}
+
+}  // namespace lumirank::scenedesc::gltf

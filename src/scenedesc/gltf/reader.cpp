@@ -1,0 +1,133 @@
+#include "scenedesc/gltf/reader.h"
+
+#include <algorithm>
+#include <array>
+
+#include "scenedesc/gltf/container.h"
+#include "scenedesc/gltf/uri.h"
+
+namespace lumirank::scenedesc::gltf {
+namespace {
+
+constexpr std::array kExtensions = {"KHR_materials_emissive_strength",
+                                    "KHR_materials_transmission",
+                                    "KHR_materials_ior",
+                                    "KHR_materials_specular",
+                                    "KHR_materials_clearcoat",
+                                    "KHR_materials_sheen",
+                                    "KHR_materials_unlit",
+                                    "KHR_materials_volume",
+                                    "KHR_texture_transform",
+                                    "KHR_lights_punctual",
+                                    "KHR_draco_mesh_compression",
+                                    "EXT_meshopt_compression",
+                                    "EXT_mesh_gpu_instancing",
+                                    "KHR_mesh_quantization"};
+// They say nothing about a still picture: variants leave the primitives' own materials, metadata are words.
+constexpr std::array kWithoutEffect = {"KHR_materials_variants", "KHR_xmp_json_ld", "KHR_xmp",
+                                       "KHR_animation_pointer"};
+
+template <typename List>
+bool contains(const List& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+}  // namespace
+
+Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const std::string& filename,
+               const ReadOptions& options)
+    : root_(root),
+      options_(options),
+      buffers_(root, binary, is_glb),
+      accessors_(root, buffers_),
+      meshes_(root.list("meshes")),
+      materials_(root.list("materials")),
+      textures_(root.list("textures")),
+      images_(root.list("images")),
+      samplers_(root.list("samplers")),
+      cameras_(root.list("cameras")),
+      skins_(root.list("skins")) {
+  scene_.source_file = filename;
+  scene_.format = "glTF 2.0";
+  if (const auto punctual = root.extension("KHR_lights_punctual")) lights_ = punctual->list("lights");
+}
+
+void Reader::warn(const Element& at, const std::string& what, const std::string& used_instead) {
+  if (options_.strict)
+    throw InputError(at.where(), "Lumirank does not have " + what + " (" + at.path() + ")",
+                     used_instead.empty() ? "without --strict it is left out"
+                                          : "without --strict this is used: " + used_instead);
+  scene_.warnings.push_back({at.where(), what + " (" + at.path() + ")", used_instead});
+}
+
+void Reader::warn_once(const Element& at, const std::string& what, const std::string& used_instead) {
+  if (warned_.insert(what).second) warn(at, what, used_instead);
+}
+
+void Reader::note(const Element& at, const std::string& what) {
+  if (warned_.insert(what).second)
+    scene_.warnings.push_back({at.where(), what + " (" + at.path() + ")", "", true});
+}
+
+std::size_t Reader::index_of(const Element& index, std::size_t count, const char* what) const {
+  const std::int64_t value = index.integer(0, kMostBytes);
+  if (value >= static_cast<std::int64_t>(count))
+    index.fail("names " + std::string(what) + " " + std::to_string(value) + ", and the file has " +
+                   std::to_string(count),
+               "they are counted from 0");
+  return static_cast<std::size_t>(value);
+}
+
+std::string Reader::name_of(const Node& node) const {
+  const std::string name = node.element.text("name", "");
+  return name.empty() ? node.element.path() : name;
+}
+
+void Reader::check_asset() {
+  const Element asset = root_.at("asset"), version = asset.at("version");
+  if (!version.text().starts_with("2."))
+    version.fail("is \"" + version.text() + "\"", "glTF 2.0 can be read: convert the file");
+  if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
+    least->fail("is \"" + least->text() + "\"", "glTF 2.0 can be read");
+}
+
+void Reader::check_extensions() {
+  for (const Element& name : root_.list("extensionsRequired"))
+    if (!contains(kExtensions, name.text()) && !contains(kWithoutEffect, name.text()))
+      name.fail("is \"" + name.text() + "\", which Lumirank does not have", "export the scene without it");
+  for (const Element& name : root_.list("extensionsUsed"))
+    if (!contains(kExtensions, name.text()) && !contains(kWithoutEffect, name.text()))
+      warn_once(name, "the extension " + name.text(), "");
+}
+
+void Reader::warn_unused() {
+  if (const auto animations = root_.find("animations"); animations && animations->size() > 0)
+    warn(*animations, "animations", "the nodes as they stand");
+}
+
+SceneDesc Reader::read() {
+  check_asset();
+  check_extensions();
+  build_nodes();
+  build_scene();
+  warn_unused();
+  if (scene_.sensors.empty()) add_default_camera(scene_, root_);
+  return std::move(scene_);
+}
+
+}  // namespace lumirank::scenedesc::gltf
+
+namespace lumirank::scenedesc {
+
+SceneDesc parse_gltf(const std::string& bytes, const std::string& filename, const ReadOptions& options) {
+  const gltf::Container container = gltf::open_container(bytes, filename);
+  const gltf::Json json = gltf::parse_json(container.json, filename);
+  const gltf::Element root(json, "", filename);
+  return gltf::Reader(root, container.binary, container.is_glb, filename, options).read();
+}
+
+SceneDesc read_gltf(const std::string& filename, const ReadOptions& options) {
+  return parse_gltf(gltf::read_scene_file(filename), filename, options);
+}
+
+}  // namespace lumirank::scenedesc

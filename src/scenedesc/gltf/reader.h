@@ -1,0 +1,130 @@
+// State of one reading of a glTF file: what it refers to, what has been built so far, warnings. Each build_*
+// is in a file of its own.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "scenedesc/gltf/accessors.h"
+#include "scenedesc/gltf/buffers.h"
+#include "scenedesc/gltf/element.h"
+#include "scenedesc/readers.h"
+
+namespace lumirank::scenedesc::gltf {
+
+// A node of the scene that is read.
+struct Node {
+  Element element;
+  Transform local, world;
+  int parent = kNone;
+  bool in_scene = false;
+  std::vector<int> children;
+};
+
+class Reader {
+ public:
+  // `root` and what `binary` points to must outlive this.
+  Reader(const Element& root, std::string_view binary, bool is_glb, const std::string& filename,
+         const ReadOptions& options);
+
+  SceneDesc read();
+
+ private:
+  // The file has `what` and Lumirank does not. With `strict`, an InputError.
+  void warn(const Element& at, const std::string& what, const std::string& used_instead);
+  // The same, once for each text.
+  void warn_once(const Element& at, const std::string& what, const std::string& used_instead);
+  void note(const Element& at, const std::string& what);
+
+  // reader.cpp
+  void check_asset();
+  void check_extensions();
+  void warn_unused();
+  std::size_t index_of(const Element& index, std::size_t count, const char* what) const;
+
+  // nodes.cpp: local and world transforms, the tree checked, which nodes the scene shows.
+  void build_nodes();
+  void build_scene();  // shapes, cameras and lights of those nodes
+
+  // meshes.cpp
+  void build_shapes(const Node& node, const Element& mesh_index);
+  std::vector<Transform> instances(const Node& node);  // EXT_mesh_gpu_instancing, or the node alone
+  // Null if there is nothing to show. `weights`: of the morph targets; `joints`: a matrix for each joint of
+  // the skin, or empty.
+  std::shared_ptr<const MeshData> build_mesh(const Element& primitive, int uv_set,
+                                             const std::vector<float>& weights,
+                                             const std::vector<Transform>& joints);
+  std::vector<std::uint32_t> triangles(const Element& primitive, std::vector<std::uint32_t> corners,
+                                       int mode);
+  // skins.cpp
+  std::vector<float> morph_weights(const Node& node, const Element& mesh);
+  std::vector<Transform> joint_matrices(const Node& node);
+  void morph(const Element& primitive, const std::vector<float>& weights, MeshData& mesh);
+  void skin(const Element& primitive, const std::vector<Transform>& joints, MeshData& mesh);
+  // draco.cpp: positions, normals, uvs, colours and indices from KHR_draco_mesh_compression.
+  void decode_draco(const Element& primitive, const Element& extension, int uv_set, MeshData& mesh);
+
+  // materials.cpp: `colored` if the primitive has vertex colours. kNone: the default material.
+  struct BuiltMaterial {
+    int bsdf = kNone;
+    int uv_set = 0;
+    std::optional<ColorInput> emission;
+    std::string name;
+  };
+  const BuiltMaterial& build_material(int material, bool colored);
+  BuiltMaterial make_material(const Element& material, bool colored);
+  int uv_set_of(const Element& material);
+  struct Surface;  // a material's inputs on their way to a BSDF
+  int opaque_bsdf(const Element& material, const Surface& surface);
+  int transmitting_bsdf(const Element& material, const Surface& surface, const Element& transmission);
+  int sheen_bsdf(const Element& material, const Surface& surface, const Element& sheen);  // layers.cpp
+  int coated_bsdf(const Element& clearcoat, int base);                                    // layers.cpp
+  int two_sided(const Element& at, int bsdf);
+  int normal_mapped(const Element& material, int base);
+  int cut_out(const Element& material, const Element& metallic_roughness, int base);
+  int mix(const Element& at, FloatInput weight, int one, int other);  // weight · one + (1 - weight) · other
+  int add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind);
+
+  // textures.cpp: each takes a textureInfo and returns an index into the scene's textures.
+  int build_texture(const Element& info, bool raw, TextureChannel channel);
+  bool without_alpha(int texture) const;  // certainly: it is a JPEG file
+  int scaled(const Element& at, int texture, Rgb scale);
+  int product(const Element& at, ColorInput a, ColorInput b);
+  FloatInput squared(const Element& at, FloatInput input);
+  int add_texture(const Element& at, decltype(TextureDesc::kind) kind);
+  FloatInput float_input(const Element& object, const std::string& factor, float fallback,
+                         const std::string& texture, TextureChannel channel, float most = 1);
+  ColorInput color_input(const Element& object, const std::string& factor, Rgb fallback,
+                         const std::string& texture);
+
+  void build_camera(const Node& node, const Element& camera_index);  // cameras.cpp
+  void build_light(const Node& node, const Element& light_index);    // lights.cpp
+
+  std::string name_of(const Node& node) const;
+
+  Element root_;
+  const ReadOptions& options_;
+  SceneDesc scene_;
+  Buffers buffers_;
+  Accessors accessors_;
+  std::vector<Element> meshes_, materials_, textures_, images_, samplers_, cameras_, skins_, lights_;
+  std::vector<Node> nodes_;
+  std::set<std::string> warned_;
+  std::map<std::pair<int, bool>, BuiltMaterial> built_materials_;
+  std::map<std::tuple<std::string, bool, int, std::vector<float>>, int> built_textures_;
+  std::map<std::size_t, BitmapTextureDesc> built_images_;
+  std::map<std::pair<std::string, int>, std::shared_ptr<const MeshData>> built_meshes_;
+};
+
+// The rotation of a quaternion (x, y, z, w) of any length but zero, which is an InputError at `where`.
+Transform rotation(double x, double y, double z, double w, const Element& where);
+
+// Where the scene has no camera: one in front of everything (in the direction of +z, which is where glTF
+// models look), a little to the side and above, so near that all of it is just inside the picture.
+void add_default_camera(SceneDesc& scene, const Element& root);
+
+}  // namespace lumirank::scenedesc::gltf

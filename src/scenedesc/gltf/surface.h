@@ -1,0 +1,15 @@
+// A material's inputs on their way to a BSDF.
+#pragma once
+
+#include "scenedesc/gltf/reader.h"
+
+namespace lumirank::scenedesc::gltf {
+
+struct Reader::Surface {
+  ColorInput base;
+  FloatInput metallic, roughness;
+  FloatInput alpha;  // roughness²: the width of GGX
+  float ior = 1.5f;
+};
+
+}  // namespace lumirank::scenedesc::gltf
