@@ -1,5 +1,6 @@
-// KHR_lights_punctual. One candela counts as 1 W/sr and one lux as 1 W/m²: pictures are as bright as the
-// numbers say, and emissive strengths (in nits), environments and lamps keep their proportions.
+// KHR_lights_punctual. One candela is 1 W/sr here and one lux 1 W/m² (SceneDesc::lumens_per_unit is 1):
+// pictures are as bright as the numbers say, and emissive strengths (nits), environments and lamps keep their
+// proportions.
 #include <cmath>
 
 #include "scenedesc/gltf/reader.h"

@@ -49,6 +49,7 @@ Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const 
       skins_(root.list("skins")) {
   scene_.source_file = filename;
   scene_.format = "glTF 2.0";
+  scene_.lumens_per_unit = 1;  // candela, lux and nits are its units
   if (const auto punctual = root.extension("KHR_lights_punctual")) lights_ = punctual->list("lights");
 }
 
