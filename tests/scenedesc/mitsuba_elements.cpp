@@ -261,6 +261,20 @@ TEST(MitsubaMetals, LookAsTheyShould) {
     return r;
   };
   for (int i = 0; i < 3; ++i) EXPECT_GT(reflectance("Ag")[i], 0.9f);
+  // Titanium nitride and brass are the golden ones among compounds and alloys.
+  for (const char* name : {"TiN", "CuZn"}) {
+    const Rgb r = reflectance(name);
+    EXPECT_GT(r.r, r.g);
+    EXPECT_GT(r.g, r.b);
+  }
+  // Nearly colourless.
+  for (const char* name : {"Al", "Cr", "Mo", "Rh", "V", "W", "Hg", "a-C", "d-C", "MgO", "TiO2"}) {
+    const Rgb r = reflectance(name);
+    EXPECT_LT(max_component(r), 2.5f * std::min({r.r, r.g, r.b})) << name;
+  }
+  // Transparent ones: ((n - 1)/(n + 1))² with n near 1.74 and 2.42 in the middle of the spectrum.
+  EXPECT_NEAR(luminance(reflectance("MgO")), 0.073f, 0.01f);
+  EXPECT_NEAR(luminance(reflectance("d-C")), 0.172f, 0.01f);
   for (const char* name : {"Au", "Cu"}) {
     const Rgb r = reflectance(name);
     EXPECT_GT(r.r, r.g);
