@@ -30,16 +30,17 @@ ColumnSketch::ColumnSketch(const Shape& shape, std::uint64_t seed)
       units_(columns_ * dimension_, std::int16_t{0}),
       unit_(columns_, 0.0f),
       squares_(columns_ * kChannels, 0.0f),
-      batch_(columns_ * batch_rows_),
       batch_scale_(blocks(columns_) * batch_rows_) {
   if (projected_ && dimension_ == 0) throw InternalError("sketch: a projection to no dimension");
 }
 
-void ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const float> values) {
+double ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const float> values) {
   if (values.size() != columns_ * kChannels) throw InternalError("sketch: a row of the wrong length");
   const std::size_t b = batch_ids_.size();
-  parallel_for(columns_, kBlock, [&](std::size_t begin, std::size_t end) {
+  if (batch_.empty()) batch_.resize(columns_ * batch_rows_);
+  const double total = parallel_sum(columns_, kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
     float scalar[kBlock];
+    double some = 0;
     for (std::size_t j = begin; j < end; ++j) {
       float sum = 0;
       for (std::size_t c = 0; c < kChannels; ++c) {
@@ -48,15 +49,18 @@ void ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const float
         sum += v * v;
       }
       scalar[j - begin] = std::sqrt(sum);
+      some += static_cast<double>(scalar[j - begin]);
     }
     const float scale = scale_for(largest_of({scalar, end - begin})), inverse = 1 / scale;
     batch_scale_[b * blocks(columns_) + begin / kBlock] = scale;
     std::uint16_t* out = batch_.data() + b * columns_ + begin;
     for (std::size_t k = 0; k < end - begin; ++k) out[k] = shorten(scalar[k] * inverse);
+    return some;
   });
   batch_ids_.push_back(id);
   ++rows_;
   if (batch_ids_.size() == batch_rows_) flush();
+  return total;
 }
 
 void ColumnSketch::read_batch(std::size_t b, std::size_t begin, std::size_t end, float* out) const {
@@ -125,6 +129,7 @@ void ColumnSketch::flush() {
 
 Points ColumnSketch::points() {
   flush();
+  batch_ = std::vector<std::uint16_t>();  // clustering needs its room
   return {nullptr, columns_, dimension_, units_.data(), unit_.data()};
 }
 

@@ -31,13 +31,14 @@ class ColumnSketch {
   ColumnSketch(const Shape& shape, std::uint64_t seed);
 
   // Takes weight × row. values: columns × 3 channels, interleaved. The scalar entry is the 2-norm of the
-  // triple. `id` keys the random numbers: the order in which rows arrive matters only by rounding.
-  void add_row(std::uint64_t id, float weight, std::span<const float> values);
+  // triple. `id` keys the random numbers: the order in which rows arrive matters only by rounding. Returns
+  // the sum of weight × scalar.
+  double add_row(std::uint64_t id, float weight, std::span<const float> values);
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
   // The columns as points, in `dimension` coordinates (without projection: those of rows yet to come are 0).
-  // Valid until the next add_row.
+  // Valid until the next add_row, which makes room for waiting rows anew.
   Points points();
   // Norms over the rows seen: of scalars, and of one channel. Not projected.
   float norm(std::size_t j) const;

@@ -51,6 +51,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   json["memory.scene_bytes"] = setup.world->info().memory_bytes;
   json["memory.receivers_bytes"] = setup.receivers.memory_bytes();
   json["memory.lights_bytes"] = setup.lights.memory_bytes();
+  json["memory.matrix_bytes"] = setup.matrix->memory_bytes();
   json["parameters"] = nlohmann::ordered_json::parse(to_json(settings));
   if (!choices.empty()) json["choices"] = choices;
   return json.dump(1) + "\n";

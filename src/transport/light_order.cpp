@@ -49,7 +49,7 @@ std::vector<Place> sorted_places(std::span<const LightBatch> batches, std::span<
       places[first[b] + k] = {sort_key(batches[b].lights[k], box.lo, side), static_cast<std::uint32_t>(b),
                               static_cast<std::uint32_t>(k)};
   });
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+  parallel_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     if (a.key != b.key) return a.key < b.key;
     return a.batch != b.batch ? a.batch < b.batch : a.index < b.index;
   });

@@ -233,4 +233,11 @@ double SceneMatrix::clamped_fraction() const {
   return whole > 0 ? impl_->energy_removed / whole : 0;
 }
 
+std::size_t SceneMatrix::memory_bytes() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return impl_->rows.memory_bytes() + impl_->columns.memory_bytes() + bytes(impl_->row_pixel) +
+         bytes(impl_->row_weight) + bytes(impl_->column_power) + bytes(impl_->column_group) +
+         bytes(impl_->column_indirect);
+}
+
 }  // namespace lumirank::transport

@@ -48,6 +48,9 @@ class SceneMatrix final : public matrix::LightingMatrix {
   double clamped_fraction() const;
   double clamped_energy() const override;
 
+  // Of the matrix itself, without the receivers and lights that it is made of.
+  std::size_t memory_bytes() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

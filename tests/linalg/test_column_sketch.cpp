@@ -25,7 +25,8 @@ TEST(ColumnSketch, WithoutProjectionKeepsScalarsAndNorms) {
   for (std::size_t i = 0; i < rows; ++i) {
     const auto row = random_row(n, i);
     const float weight = i % 2 ? 1.0f : 2.0f;
-    sketch.add_row(i, weight, row);
+    const double total = sketch.add_row(i, weight, row);
+    double expected = 0;
     for (std::size_t j = 0; j < n; ++j) {
       double s = 0;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -35,7 +36,9 @@ TEST(ColumnSketch, WithoutProjectionKeepsScalarsAndNorms) {
       }
       square[j * 4] += s;
       scalar[j * rows + i] = static_cast<float>(std::sqrt(s));
+      expected += std::sqrt(s);
     }
+    EXPECT_NEAR(total, expected, 4 * 0x1p-24 * expected);
   }
   const Points p = sketch.points();
   ASSERT_EQ(p.dimension, rows);

@@ -183,12 +183,15 @@ TEST(PackedPoints, ClusteringsCostNoMoreThanThoseOfSinglePrecision) {
   RecordProperty("log_ratio", std::to_string(m_log.mean));
 }
 
-// Memory per column of a wide matrix: 2·50 bytes of coordinates, 4 of their unit, 12 of norms, 2·32 of
-// waiting rows, and a scale for every 2,048 columns and waiting row.
+// Memory per column of a wide matrix: 2·50 bytes of coordinates, 4 of their unit, 12 of norms; while rows
+// arrive 2·32 for those that wait, and a scale for every 2,048 columns and waiting row.
 TEST(PackedPoints, MemoryOfASketch) {
-  const std::size_t n = 100 * 2048;
-  const ColumnSketch sketch({n, 50}, 1);
-  EXPECT_EQ(sketch.memory_bytes(), n * (100 + 4 + 12 + 64) + 100 * 32 * 4);
+  const std::size_t n = 10 * 2048, scales = 10 * 32 * 4;
+  ColumnSketch sketch({n, 50}, 1);
+  sketch.add_row(0, 1, std::vector<float>(n * 3, 1.0f));
+  EXPECT_EQ(sketch.memory_bytes(), n * (100 + 4 + 12 + 64) + scales);
+  sketch.points();
+  EXPECT_EQ(sketch.memory_bytes(), n * (100 + 4 + 12) + scales);
 }
 
 }  // namespace

@@ -15,6 +15,10 @@ ColumnsKnown::ColumnsKnown(const matrix::LightingMatrix& matrix, Exploration& ex
       seed_(seed),
       points_(exploration.sketch().points()),
       power_share_(settings.power_share) {
+  std::size_t lit = 0;
+  for (std::size_t j = 0; j < matrix.columns(); ++j) lit += !exploration.sketch().is_zero(j);
+  lit_.reserve(lit);
+  zero_.reserve(matrix.columns() - lit);
   for (std::size_t j = 0; j < matrix.columns(); ++j)
     (exploration.sketch().is_zero(j) ? zero_ : lit_).push_back(static_cast<matrix::Index>(j));
   norms_ = linalg::own_norms(points_);
@@ -142,7 +146,6 @@ double ColumnsKnown::expected_error(const linalg::Splitter& clusters, const Held
 void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, const HeldOutRows& unseen) {
   const auto power = matrix_.column_features().power;
   double least = expected_error(clusters, unseen);
-  std::vector<float> best = weights_;
   for (double share : {0.0, 0.1, 0.3, 0.6}) {
     weights_ = selection_weights(lit_, exploration_.sketch(), power, share);
     const double error = expected_error(clusters, unseen);
@@ -150,10 +153,9 @@ void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, const Held
     if (error < 0.97 * least) {
       least = error;
       power_share_ = share;
-      best = weights_;
     }
   }
-  weights_ = std::move(best);
+  weights_ = selection_weights(lit_, exploration_.sketch(), power, power_share_);
 }
 
 std::size_t ColumnsKnown::zero_draws(std::size_t columns) const {

@@ -2,22 +2,15 @@
 
 #include <cmath>
 
-#include "base/parallel.h"
-
 namespace lumirank::methods {
 
 void Exploration::read(const SampledRow& row, std::span<Rgb> values) {
   const KnownRow& known = known_.read(row, values);
   static_assert(sizeof(Rgb) == 3 * sizeof(float));
-  sketch_.add_row(row.row, row.weight, {reinterpret_cast<const float*>(values.data()), values.size() * 3});
-  const double scalar = parallel_sum(values.size(), 8192, 0.0, [&](std::size_t begin, std::size_t end) {
-    double s = 0;
-    for (std::size_t j = begin; j < end; ++j) s += static_cast<double>(norm2(values[j]));
-    return s;
-  });
-  const double weighted = static_cast<double>(row.weight) * scalar;
+  const double weighted = sketch_.add_row(row.row, row.weight,
+                                          {reinterpret_cast<const float*>(values.data()), values.size() * 3});
   squared_sum_ += weighted * weighted;
-  image_sum_ += known.share * scalar;
+  if (row.weight > 0) image_sum_ += known.share * weighted / static_cast<double>(row.weight);
 }
 
 double Exploration::l1_over_l2() const {

@@ -182,6 +182,8 @@ Estimate RowColumnRun::finish() {
   Estimate estimate;
   auto& numbers = trace_.numbers;
   if (!blend_.sums().empty()) report_errors();
+  numbers["memory.sketch_bytes"] = static_cast<double>(seen_.sketch().memory_bytes());
+  numbers["memory.held_out_bytes"] = static_cast<double>(unseen_.entries().memory_bytes());
   numbers["predicted_error"] = blend_.expected_error();
   numbers["rows"] = static_cast<double>(rows_read());
   numbers["rows_held_out"] = static_cast<double>(unseen_.rows());
