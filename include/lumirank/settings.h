@@ -19,12 +19,16 @@ struct RenderSettings {
   std::string method = "auto";
   std::map<std::string, std::string> method_settings;  // --set KEY=VALUE
   std::uint64_t lights = 100000;
-  std::string light_type = "point";
-  int width = 0, height = 0;  // pixels; 0: as the scene says
-  int spp = 4;                // receivers per pixel
-  int max_depth = 0;          // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
-  double clamp = 0.03;        // X of docs/conventions; 0: off
-  std::string only = "all";   // all, direct, indirect
+  std::string light_type = "point";  // point, sphere
+  double radius_scale = 8;           // spherical lights: radius over the distance to the 10th nearest light
+  std::string sphere_indicator = "disc";   // disc, cosine
+  std::string sphere_strategies = "all";   // all, cone
+  std::string sphere_samples = "overlap";  // overlap, cone
+  int width = 0, height = 0;               // pixels; 0: as the scene says
+  int spp = 4;                             // receivers per pixel
+  int max_depth = 0;         // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
+  double clamp = 0.03;       // X of docs/conventions; 0: off
+  std::string only = "all";  // all, direct, indirect
   std::uint64_t seed = 1;
   std::uint64_t method_seed = 0;  // other choices of the method on the same lights and receivers; 0: the seed
   int threads = 0;                // 0: all

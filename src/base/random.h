@@ -24,6 +24,7 @@ enum class Stage : std::uint32_t {
   method,
   benchmark,
   test,
+  spheres,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

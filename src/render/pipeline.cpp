@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/timer.h"
 #include "render/traced_direct.h"
+#include "transport/sphere_lights.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -172,6 +173,9 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
     setup.held = even_areas(setup.lights, *setup.world, settings.clamp, count);
     setup.held.diffuse_only = ls.diffuse_only;
   }
+  const bool spherical = settings.light_type == "sphere";
+  if (spherical)
+    transport::make_spherical(setup.lights, *setup.world, {static_cast<float>(settings.radius_scale)}, sinks);
   setup.seconds["lights"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
 
@@ -180,6 +184,12 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   ms.seed = settings.seed;
   ms.clamp = static_cast<float>(settings.clamp);
   ms.compensated = settings.compensate > 0;
+  using Rules = transport::SphereRules;
+  ms.spheres.indicator =
+      settings.sphere_indicator == "cosine" ? Rules::Indicator::cosine : Rules::Indicator::disc;
+  ms.spheres.strategies =
+      settings.sphere_strategies == "cone" ? Rules::Strategies::cone : Rules::Strategies::all;
+  ms.spheres.samples = settings.sphere_samples == "cone" ? Rules::Samples::cone : Rules::Samples::overlap;
   ms.max_depth = setup.view.max_depth;
   ms.traced_direct_below = static_cast<float>(setup.traced_below);
   for (const auto& aov : settings.aovs)

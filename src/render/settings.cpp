@@ -166,7 +166,22 @@ const std::vector<Row>& table() {
          "virtual lights to generate, all kinds together; costs memory (about 400 B each) and time in rows"},
         &S::lights, 1, 5e7));
     t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"}, &S::light_type,
-                       {"point", "diffuse-point"}));
+                       {"point", "diffuse-point", "sphere"}));
+    t.push_back(number<double>({"radius-scale", "", "8", "0.001 … 1000", "",
+                                "spherical lights: radius over the distance to the 10th nearest light"},
+                               &S::radius_scale, 0.001, 1000));
+    t.push_back(
+        choice({"sphere-indicator", "", "disc", "", "",
+                "spherical lights: what is taken for the lit surface close by; cosine: as in the paper"},
+               &S::sphere_indicator, {"disc", "cosine"}));
+    t.push_back(choice({"sphere-strategies", "", "all", "", "",
+                        "spherical lights: sample cone and both BSDFs, or the cone alone"},
+                       &S::sphere_strategies, {"all", "cone"}));
+    t.push_back(
+        choice({"sphere-samples", "", "overlap", "", "",
+                "spherical lights: samples by the overlap of lobes and cone, or by the cone alone as in "
+                "the paper"},
+               &S::sphere_samples, {"overlap", "cone"}));
     t.push_back(size_row());
     t.push_back(
         number<int>({"spp", "", "4", "1 … 4096", "receivers per pixel", "film samples per pixel (4 = 2×2)"},

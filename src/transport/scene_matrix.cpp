@@ -51,11 +51,11 @@ std::size_t items_in_tile(const TilePlan& plan, std::size_t tile) {
   return n;
 }
 
-// What a_j·G·(π f_x)(π f_y) of a column may be where it stands for `scale` times its area. Without clamping
+// What a_j·G·(π f_x)(π f_y) of a column may be because it stands for `scale` times its area. Without clamping
 // nothing is bounded, so that who switches it off gets an unbiased picture.
-float clamp_of(const matrix::ScaledColumn& s, float clamp) {
-  if (!(s.most_shown > 0) || clamp == kInfinity) return clamp;
-  return std::min(clamp, s.most_shown / std::max(max_component(s.scale), 1e-30f));
+float most_shown(const matrix::ScaledColumn& s, float clamp) {
+  if (!(s.most_shown > 0) || clamp == kInfinity) return kInfinity;
+  return s.most_shown / std::max(max_component(s.scale), 1e-30f);
 }
 
 void require(bool holds, const char* what) {
@@ -72,15 +72,18 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
       settings(settings_),
       row_forms(receivers_.closures),
       column_forms(lights_.closures),
-      rows(make_rows(receivers_, row_forms, settings_, has_cutouts(world.rays()))),
+      rows(make_rows(receivers_, row_forms, settings_, has_cutouts(world.rays()) || lights_.spherical())),
       columns(make_columns(lights_, column_forms, has_cutouts(world.rays()))) {
   context.rows = &rows;
   context.columns = &columns;
+  context.has_spheres = lights.spherical();
+  context.spheres = {settings.spheres, &receivers, &lights, mix64(settings.seed ^ 0x73706865ull)};
   context.row_scatter = {
       &receivers.closures, &row_forms, &receivers.closure,          &receivers.normal, &receivers.ng,
       &receivers.wo,       false,      settings.traced_direct_below};
   context.column_scatter = {&lights.closures, &column_forms, &lights.closure, &lights.normal, &lights.ng,
                             &lights.incoming, true};
+  context.row_scatter.cones = context.column_scatter.cones = context.has_spheres;
   context.lights = &lights;
   context.rays = &world.rays();
   context.pair_seed = mix64(settings.seed);
@@ -166,7 +169,7 @@ void SceneMatrix::column(Index j, std::span<Rgb> out, Part part) const {
   const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
     Impl::Lease block(*impl_);
     block->set_row_tile(tile);
-    block->set_column(impl_->columns.plan.slot[j], impl_->context.clamp);
+    block->set_column(impl_->columns.plan.slot[j]);
     const Tally cost = finish(*block, part, items_in_tile(plan, tile));
     const std::uint32_t* items = plan.item.data() + block->first_slot();
     copy_out(*block, part, {items, 16 * block->groups()}, [&](std::uint32_t to) -> Rgb& { return out[to]; });
@@ -192,9 +195,8 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
       const std::size_t items = items_in_tile(plan, tile);
       for (const matrix::ScaledColumn& s : scaled) {
         if (sinks.cancelled()) throw Cancelled();
-        block->set_column(impl_->columns.plan.slot[s.column], impl_->settings.compensated
-                                                                  ? impl_->context.clamp
-                                                                  : clamp_of(s, impl_->context.clamp));
+        block->set_column(impl_->columns.plan.slot[s.column],
+                          impl_->settings.compensated ? kInfinity : most_shown(s, impl_->context.clamp));
         block->trace();
         cost.evaluated += items;
         cost.culled += items - block->survivors();

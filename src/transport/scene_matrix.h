@@ -5,6 +5,7 @@
 
 #include "matrix/lighting_matrix.h"
 #include "transport/receivers.h"
+#include "transport/sphere_rules.h"
 #include "transport/virtual_lights.h"
 #include "world/world.h"
 
@@ -12,7 +13,7 @@ namespace lumirank::transport {
 
 struct SceneMatrixSettings {
   std::uint64_t seed = 1;
-  float clamp = 1;  // X of the conventions; 0: off
+  float clamp = 1;  // X of the conventions; 0: off. Spherical lights need none and have none
   // What clamping takes is given back elsewhere: nothing is lost by it, and nothing else may be bounded.
   bool compensated = false;
   int max_depth =
@@ -21,6 +22,7 @@ struct SceneMatrixSettings {
   // Lobes of receivers with a roughness below this get 0 from direct columns: their direct light is traced
   // (render/traced_direct.h). Above 1: all lobes of all receivers.
   float traced_direct_below = 0;
+  SphereRules spheres;  // where lights are spherical
 };
 
 // Holds references: world, receivers and lights must outlive it.

@@ -174,8 +174,8 @@ scatter::Closure VirtualLights::closure_at(std::size_t j) const {
 std::size_t VirtualLights::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(kind) + bytes(position) + bytes(normal) + bytes(ng) + bytes(power) + bytes(area) +
-         bytes(emitter) + bytes(depth) + bytes(half) + bytes(closure) + bytes(albedo) + bytes(incoming) +
-         bytes(spots) + closures.memory_bytes();
+         bytes(radius) + bytes(hidden) + bytes(emitter) + bytes(depth) + bytes(half) + bytes(closure) +
+         bytes(albedo) + bytes(incoming) + bytes(spots) + closures.memory_bytes();
 }
 
 }  // namespace lumirank::transport

@@ -62,7 +62,10 @@ struct VirtualLights {
   std::vector<Vec3f> normal;    // unit; zero for omni. Surface: shading normal on the side of `incoming`
   std::vector<Vec3f> ng;   // geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds
   std::vector<Rgb> power;  // by kind, see above
-  std::vector<float> area;             // a_j: the area that the light stands for (clamping); 0: never clamped
+  std::vector<float> area;  // a_j: the area that the light stands for (clamping); 0: never clamped
+  // Spherical lights (sphere_lights.h), else empty. Radius of the sphere, 0 for lights that stay points; and
+  // which part of the disc of that radius in the surface's tangent plane other surfaces hide from the light.
+  std::vector<float> radius, hidden;
   std::vector<std::uint16_t> emitter;  // first emitter of the path
   std::vector<std::uint16_t> depth;    // path segments from the emitter to here (0: on the emitter)
   std::vector<std::uint8_t> half;      // 1 or 2: the independent half that it belongs to; 0: exact (halves.h)
@@ -81,6 +84,7 @@ struct VirtualLights {
   std::size_t direct_count = 0;  // columns that stand for emitters
 
   std::size_t size() const { return kind.size(); }
+  bool spherical() const { return !radius.empty(); }
   std::size_t memory_bytes() const;
 };
 

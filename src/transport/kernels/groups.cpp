@@ -104,7 +104,7 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms,
         kinds[j] = kColumnSpot;
         break;
       case LightKind::surface:
-        kinds[j] = kColumnFacing;
+        kinds[j] = lights.spherical() ? kColumnSphere : kColumnFacing;
         if (lights.closure[j] != VirtualLights::kLambertian)
           kinds[j] = static_cast<std::uint16_t>(kColumnScatter +
                                                 forms.of_recipe(lights.closures.recipe(lights.closure[j])));
@@ -145,6 +145,11 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms,
         } else if (some_transmit) {
           store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[j] - kColumnScatter)].transmits;
         }
+      }
+      if (kind == LightKind::surface && lights.spherical()) {
+        const float radius = lights.radius[j];
+        power *= 1 / (kPi * radius * radius);
+        to[17 * 16] = radius, to[18 * 16] = lights.hidden[j];
       }
       write3(to, p), write3(to + 3 * 16, n), write3(to + 6 * 16, ng), write3(to + 9 * 16, target);
       write3(to + 12 * 16, {power.r, power.g, power.b});

@@ -28,6 +28,7 @@ struct ColumnGroup {
                     // Φ·albedo/π; other surface lights: Φ
   Lane clamp_area;  // a_j, times max(π·f_y) where f_y is constant
   Lane depth;
+  Lane radius, hidden;  // of spherical lights, as in VirtualLights; their power is divided by πr²
 };
 
 // Where fields that are read one by one begin, in floats.
@@ -47,8 +48,13 @@ enum ColumnKind : std::uint16_t {
   kColumnFacing,
   kColumnDirectional,
   kColumnSpot,
-  kColumnScatter
+  kColumnSphere,  // lambertian surface, spherical
+  kColumnScatter,
+  // For kernels only: a form of scattering where surface lights are spherical.
+  kColumnScatterSphere = 0xffff
 };
+constexpr bool scatters(ColumnKind kind) { return kind == kColumnScatter || kind == kColumnScatterSphere; }
+constexpr bool is_sphere(ColumnKind kind) { return kind == kColumnSphere || kind == kColumnScatterSphere; }
 
 template <typename Group>
 struct GroupStore {
@@ -59,7 +65,7 @@ struct GroupStore {
   std::vector<std::uint8_t>
       two_sided;  // slot: transmits, so the ray's side depends on its direction; empty: none
 
-  std::vector<std::uint32_t> key;  // slot: what decides cut-outs; empty where there are none
+  std::vector<std::uint32_t> key;  // slot: what random numbers belong to; empty where none are needed
 
   // The first field of a slot; field k of the same slot is 16·k floats on.
   const float* at(std::uint32_t slot) const {
@@ -91,7 +97,7 @@ struct GroupStore {
 using RowStore = GroupStore<RowGroup>;
 using ColumnStore = GroupStore<ColumnGroup>;
 
-// with_keys: the scene has cut-outs.
+// with_keys: pairs need random numbers, for cut-outs or spherical lights.
 RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const SceneMatrixSettings& settings,
                    bool with_keys);
 ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms, bool with_keys);

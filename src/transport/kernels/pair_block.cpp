@@ -4,6 +4,27 @@
 #include <array>
 
 namespace lumirank::transport {
+namespace {
+
+template <std::uint16_t row_kind, ColumnKind column_kind>
+std::uint32_t cull(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
+  if constexpr (is_sphere(column_kind)) {
+    return bits(sphere_geometry<row_kind, column_kind>(r, c, extras).alive);
+  } else {
+    return cull_pair<row_kind, column_kind>(r, c, extras);
+  }
+}
+
+template <std::uint16_t row_kind, ColumnKind column_kind>
+PairResult evaluate(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
+  if constexpr (is_sphere(column_kind)) {
+    return evaluate_sphere<row_kind, column_kind>(r, c, extras);
+  } else {
+    return evaluate_pair<row_kind, column_kind>(r, c, extras);
+  }
+}
+
+}  // namespace
 
 // The loops over groups, compiled for each class of receiver and light: `cull` finds the survivors, `shade`
 // evaluates the groups with visible lanes.
@@ -12,8 +33,7 @@ struct PairBlockKernels {
   static void cull_column(PairBlock& b, std::size_t begin, std::size_t end, const PairExtras& extras) {
     const RowGroup* rows = b.context_.rows->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g)
-      b.alive_[g] =
-          static_cast<std::uint16_t>(cull_pair<row_kind, column_kind>(rows[g], b.fixed_column_, extras));
+      b.alive_[g] = static_cast<std::uint16_t>(cull<row_kind, column_kind>(rows[g], b.fixed_column_, extras));
   }
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
@@ -22,7 +42,8 @@ struct PairBlockKernels {
     for (std::size_t g = begin; g < end; ++g) {
       if (b.visible_[g] == 0) continue;
       if constexpr (row_kind == kRowScatter) extras.row = &b.tile_scatter_[g];
-      b.keep(g, evaluate_pair<row_kind, column_kind>(rows[g], b.fixed_column_, extras));
+      if constexpr (is_sphere(column_kind)) b.name_column_pairs(extras, g);
+      b.keep(g, evaluate<row_kind, column_kind>(rows[g], b.fixed_column_, extras));
     }
   }
 
@@ -31,8 +52,7 @@ struct PairBlockKernels {
     const ColumnGroup* columns = b.context_.columns->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g) {
       if constexpr (column_kind == kColumnSpot) extras.spots = &b.tile_spots_[16 * g];
-      b.alive_[g] =
-          static_cast<std::uint16_t>(cull_pair<row_kind, column_kind>(b.fixed_row_, columns[g], extras));
+      b.alive_[g] = static_cast<std::uint16_t>(cull<row_kind, column_kind>(b.fixed_row_, columns[g], extras));
     }
   }
 
@@ -41,9 +61,10 @@ struct PairBlockKernels {
     const ColumnGroup* columns = b.context_.columns->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g) {
       if (b.visible_[g] == 0) continue;
-      if constexpr (column_kind == kColumnScatter) extras.column = &b.tile_scatter_[g];
+      if constexpr (scatters(column_kind)) extras.column = &b.tile_scatter_[g];
       if constexpr (column_kind == kColumnSpot) extras.spots = &b.tile_spots_[16 * g];
-      b.keep(g, evaluate_pair<row_kind, column_kind>(b.fixed_row_, columns[g], extras));
+      if constexpr (is_sphere(column_kind)) b.name_row_pairs(extras, g);
+      b.keep(g, evaluate<row_kind, column_kind>(b.fixed_row_, columns[g], extras));
     }
   }
 
@@ -73,7 +94,7 @@ struct PairBlockKernels {
     Listed listed;
     listed.gather<column_kind>(b, g);
     b.alive_[g] = static_cast<std::uint16_t>(
-        used & cull_pair<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
+        used & cull<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
   }
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
@@ -82,24 +103,32 @@ struct PairBlockKernels {
     Listed listed;
     listed.gather<column_kind>(b, g);
     ScatterGroup row_scatter, column_scatter;
-    std::uint32_t items[16];
+    std::uint32_t rows[16], columns[16], keys[16];
+    for (std::size_t k = 0; k < 16; ++k) {
+      rows[k] = context.rows->plan.item[b.row_list_[16 * g + k]];
+      columns[k] = context.columns->plan.item[b.column_list_[16 * g + k]];
+      if constexpr (is_sphere(column_kind)) keys[k] = context.rows->key[b.row_list_[16 * g + k]];
+    }
     b.partner_arena_.clear();
     if constexpr (row_kind == kRowScatter) {
-      for (std::size_t k = 0; k < 16; ++k) items[k] = context.rows->plan.item[b.row_list_[16 * g + k]];
-      row_scatter = b.partner_arena_.fetch(context.row_scatter, items);
+      row_scatter = b.partner_arena_.fetch(context.row_scatter, rows);
       listed.extras.row = &row_scatter;
     }
-    if constexpr (column_kind == kColumnScatter) {
-      for (std::size_t k = 0; k < 16; ++k) items[k] = context.columns->plan.item[b.column_list_[16 * g + k]];
-      column_scatter = b.partner_arena_.fetch(context.column_scatter, items);
+    if constexpr (scatters(column_kind)) {
+      column_scatter = b.partner_arena_.fetch(context.column_scatter, columns);
       listed.extras.column = &column_scatter;
     }
-    b.keep(g, evaluate_pair<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
+    if constexpr (is_sphere(column_kind)) {
+      listed.extras.row_items = rows, listed.extras.column_items = columns, listed.extras.row_keys = keys;
+      listed.extras.wanted = b.visible_[g];
+    }
+    b.keep(g, evaluate<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
   }
 
   // Calls use.template operator()<row_kind, column_kind>() for the classes at hand.
   template <typename Use>
-  static void pick(std::uint16_t row_kind, std::uint16_t column_kind, Use&& use) {
+  static void pick(const PairBlock& b, std::uint16_t row_kind, std::uint16_t column_kind, Use&& use) {
+    if (column_kind >= kColumnScatter && b.context_.has_spheres) column_kind = kColumnScatterSphere;
     if (row_kind == kRowLambertian) {
       pick_column<kRowLambertian>(column_kind, use);
     } else {
@@ -117,6 +146,10 @@ struct PairBlockKernels {
         return use.template operator()<row_kind, kColumnDirectional>();
       case kColumnSpot:
         return use.template operator()<row_kind, kColumnSpot>();
+      case kColumnSphere:
+        return use.template operator()<row_kind, kColumnSphere>();
+      case kColumnScatterSphere:
+        return use.template operator()<row_kind, kColumnScatterSphere>();
       default:
         return use.template operator()<row_kind, kColumnScatter>();
     }
@@ -147,7 +180,9 @@ const SpotShape* PairBlock::spot_of(std::uint32_t light) const {
 
 PairExtras PairBlock::extras(std::uint16_t row_kind, std::uint16_t column_kind) const {
   PairExtras extras;
-  extras.clamp = clamp_;
+  const bool sphere = column_kind == kColumnSphere || (column_kind >= kColumnScatter && context_.has_spheres);
+  extras.clamp = sphere ? bound_ : std::min(context_.clamp, bound_);
+  extras.spheres = &context_.spheres;
   if (row_kind >= kRowScatter)
     extras.row_transmits =
         (*context_.row_scatter.forms)[static_cast<std::uint16_t>(row_kind - kRowScatter)].transmits;
@@ -155,6 +190,20 @@ PairExtras PairBlock::extras(std::uint16_t row_kind, std::uint16_t column_kind) 
     extras.column_transmits =
         (*context_.column_scatter.forms)[static_cast<std::uint16_t>(column_kind - kColumnScatter)].transmits;
   return extras;
+}
+
+void PairBlock::name_column_pairs(PairExtras& extras, std::size_t group) const {
+  extras.row_items = &context_.rows->plan.item[first_slot_ + 16 * group];
+  extras.row_keys = &context_.rows->key[first_slot_ + 16 * group];
+  extras.column_items = fixed_items_.data();
+  extras.wanted = visible_[group];
+}
+
+void PairBlock::name_row_pairs(PairExtras& extras, std::size_t group) const {
+  extras.row_items = fixed_items_.data();
+  extras.row_keys = fixed_keys_.data();
+  extras.column_items = &context_.columns->plan.item[first_slot_ + 16 * group];
+  extras.wanted = visible_[group];
 }
 
 void PairBlock::set_row_tile(std::size_t tile) {
@@ -190,43 +239,49 @@ void PairBlock::set_column_tile(std::size_t tile) {
   }
 }
 
-void PairBlock::set_column(std::uint32_t column_slot, float clamp) {
-  clamp_ = clamp;
+void PairBlock::set_column(std::uint32_t column_slot, float bound) {
+  bound_ = bound;
   fixed_slot_ = column_slot;
   fixed_kind_ = context_.columns->plan.kind_of(column_slot);
   context_.columns->splat(column_slot, fixed_column_);
   if (fixed_kind_ == kColumnSpot) fixed_spots_.fill(spot_of(context_.columns->plan.item[column_slot]));
+  fixed_items_.fill(context_.columns->plan.item[column_slot]);
   for (const TilePlan::Run& run : context_.rows->plan.tile(tile_)) {
     PairExtras extras = this->extras(run.kind, fixed_kind_);
     extras.spots = fixed_spots_.data();
-    PairBlockKernels::pick(run.kind, fixed_kind_, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-      PairBlockKernels::cull_column<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
-                                                           (run.end - first_slot_) / 16, extras);
-    });
+    PairBlockKernels::pick(*this, run.kind, fixed_kind_,
+                           [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+                             PairBlockKernels::cull_column<row_kind, column_kind>(
+                                 *this, (run.begin - first_slot_) / 16, (run.end - first_slot_) / 16, extras);
+                           });
   }
   collect_survivors();
 }
 
 void PairBlock::set_row(std::uint32_t row_slot) {
-  clamp_ = context_.clamp;
+  bound_ = kInfinity;
   fixed_slot_ = row_slot;
   fixed_kind_ = context_.rows->plan.kind_of(row_slot);
   context_.rows->splat(row_slot, fixed_row_);
+  fixed_items_.fill(context_.rows->plan.item[row_slot]);
+  if (context_.has_spheres) fixed_keys_.fill(context_.rows->key[row_slot]);
   for (const TilePlan::Run& run : context_.columns->plan.tile(tile_))
-    PairBlockKernels::pick(fixed_kind_, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-      PairBlockKernels::cull_row<row_kind, column_kind>(
-          *this, (run.begin - first_slot_) / 16, (run.end - first_slot_) / 16, extras(fixed_kind_, run.kind));
-    });
+    PairBlockKernels::pick(
+        *this, fixed_kind_, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+          PairBlockKernels::cull_row<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
+                                                            (run.end - first_slot_) / 16,
+                                                            extras(fixed_kind_, run.kind));
+        });
   collect_survivors();
 }
 
 void PairBlock::set_list(std::span<const std::uint32_t> row_slots,
                          std::span<const std::uint32_t> column_slots, std::span<const std::uint16_t> used) {
-  clamp_ = context_.clamp;
+  bound_ = kInfinity;
   shape_ = BlockShape::list, row_list_ = row_slots, column_list_ = column_slots, first_slot_ = 0;
   resize(used.size());
   for (std::size_t g = 0; g < groups_; ++g)
-    PairBlockKernels::pick(context_.rows->plan.kind_of(row_slots[16 * g]),
+    PairBlockKernels::pick(*this, context_.rows->plan.kind_of(row_slots[16 * g]),
                            context_.columns->plan.kind_of(column_slots[16 * g]),
                            [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
                              PairBlockKernels::cull_list<row_kind, column_kind>(*this, g, used[g]);
@@ -247,10 +302,11 @@ void PairBlock::shade() {
       for (const TilePlan::Run& run : context_.rows->plan.tile(tile_)) {
         PairExtras extras = this->extras(run.kind, fixed_kind_);
         extras.column = &scatter, extras.spots = fixed_spots_.data();
-        PairBlockKernels::pick(run.kind, fixed_kind_, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-          PairBlockKernels::shade_column<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
-                                                                (run.end - first_slot_) / 16, extras);
-        });
+        PairBlockKernels::pick(
+            *this, run.kind, fixed_kind_, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+              PairBlockKernels::shade_column<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
+                                                                    (run.end - first_slot_) / 16, extras);
+            });
       }
       return;
     case BlockShape::row:
@@ -259,16 +315,17 @@ void PairBlock::shade() {
       for (const TilePlan::Run& run : context_.columns->plan.tile(tile_)) {
         PairExtras extras = this->extras(fixed_kind_, run.kind);
         extras.row = &scatter;
-        PairBlockKernels::pick(fixed_kind_, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
-          PairBlockKernels::shade_row<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
-                                                             (run.end - first_slot_) / 16, extras);
-        });
+        PairBlockKernels::pick(
+            *this, fixed_kind_, run.kind, [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
+              PairBlockKernels::shade_row<row_kind, column_kind>(*this, (run.begin - first_slot_) / 16,
+                                                                 (run.end - first_slot_) / 16, extras);
+            });
       }
       return;
     case BlockShape::list:
       for (std::size_t g = 0; g < groups_; ++g)
         if (visible_[g] != 0)
-          PairBlockKernels::pick(context_.rows->plan.kind_of(row_list_[16 * g]),
+          PairBlockKernels::pick(*this, context_.rows->plan.kind_of(row_list_[16 * g]),
                                  context_.columns->plan.kind_of(column_list_[16 * g]),
                                  [&]<std::uint16_t row_kind, ColumnKind column_kind>() {
                                    PairBlockKernels::shade_list<row_kind, column_kind>(*this, g);

@@ -11,6 +11,7 @@
 #include "transport/kernels/groups.h"
 #include "transport/kernels/pair_kernel.h"
 #include "transport/kernels/scatter_group.h"
+#include "transport/kernels/sphere_kernel.h"
 
 namespace lumirank::transport {
 
@@ -24,7 +25,9 @@ struct PairContext {
   std::uint64_t pair_seed;  // hashed once: with the two ids it decides cut-outs
   float clamp;              // X; infinite: off
   bool has_cutouts;         // rays need keys
-  bool has_smooth;          // rays need transmittances
+  bool has_spheres;         // surface lights are spherical
+  SphereBackground spheres;
+  bool has_smooth;  // rays need transmittances
   bool has_directional;
   bool has_two_sided;  // some surface shines through, see GroupStore::two_sided
 };
@@ -57,8 +60,8 @@ class PairBlock {
 
   void set_row_tile(std::size_t tile);
   void set_column_tile(std::size_t tile);
-  // After set_row_tile. clamp: X of this column; lower than the context's where it stands for others as well.
-  void set_column(std::uint32_t column_slot, float clamp);
+  // After set_row_tile. bound: of a_j·G·(π f_x)(π f_y) beside X, where the column stands for others as well.
+  void set_column(std::uint32_t column_slot, float bound = kInfinity);
   void set_row(std::uint32_t row_slot);  // after set_column_tile
   // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbour; `used`: a
   // bit per lane that is not padding, by group. The spans must last until E has been read.
@@ -92,6 +95,9 @@ class PairBlock {
   void resize(std::size_t groups);
   const SpotShape* spot_of(std::uint32_t light) const;
   PairExtras extras(std::uint16_t row_kind, std::uint16_t column_kind) const;
+  // Which pairs a group of a tile holds, for kernels that draw random numbers.
+  void name_column_pairs(PairExtras& extras, std::size_t group) const;
+  void name_row_pairs(PairExtras& extras, std::size_t group) const;
   void keep(std::size_t group, const PairResult& result);
   void collect_survivors();
   template <typename Store>
@@ -116,7 +122,8 @@ class PairBlock {
   ColumnGroup fixed_column_;
   std::array<const SpotShape*, 16> fixed_spots_;
   std::uint16_t fixed_kind_ = 0;
-  float clamp_ = kInfinity;  // X of the pairs at hand
+  std::array<std::uint32_t, 16> fixed_items_, fixed_keys_;  // spherical lights only
+  float bound_ = kInfinity;                                 // of the pairs at hand, beside X
   ScatterArena tile_arena_, partner_arena_;
   std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
   std::vector<const SpotShape*> tile_spots_;

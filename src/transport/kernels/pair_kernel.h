@@ -10,12 +10,18 @@
 
 namespace lumirank::transport {
 
+struct SphereBackground;  // sphere_kernel.h
+
 // What a kernel needs beside the two groups; null where the class of receiver or light does without.
 struct PairExtras {
   const ScatterGroup* row = nullptr;
   const ScatterGroup* column = nullptr;
-  const SpotShape* const* spots = nullptr;  // 16
-  float clamp = kInfinity;                  // X
+  const SpotShape* const* spots = nullptr;                            // 16
+  float clamp = kInfinity;                                            // X
+  const SphereBackground* spheres = nullptr;                          // where lights are spherical
+  const std::uint32_t *row_items = nullptr, *column_items = nullptr;  // 16 each; spherical lights only
+  const std::uint32_t* row_keys = nullptr;
+  std::uint32_t wanted = 0xffff;  // lanes that will be read; others may be left out
   bool row_transmits = false, column_transmits = false;
 };
 

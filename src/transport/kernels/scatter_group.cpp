@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "transport/kernels/lobe_lanes.h"
 #include "transport/kernels/tile_plan.h"
@@ -20,6 +21,29 @@ void read(CoatLanes& lanes, int lane, const scatter::Coat& coat) {
   put(lanes.depth, lane, coat.depth);
   lanes.trapped[lane] = coat.trapped, lanes.width[lane] = coat.width;
   lanes.critical[lane] = std::sqrt(std::max(0.0f, 1 - 1 / (coat.bend * coat.bend)));
+}
+
+// A reflected lobe of roughness α fills about 4πα² and ends about 3α from its axis; what is rougher than this
+// counts as broad. A lobe that refracts has no axis here, so it may be anywhere.
+constexpr float kBroad = 0.5f, kReach = 3;
+
+void put_cone(LobeCones& cones, int lane, std::span<const scatter::Lobe> lobes, Vec3f wo, Vec3f n) {
+  float sharpest = kBroad * kBroad, reach = 0;
+  bool anywhere = false;
+  for (const scatter::Lobe& lobe : lobes) {
+    const float least = scatter::lobe_roughness(lobe);
+    if (least >= kBroad) continue;
+    const bool two_widths =
+        lobe.kind == scatter::LobeKind::microfacet_reflect || lobe.kind == scatter::LobeKind::ward;
+    const float most = two_widths ? std::max(lobe.alpha_u, lobe.alpha_v) : least;
+    sharpest = std::min(sharpest, least * most);
+    reach = std::max(reach, std::min(kPi, kReach * most));
+    anywhere = anywhere || lobe.kind == scatter::LobeKind::microfacet_transmit;
+  }
+  if (anywhere) reach = kPi;
+  put(cones.axis, lane, n * (2 * dot(n, wo)) - wo);
+  cones.per_solid_angle[lane] = reach > 0 ? 1 / (4 * kPi * sharpest) : 0;
+  cones.cos_reach[lane] = std::cos(reach), cones.sin_reach[lane] = std::sin(reach);
 }
 
 // Reads the plain parameters of one closure into a lane.
@@ -41,6 +65,7 @@ void read(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats, int lane, con
   }
   const auto shared = side.pool->lobes(side.pool->recipe(closure));
   const auto colors = side.pool->colors(closure);
+  if (side.cones) put_cone(group.cones, lane, shared, wo, n * turn);
   for (std::size_t k = 0; k < shared.size(); ++k) {
     const scatter::Lobe& lobe = shared[k];
     put(lobes[k].color, lane, colors[k]);
@@ -87,6 +112,9 @@ void ScatterArena::keep(ScatterGroup& group, int lane, const ScatterSide& side, 
   if (item == kNoItem) return;
   const scatter::Closure& whole = closures_.emplace_back(side.get(item));
   group.closure[lane] = group.broad[lane] = &whole;
+  if (side.cones)
+    put_cone(group.cones, lane, {whole.lobes, static_cast<std::size_t>(whole.count)}, (*side.wo)[item],
+             whole.frame.n);
   if (whole.roughness() >= side.traced_below) return;
   group.broad[lane] = &closures_.emplace_back(scatter::broad_part(whole, side.traced_below));
   group.some_traced = true;
@@ -123,6 +151,7 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, std::uint32_t item) {
       group.closure[k] = group.closure[0], group.broad[k] = group.broad[0];
       put(group.wo, k, (*side.wo)[item]);
     }
+    if (side.cones) spread(group.cones, sizeof(LobeCones) / sizeof(Lane));
     return group;
   }
   LobeLanes* lobes = new_lobes(group.form->lobes.size());
@@ -132,6 +161,7 @@ ScatterGroup ScatterArena::fetch(const ScatterSide& side, std::uint32_t item) {
   read(group, lobes, coats, 0, side, item);
   for (Lane3* v : {&group.wo, &group.n, &group.ng}) spread(*v, 3);
   if (group.form->anisotropic) spread(group.s, 3), spread(group.t, 3);
+  if (side.cones) spread(group.cones, sizeof(LobeCones) / sizeof(Lane));
   for (std::size_t k = 0; k < group.form->lobes.size(); ++k)
     spread(lobes[k], sizeof(LobeLanes) / sizeof(Lane));
   if (coats)

@@ -23,6 +23,7 @@ struct ScatterSide {
   bool adjoint;  // light flows from wo, as at a virtual light
   // Lobes with less roughness do not answer direct light (SceneMatrixSettings::traced_direct_below).
   float traced_below = 0;
+  bool cones = false;  // groups know their sharpest lobe: spherical lights
 
   scatter::Closure get(std::uint32_t item) const {
     return pool->get((*closure)[item], (*normal)[item], (*ng)[item]);
@@ -50,6 +51,13 @@ struct CoatLanes {
   Lane cos_o;  // its cosine
 };
 
+// The sharpest lobe of each lane's closure, as a cone about its mirror direction.
+struct LobeCones {
+  Lane3 axis;
+  Lane per_solid_angle;       // 1/Ω of the lobe; 0: broad
+  Lane cos_reach, sin_reach;  // of the angle beyond which the lobe is all but black
+};
+
 // All directions on the side of wo: n, ng and t are turned so that n·wo > 0.
 struct ScatterGroup {
   const ScatterForm* form = nullptr;
@@ -61,6 +69,7 @@ struct ScatterGroup {
   Lane cos_o;                        // n·wo; 1 in lanes that do not answer
   const LobeLanes* lobes = nullptr;  // form->lobes.size()
   const CoatLanes* coats = nullptr;  // as many, if form->coated; meaningless for lobes without a coat
+  LobeCones cones;                   // if ScatterSide::cones
   // Forms without lane code: nullptr where padded.
   const scatter::Closure* closure[16];
   const scatter::Closure* broad[16];  // if some_traced: without the lobes that leave direct light to tracing

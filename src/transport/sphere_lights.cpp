@@ -1,0 +1,63 @@
+#include "transport/sphere_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/frame.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "transport/neighbour_distance.h"
+
+namespace lumirank::transport {
+namespace {
+
+constexpr int kNeighbour = 10;
+constexpr int kSectors = 8;
+// How far above the surface a light looks along it, in radii: past the facets of curved surfaces.
+constexpr float kLift = 0.05f;
+
+// Which part of the disc in the tangent plane other surfaces hide from its centre: what lies beyond them in
+// each sector.
+float hidden_share(const world::World& world, Vec3f p, Vec3f ng, float radius, Rng& rng) {
+  const Frame frame = Frame::from_normal(ng);
+  const Vec3f from = world::World::offset_origin(p, ng, ng) + ng * (kLift * radius);
+  const float turn = rng.next_float();
+  float shown = 0;
+  for (int k = 0; k < kSectors; ++k) {
+    const float phi = 2 * kPi * (static_cast<float>(k) + turn) / kSectors;
+    const auto hit =
+        world.rays().intersect({from, frame.s * std::cos(phi) + frame.t * std::sin(phi), 0, radius});
+    const float reach = hit ? std::min(hit->t / radius, 1.0f) : 1.0f;
+    shown += reach * reach;
+  }
+  return 1 - shown / kSectors;
+}
+
+}  // namespace
+
+void make_spherical(VirtualLights& lights, const world::World& world, const SphereSettings& settings,
+                    const Sinks& sinks) {
+  std::vector<std::size_t> which;
+  std::vector<Vec3f> points;
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    if (lights.kind[j] == LightKind::surface) which.push_back(j), points.push_back(lights.position[j]);
+  lights.radius.assign(lights.size(), 0);
+  lights.hidden.assign(lights.size(), 0);
+  const std::vector<float> distance2 = neighbour_distance_squared(points, kNeighbour);
+  const float largest = world.bounds().radius();
+  // Lights may coincide where particles are few; a sphere without extent would be a point with its spikes.
+  const float least = 1e-5f * largest;
+  parallel_for(which.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    if (sinks.cancelled()) return;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t j = which[k];
+      const float distance = which.size() > 1 ? std::sqrt(distance2[k]) : largest;
+      lights.radius[j] = std::clamp(settings.radius_scale * distance, least, largest);
+      Rng rng(0, Stage::spheres, j);
+      lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);
+    }
+  });
+  if (sinks.cancelled()) throw Cancelled();
+}
+
+}  // namespace lumirank::transport
