@@ -142,6 +142,11 @@ inline Lane3 integrate_in_lanes(const RowGroup& r, const ColumnGroup& c, const P
   return sum * (splat(2 * kPi) * cone.below * inv);
 }
 
+// v / f; 0 where both are.
+inline Rgb without(Rgb v, Rgb f) {
+  return {f.r > 0 ? v.r / f.r : 0, f.g > 0 ? v.g / f.g : 0, f.b > 0 ? v.b / f.b : 0};
+}
+
 template <std::uint16_t row_kind, ColumnKind column_kind>
 inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
   constexpr bool scattering_row = row_kind == kRowScatter;
@@ -225,7 +230,10 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
       samples.receiver = row_widths[k] > 1 ? (both ? 3 : 1) : 0;
       samples.light = column_widths[k] > 1 ? (both ? 3 : 1) : 0;
     }
-    const Rgb v = sphere_integral(ends, samples, mix64(extras.spheres->seed ^ extras.row_keys[k]) ^ j);
+    Rgb v = sphere_integral(ends, samples, mix64(extras.spheres->seed ^ extras.row_keys[k]) ^ j);
+    // What the groups hold of matt ends comes in below.
+    if constexpr (!scattering_row) v = without(v, {r.f.x[k], r.f.y[k], r.f.z[k]});
+    if constexpr (!scattering_column) v = without(v, lights.albedo[j] * kInvPi);
     value.x[k] = v.r, value.y[k] = v.g, value.z[k] = v.b;
   }
 
