@@ -20,7 +20,7 @@ struct RenderSettings {
   std::map<std::string, std::string> method_settings;  // --set KEY=VALUE
   std::uint64_t lights = 100000;
   std::string light_type = "point";  // point, sphere
-  double radius_scale = 8;           // spherical lights: radius over the distance to the 10th nearest light
+  double radius_scale = 0;  // spherical lights: radius over the distance to the 10th nearest; 0: automatic
   std::string sphere_indicator = "disc";   // disc, cosine
   std::string sphere_strategies = "all";   // all, cone
   std::string sphere_samples = "overlap";  // overlap, cone

@@ -174,8 +174,10 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
     setup.held.diffuse_only = ls.diffuse_only;
   }
   const bool spherical = settings.light_type == "sphere";
-  if (spherical)
-    transport::make_spherical(setup.lights, *setup.world, {static_cast<float>(settings.radius_scale)}, sinks);
+  setup.radius_scale = spherical
+                           ? transport::make_spherical(setup.lights, *setup.world,
+                                                       {static_cast<float>(settings.radius_scale)}, sinks)
+                           : 0;
   setup.seconds["lights"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
 

@@ -41,6 +41,7 @@ struct Setup {
   // none.
   std::vector<Rgb> traced_direct;
   double traced_below = 0;  // roughness under which receivers are traced
+  double radius_scale = 0;  // of spherical lights; 0: points
   Clamped held;             // what the columns hold, where the rest is to be traced; bound 0: it is not
   std::map<std::string, double> seconds;  // per phase
 };

@@ -44,6 +44,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   json["virtual_lights.paths"] = setup.lights.paths;
   json["receivers"] = setup.receivers.size();
   json["pixels"] = pixels;
+  if (setup.radius_scale > 0) json["virtual_lights.radius_scale"] = setup.radius_scale;
   json["clamp.removed_fraction"] = setup.matrix->clamped_fraction();
   json["traced_direct.below_roughness"] = setup.traced_direct.empty() ? 0.0 : setup.traced_below;
 

@@ -167,9 +167,11 @@ const std::vector<Row>& table() {
         &S::lights, 1, 5e7));
     t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"}, &S::light_type,
                        {"point", "diffuse-point", "sphere"}));
-    t.push_back(number<double>({"radius-scale", "", "8", "0.001 … 1000", "",
-                                "spherical lights: radius over the distance to the 10th nearest light"},
-                               &S::radius_scale, 0.001, 1000));
+    t.push_back(
+        number<double>({"radius-scale", "", "0", "0 … 1000", "",
+                        "spherical lights: radius over the distance to the 10th nearest light; 0: by the "
+                        "number of lights"},
+                       &S::radius_scale, 0, 1000));
     t.push_back(
         choice({"sphere-indicator", "", "disc", "", "",
                 "spherical lights: what is taken for the lit surface close by; cosine: as in the paper"},

@@ -12,6 +12,9 @@ namespace lumirank::transport {
 namespace {
 
 constexpr int kNeighbour = 10;
+// From errors against path tracing of five glossy scenes with 1,000 to 64,000 lights: best at 1.3 for
+// 1,000, 2.6 for 8,000, 4 for 30,000, 5 for 64,000.
+constexpr double kLightsAtOne = 470;
 constexpr int kSectors = 8;
 // How far above the surface a light looks along it, in radii: past the facets of curved surfaces.
 constexpr float kLift = 0.05f;
@@ -35,8 +38,12 @@ float hidden_share(const world::World& world, Vec3f p, Vec3f ng, float radius, R
 
 }  // namespace
 
-void make_spherical(VirtualLights& lights, const world::World& world, const SphereSettings& settings,
-                    const Sinks& sinks) {
+float automatic_radius_scale(std::size_t surface_lights) {
+  return static_cast<float>(std::max(1.0, std::cbrt(static_cast<double>(surface_lights) / kLightsAtOne)));
+}
+
+float make_spherical(VirtualLights& lights, const world::World& world, const SphereSettings& settings,
+                     const Sinks& sinks) {
   std::vector<std::size_t> which;
   std::vector<Vec3f> points;
   for (std::size_t j = 0; j < lights.size(); ++j)
@@ -44,6 +51,8 @@ void make_spherical(VirtualLights& lights, const world::World& world, const Sphe
   lights.radius.assign(lights.size(), 0);
   lights.hidden.assign(lights.size(), 0);
   const std::vector<float> distance2 = neighbour_distance_squared(points, kNeighbour);
+  const float scale =
+      settings.radius_scale > 0 ? settings.radius_scale : automatic_radius_scale(which.size());
   const float largest = world.bounds().radius();
   // Lights may coincide where particles are few; a sphere without extent would be a point with its spikes.
   const float least = 1e-5f * largest;
@@ -52,12 +61,13 @@ void make_spherical(VirtualLights& lights, const world::World& world, const Sphe
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t j = which[k];
       const float distance = which.size() > 1 ? std::sqrt(distance2[k]) : largest;
-      lights.radius[j] = std::clamp(settings.radius_scale * distance, least, largest);
+      lights.radius[j] = std::clamp(scale * distance, least, largest);
       Rng rng(0, Stage::spheres, j);
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);
     }
   });
   if (sinks.cancelled()) throw Cancelled();
+  return scale;
 }
 
 }  // namespace lumirank::transport

@@ -262,7 +262,7 @@ TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
       add_light(lights, LightKind::surface, {0.1f * static_cast<float>(a), 0.1f * static_cast<float>(b), -1},
                 {0, 0, 1}, Rgb(1));
   add_light(lights, LightKind::omni, {0, 0, 0}, {}, Rgb(1));
-  make_spherical(lights, world, {2});
+  EXPECT_EQ(make_spherical(lights, world, {2}), 2);
   const std::size_t middle = 60;
   // Of the neighbours of a grid's point, four are 1 away, four √2, four 2: the tenth is at 2.
   EXPECT_NEAR(lights.radius[middle], 2 * 0.2f, 1e-5);
@@ -275,6 +275,16 @@ TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
     add_light(corner, LightKind::surface, {-0.9999f, 0.05f * static_cast<float>(k), -1}, {0, 0, 1}, Rgb(1));
   make_spherical(corner, world, {1});
   EXPECT_NEAR(corner.hidden[6], 0.5f, 0.01f);
+}
+
+// Radii fall with the sixth root of the number of lights: the tenth neighbour's distance with the square
+// root.
+TEST(SphericalLights, AutomaticRadiiBalanceBlurAndNoise) {
+  EXPECT_EQ(automatic_radius_scale(1), 1);
+  EXPECT_NEAR(automatic_radius_scale(3760), 2, 1e-5);
+  for (const double n : {1e4, 1e5})
+    EXPECT_NEAR(automatic_radius_scale(static_cast<std::size_t>(64 * n)) / std::sqrt(64.0),
+                automatic_radius_scale(static_cast<std::size_t>(n)) / 2.0, 1e-3);
 }
 
 TEST(SphericalLights, AnyNumberOfThreadsGivesTheSameBits) {
