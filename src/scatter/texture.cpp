@@ -68,6 +68,9 @@ bool checker_first(const CheckerboardTexture& t, Vec2f mesh_uv) {
   return (uv.x - std::floor(uv.x) > 0.5f) == (uv.y - std::floor(uv.y) > 0.5f);
 }
 
+Rgb root(Rgb c) { return sqrt(Rgb(std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f))); }
+Rgb mixed(Rgb a, Rgb b, Rgb amount) { return a + (b - a) * amount; }
+
 struct RgbGradient {
   Rgb du{0}, dv{0};
 };
@@ -91,6 +94,18 @@ struct GradientVisitor {
     const RgbGradient a = rgb_gradient(set, t.a, at), b = rgb_gradient(set, t.b, at);
     const Rgb va = set.lookup(t.a, at), vb = set.lookup(t.b, at);
     return {a.du * vb + b.du * va, a.dv * vb + b.dv * va};
+  }
+  RgbGradient operator()(const MixTexture& t) const {
+    const RgbGradient a = rgb_gradient(set, t.a, at), b = rgb_gradient(set, t.b, at);
+    const RgbGradient m = rgb_gradient(set, t.amount, at);
+    const Rgb amount = set.lookup(t.amount, at), step = set.lookup(t.b, at) - set.lookup(t.a, at);
+    return {a.du + (b.du - a.du) * amount + step * m.du, a.dv + (b.dv - a.dv) * amount + step * m.dv};
+  }
+  RgbGradient operator()(const RootTexture& t) const {
+    const RgbGradient g = rgb_gradient(set, t.input, at);
+    Rgb slope = root(set.lookup(t.input, at)) * 2;
+    for (int k = 0; k < 3; ++k) slope[k] = slope[k] > 0 ? 1 / slope[k] : 0;
+    return {g.du * slope, g.dv * slope};
   }
   RgbGradient operator()(const ThresholdTexture&) const { return {}; }
   RgbGradient operator()(const BitmapTexture& t) const {
@@ -118,6 +133,10 @@ struct LookupVisitor {
   }
   Rgb operator()(const ScaleTexture& t) const { return set.lookup(t.input, at) * t.scale; }
   Rgb operator()(const ProductTexture& t) const { return set.lookup(t.a, at) * set.lookup(t.b, at); }
+  Rgb operator()(const MixTexture& t) const {
+    return mixed(set.lookup(t.a, at), set.lookup(t.b, at), set.lookup(t.amount, at));
+  }
+  Rgb operator()(const RootTexture& t) const { return root(set.lookup(t.input, at)); }
   Rgb operator()(const ThresholdTexture& t) const {
     const Rgb c = set.lookup(t.input, at);
     return {c.r >= t.threshold ? 1.0f : 0.0f, c.g >= t.threshold ? 1.0f : 0.0f,
@@ -142,6 +161,11 @@ struct MeanVisitor {
   Rgb operator()(const ScaleTexture& t) const { return set.mean(t.input) * t.scale; }
   // Exact where one of the two is constant.
   Rgb operator()(const ProductTexture& t) const { return set.mean(t.a) * set.mean(t.b); }
+  // Exact where the amount is constant, or both colours are.
+  Rgb operator()(const MixTexture& t) const {
+    return mixed(set.mean(t.a), set.mean(t.b), set.mean(t.amount));
+  }
+  Rgb operator()(const RootTexture& t) const { return root(set.mean(t.input)); }
   // That of the mean: of a cut-out's outline no more is known without looking everywhere.
   Rgb operator()(const ThresholdTexture& t) const {
     const Rgb c = set.mean(t.input);

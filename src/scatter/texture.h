@@ -53,10 +53,16 @@ struct ThresholdTexture {  // channel by channel 1 where the input is at least t
   int input = 0;
   float threshold = 0.5f;
 };
+struct MixTexture {  // (1 - amount) · a + amount · b
+  int a = 0, b = 0, amount = 0;
+};
+struct RootTexture {  // √ of what is not negative
+  int input = 0;
+};
 struct VertexColorTexture {};
 
 using Texture = std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture, ScaleTexture,
-                             ProductTexture, ThresholdTexture, VertexColorTexture>;
+                             ProductTexture, MixTexture, RootTexture, ThresholdTexture, VertexColorTexture>;
 
 // All textures of a world; a texture refers only to textures before it.
 struct TextureSet {

@@ -49,7 +49,8 @@ std::string rough(Distribution d, const FloatInput& u, const FloatInput& v) {
 }
 std::string b(int index) { return index == kNone ? "none" : "bsdf " + std::to_string(index); }
 const char* show(TextureChannel channel) {
-  constexpr const char* kNames[] = {"", ", red alone", ", green alone", ", blue alone", ", alpha alone"};
+  constexpr const char* kNames[] = {
+      "", ", red alone", ", green alone", ", blue alone", ", alpha alone", ", as a number"};
   return kNames[static_cast<int>(channel)];
 }
 const char* show(WrapMode mode) {
@@ -69,6 +70,10 @@ std::string kind(const TextureDesc& t) {
           },
           [](const ScaleTextureDesc& x) { return "scale of " + show(x.input) + " by " + show(x.scale); },
           [](const ProductTextureDesc& x) { return "product of " + show(x.a) + " and " + show(x.b); },
+          [](const MixTextureDesc& x) {
+            return "mix of " + show(x.a) + " and " + show(x.b) + " by " + show(x.amount);
+          },
+          [](const RootTextureDesc& x) { return "square root of " + show(x.input); },
           [](const ThresholdTextureDesc& x) { return show(x.input) + " cut at " + num(x.threshold); },
           [](const VertexColorTextureDesc& x) { return "vertex colours \"" + x.attribute + "\""; }},
       t.kind);
@@ -160,6 +165,7 @@ std::string kind(const ShapeDesc& s) {
             if (x.format == MeshFormat::serialized) text += " [" + std::to_string(x.shape_index) + "]";
             if (x.face_normals) text += ", face normals";
             if (x.flip_tex_coords) text += ", v flipped";
+            if (!x.smooth_without_normals) text += ", its own normals only";
             if (x.max_smooth_angle) text += ", smooth up to " + num(*x.max_smooth_angle) + "°";
             return text;
           },
@@ -212,7 +218,9 @@ std::string kind(const EmitterDesc& e) {
                  },
                  [](const ConstantEnvironmentDesc& x) { return "constant, radiance " + show(x.radiance); },
                  [](const EnvironmentMapDesc& x) {
-                   return "envmap " + x.filename + ", scale " + num(x.scale) + show(x.to_world);
+                   return "envmap " + x.filename + ", scale " + num(x.scale) +
+                          (x.projection == EnvironmentProjection::equal_area ? ", equal-area" : "") +
+                          (x.illuminance ? ", illuminance " + num(*x.illuminance) : "") + show(x.to_world);
                  },
                  [](const SunSkyDesc& x) {
                    return std::string(x.sun ? (x.sky ? "sunsky" : "sun") : "sky") + ", turbidity " +

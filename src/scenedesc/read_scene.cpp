@@ -43,13 +43,16 @@ SceneDesc read_scene(const std::string& filename, const ReadOptions& options) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool gltf = extension == ".gltf" || extension == ".glb";
-  if (extension != ".xml" && !gltf) {
+  const bool pbrt = extension == ".pbrt";
+  if (extension != ".xml" && !gltf && !pbrt) {
     if (std::error_code error; !std::filesystem::exists(filename, error))
       throw InputError("file not found: " + filename, "check the name");
     throw InputError(SourceLocation{filename, 0}, "no reader for files that end in \"" + extension + "\"",
-                     "Mitsuba (.xml) and glTF (.gltf, .glb) scenes can be read");
+                     "Mitsuba (.xml), pbrt-v4 (.pbrt) and glTF (.gltf, .glb) scenes can be read");
   }
-  SceneDesc scene = gltf ? read_gltf(filename, options) : read_mitsuba(filename, options);
+  SceneDesc scene = gltf   ? read_gltf(filename, options)
+                    : pbrt ? read_pbrt(filename, options)
+                           : read_mitsuba(filename, options);
   if (!options.environment.empty()) replace_environment(scene, options.environment);
   // glTF files hardly ever bring lights along, and are shown by whatever the viewer has; in the other formats
   // a scene without any is meant to be dark, or a mistake that should show.

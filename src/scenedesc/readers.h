@@ -32,6 +32,10 @@ SceneDesc read_gltf(const std::string& filename, const ReadOptions& options = {}
 // The same from memory; other files are taken from the folder of `filename`.
 SceneDesc parse_gltf(const std::string& bytes, const std::string& filename, const ReadOptions& options = {});
 
+// pbrt-v4. Names of files are relative to the folder of `filename`.
+SceneDesc read_pbrt(const std::string& filename, const ReadOptions& options = {});
+SceneDesc parse_pbrt(const std::string& text, const std::string& filename, const ReadOptions& options = {});
+
 MeshData read_mesh(const MeshFileDesc& file);
 // From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are
 // an error, degenerate triangles are left out, and all that was mended is noted.

@@ -42,7 +42,9 @@ struct FloatInput {
 
 enum class FilterMode { nearest, bilinear };
 enum class WrapMode { repeat, mirror, clamp };
-enum class TextureChannel { rgb, red, green, blue, alpha };
+// `scalar`: what float parameters read of pictures in pbrt: the alpha channel if there is one that is not 1
+// everywhere, else the mean of the channels.
+enum class TextureChannel { rgb, red, green, blue, alpha, scalar };
 
 // Texture coordinates: (u, v) = (0, 0) is the lower left corner of the picture, so v runs up and row 0 of the
 // file is at v = 1. `to_uv` maps the surface's coordinates to these. Formats whose v runs down (Mitsuba: v =
@@ -74,6 +76,12 @@ struct ScaleTextureDesc {
 struct ProductTextureDesc {  // of two inputs, channel by channel: vertex colours and a texture, say
   ColorInput a{Rgb(1)}, b{Rgb(1)};
 };
+struct MixTextureDesc {  // (1 - amount) · a + amount · b, channel by channel
+  ColorInput a{Rgb(0)}, b{Rgb(1)}, amount{Rgb(0.5f)};
+};
+struct RootTextureDesc {  // the square root, channel by channel: pbrt's widths of microfacets
+  ColorInput input;
+};
 struct ThresholdTextureDesc {  // 1 where the input is at least the threshold, else 0: cut-outs with hard
                                // edges
   ColorInput input;
@@ -86,7 +94,7 @@ struct TextureDesc {
   std::string id;
   SourceLocation where;
   std::variant<BitmapTextureDesc, CheckerboardTextureDesc, ScaleTextureDesc, ProductTextureDesc,
-               ThresholdTextureDesc, VertexColorTextureDesc>
+               MixTextureDesc, RootTextureDesc, ThresholdTextureDesc, VertexColorTextureDesc>
       kind;
 };
 
@@ -211,6 +219,7 @@ struct MeshFileDesc {
   // BitmapTextureDesc) comes on top.
   bool flip_tex_coords = false;
   std::optional<float> max_smooth_angle;  // degrees; normals are made anew
+  bool smooth_without_normals = true;     // false: a file without normals has face normals (pbrt)
 };
 // A mesh that the reader already holds: checked (see check_mesh) and never changed again. Shapes that share
 // it share its geometry.
@@ -307,10 +316,18 @@ struct DirectionalLightDesc {
 struct ConstantEnvironmentDesc {
   Rgb radiance{1};
 };
-struct EnvironmentMapDesc {  // latitude-longitude, +y up, as in Mitsuba
+enum class EnvironmentProjection {
+  latitude_longitude,  // +y up, as in Mitsuba
+  equal_area           // pbrt-v4: octahedral (Clarberg 2008) with +z up; such pictures are square
+};
+struct EnvironmentMapDesc {
   std::string filename;
   float scale = 1;
   Transform to_world;
+  EnvironmentProjection projection = EnvironmentProjection::latitude_longitude;
+  // Equal-area maps only, on top of `scale`: what pbrt-v4 computes as the illuminance of the local +z (half
+  // of the true one) is made this.
+  std::optional<float> illuminance = std::nullopt;
 };
 struct SunSkyDesc {  // the models "sun", "sky" and "sunsky"
   bool sun = true, sky = true;

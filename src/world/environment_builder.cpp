@@ -7,6 +7,7 @@
 #include "emitters/daylight.h"
 #include "emitters/environment.h"
 #include "film/image_io.h"
+#include "world/equal_area.h"
 
 namespace lumirank::world {
 
@@ -64,6 +65,31 @@ void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::Em
     notes_.warn(from.where,
                 std::to_string(mended) + " values of " + map.filename + " are negative or not finite",
                 "0 in their place");
+  if (map.projection == sd::EnvironmentProjection::equal_area)
+    add_equal_area(map, std::move(image), from);
+  else
+    add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
+}
+
+void EnvironmentBuilder::add_equal_area(const sd::EnvironmentMapDesc& map, film::Image image,
+                                        const sd::EmitterDesc& from) {
+  // The latitude-longitude map has its pole at +y, that of pbrt at +z, and longitude 0 at -z and at +x.
+  Transform to_pole;
+  to_pole.m = {0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+  const Frame frame = orientation(map.to_world * to_pole, from.where);
+  if (image.width != image.height)
+    notes_.warn(from.where, map.filename + " is not square, so no equal-area map (pbrt refuses it)",
+                "as a map of latitudes and longitudes with +z up, as in pbrt-v3");
+  else
+    image = to_latitude_longitude(image);
+  if (map.illuminance) {
+    // pbrt-v4 weighs each texel by 2π over the number of all of them, which is half of its solid angle.
+    const double lux = 0.5 * illuminance_of_pole(image);
+    if (!(lux > 0))
+      throw InputError(from.where, map.filename + " is black above the horizon, so it has no illuminance",
+                       "leave \"illuminance\" out");
+    for (Rgb& c : image.pixels) c *= static_cast<float>(*map.illuminance / lux);
+  }
   add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emitters/emitter.h"
+#include "film/image.h"
 #include "scenedesc/scene_desc.h"
 #include "world/notes.h"
 
@@ -29,6 +30,8 @@ class EnvironmentBuilder {
   emitters::EnvironmentEmitter build();
 
  private:
+  void add_equal_area(const scenedesc::EnvironmentMapDesc& map, film::Image image,
+                      const scenedesc::EmitterDesc& from);
   void add(emitters::EnvironmentEmitter part, const scenedesc::EmitterDesc& from);
 
   Notes& notes_;

@@ -69,9 +69,9 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
   auto& [kind, name, numbers, shines, held] = key;
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind)) {
     name = file->filename;
-    numbers = {static_cast<float>(file->format), static_cast<float>(file->shape_index),
-               file->face_normals ? 1.0f : 0.0f, file->flip_tex_coords ? 1.0f : 0.0f,
-               file->max_smooth_angle.value_or(-1.0f)};
+    numbers = {static_cast<float>(file->format),       static_cast<float>(file->shape_index),
+               file->face_normals ? 1.0f : 0.0f,       file->flip_tex_coords ? 1.0f : 0.0f,
+               file->max_smooth_angle.value_or(-1.0f), file->smooth_without_normals ? 1.0f : 0.0f};
   } else if (const auto* mesh = std::get_if<sd::InlineMeshDesc>(&shape.kind)) {
     if (!mesh->mesh) throw InternalError("MeshStore: an inline mesh without its data");
     held = mesh->mesh.get();

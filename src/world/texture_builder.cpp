@@ -45,6 +45,9 @@ std::vector<Rgb> take_pixels(film::LoadedImage& image, scenedesc::TextureChannel
     if (image.alpha.empty())
       throw InputError("the picture has no alpha channel", "give one that has, or another channel");
     std::transform(image.alpha.begin(), image.alpha.end(), pixels.begin(), [](float a) { return Rgb(a); });
+  } else if (channel == scalar) {
+    const bool cut = std::any_of(image.alpha.begin(), image.alpha.end(), [](float a) { return a != 1; });
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = Rgb(cut ? image.alpha[i] : mean(pixels[i]));
   } else if (channel != rgb) {
     const int k = channel == red ? 0 : (channel == green ? 1 : 2);
     for (Rgb& c : pixels) c = Rgb(c[k]);
@@ -105,6 +108,11 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
   } else if (const auto* product = std::get_if<scenedesc::ProductTextureDesc>(&t.kind)) {
     const int a = operand(product->a, t.where);
     built = add(scatter::ProductTexture{a, operand(product->b, t.where)});
+  } else if (const auto* mix = std::get_if<scenedesc::MixTextureDesc>(&t.kind)) {
+    const int a = operand(mix->a, t.where), second = operand(mix->b, t.where);
+    built = add(scatter::MixTexture{a, second, operand(mix->amount, t.where)});
+  } else if (const auto* root = std::get_if<scenedesc::RootTextureDesc>(&t.kind)) {
+    built = add(scatter::RootTexture{operand(root->input, t.where)});
   } else if (const auto* cut = std::get_if<scenedesc::ThresholdTextureDesc>(&t.kind)) {
     if (!std::isfinite(cut->threshold))
       throw InputError(t.where, "the texture's threshold is not finite", "give a number");

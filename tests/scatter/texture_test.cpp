@@ -146,5 +146,22 @@ TEST(TextureSet, ProductsAndThresholds) {
   EXPECT_EQ(set.lookup(6, {{0.49f, 0.5f}, Rgb(1)}), Rgb(0, 0, 0));
 }
 
+TEST(TextureSet, MixesAndRoots) {
+  TextureSet set{{VertexColorTexture{}, ConstantTexture{{1, 0, 0.5f}}, ConstantTexture{Rgb(0.25f)},
+                  MixTexture{0, 1, 2}, numbered(), RootTexture{4}, MixTexture{2, 4, 4}, RootTexture{2}}};
+  // ¾ of the vertex colour and ¼ of the constant.
+  EXPECT_EQ(set.lookup(3, {{0, 0}, {1, 0.5f, 0}}), Rgb(1, 0.375f, 0.125f));
+  EXPECT_EQ(set.mean(3), Rgb(1, 0.75f, 0.875f));
+  EXPECT_EQ(set.mean(7), Rgb(0.5f));
+  // Half way between columns 1 and 2 the red value x is 1.5 with the slope 4: √x has 4/(2√1.5), and the mix
+  // ¼ (1 - x) + x² has (2x - ¼) · 4.
+  const SurfaceUv middle{{0.5f, 0.5f}, Rgb(1)};
+  EXPECT_NEAR(set.lookup(5, middle).r, std::sqrt(1.5f), 1e-5f);
+  EXPECT_NEAR(set.lookup(6, middle).r, 2.125f, 1e-5f);
+  // Green is ½ there and does not change.
+  EXPECT_NEAR(set.gradient(5, middle).x, 2 / std::sqrt(1.5f) * 0.2126f, 1e-4f);
+  EXPECT_NEAR(set.gradient(6, middle).x, 11 * 0.2126f, 1e-4f);
+}
+
 }  // namespace
 }  // namespace lumirank::scatter

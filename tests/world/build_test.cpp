@@ -284,6 +284,18 @@ TEST(Build, AMaskReadsTheAlphaOfItsPicture) {
   const int material = static_cast<int>(w.rays().placements()[0].material);
   EXPECT_FLOAT_EQ(w.materials().opacity(material, {{0.25f, 0.5f}}), 0.2f);
   EXPECT_FLOAT_EQ(w.materials().opacity(material, {{0.75f, 0.5f}}), 1);
+  // As a number it is its alpha too, because that is not 1 everywhere; a picture without reads its mean.
+  bitmap.channel = sd::TextureChannel::scalar;
+  desc.textures[static_cast<std::size_t>(alpha)].kind = bitmap;
+  { std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes), sizeof bytes); }
+  EXPECT_FLOAT_EQ(build(desc).materials().opacity(material, {{0.25f, 0.5f}}), 0.2f);
+  std::remove(path.c_str());
+  bitmap.filename = ::testing::TempDir() + "lumirank_world_colours.pfm";
+  film::write_image(bitmap.filename, {film::Image(1, 1, Rgb(0.9f, 0, 0)), {}});
+  desc.textures[static_cast<std::size_t>(alpha)].kind = bitmap;
+  desc.textures[static_cast<std::size_t>(red)].kind = bitmap;
+  EXPECT_FLOAT_EQ(build(desc).materials().opacity(material, {{0.25f, 0.5f}}), 0.3f);
+  std::remove(bitmap.filename.c_str());
   bitmap.filename = ::testing::TempDir() + "lumirank_world_no_alpha.pfm";
   bitmap.channel = sd::TextureChannel::alpha;
   film::write_image(bitmap.filename, {film::Image(1, 1), {}});

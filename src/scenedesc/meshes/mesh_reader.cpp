@@ -56,7 +56,7 @@ MeshData read_mesh(const MeshFileDesc& file) {
       throw InputError({file.filename, 0}, "the largest smooth angle is negative",
                        "give an angle from 0 to 180 degrees");
     make_creased_normals(mesh, *file.max_smooth_angle);
-  } else if (mesh.normals.empty()) {
+  } else if (mesh.normals.empty() && file.smooth_without_normals) {
     // As in Mitsuba: without normals of its own a mesh is smooth unless it is said to be flat.
     make_smooth_normals(mesh);
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/rgb.h"
+#include "base/spectrum.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -19,5 +20,10 @@ struct MetalIndex {
 // spectrum, so that the values are those that its users know).
 std::optional<MetalIndex> metal_index(const std::string& name);
 std::string metal_names();
+// The measurements themselves.
+struct MetalSpectra {
+  SampledSpectrum n, k;
+};
+std::optional<MetalSpectra> metal_spectra(const std::string& name);
 
 }  // namespace lumirank::scenedesc::mitsuba

@@ -131,20 +131,26 @@ const std::map<std::string, std::vector<Line>>& tables() {
 
 }  // namespace
 
-std::optional<MetalIndex> metal_index(const std::string& name) {
-  if (name == "none") return MetalIndex{Rgb(0), Rgb(1)};  // reflects everything
+std::optional<MetalSpectra> metal_spectra(const std::string& name) {
   // "Cu_palik" is another measurement of Cu.
   const auto found = tables().find(name.substr(0, name.find('_')));
   if (found == tables().end()) return std::nullopt;
-  SampledSpectrum n, k;
+  MetalSpectra out;
   for (const Line& line : found->second) {
-    n.wavelengths.push_back(line.nm), n.values.push_back(line.n);
-    k.wavelengths.push_back(line.nm), k.values.push_back(line.k);
+    out.n.wavelengths.push_back(line.nm), out.n.values.push_back(line.n);
+    out.k.wavelengths.push_back(line.nm), out.k.values.push_back(line.k);
   }
+  return out;
+}
+
+std::optional<MetalIndex> metal_index(const std::string& name) {
+  if (name == "none") return MetalIndex{Rgb(0), Rgb(1)};  // reflects everything
+  const auto measured = metal_spectra(name);
+  if (!measured) return std::nullopt;
   const auto positive = [](Rgb c) {
     return Rgb(std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f));
   };
-  return MetalIndex{positive(emission_to_rgb(n)), positive(emission_to_rgb(k))};
+  return MetalIndex{positive(emission_to_rgb(measured->n)), positive(emission_to_rgb(measured->k))};
 }
 
 std::string metal_names() {

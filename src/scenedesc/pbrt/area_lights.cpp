@@ -1,0 +1,99 @@
+// What an area light does to a shape.
+#include <algorithm>
+#include <cmath>
+
+#include "scenedesc/pbrt/shape_kinds.h"
+
+namespace lumirank::scenedesc::pbrt {
+
+namespace {
+
+float area_of(const MeshData& mesh, std::size_t triangle, const Transform& to_world) {
+  const auto corner = [&](std::size_t k) {
+    return to_world.point(mesh.positions[mesh.indices[3 * triangle + k]]);
+  };
+  const Vec3f a = corner(0);
+  return 0.5f * length(cross(corner(1) - a, corner(2) - a));
+}
+
+// How many lights pbrt makes of the shape: "power" is that of each.
+std::size_t light_count(Params& p, const std::string& title, std::size_t triangles) {
+  if (title.find("\"bilinearmesh\"") != std::string::npos)
+    return std::max<std::size_t>(1, p.numbers("indices", ParamType::integer).size() / 4);
+  const bool quadric = title.find("\"disk\"") != std::string::npos ||
+                       title.find("\"cylinder\"") != std::string::npos ||
+                       title.find("\"sphere\"") != std::string::npos;
+  return quadric ? 1 : triangles;
+}
+
+// Radiance over "L" that makes each of pbrt's lights emit `power`, if they are equally large.
+float power_factor(Reader& reader, Params& p, const ShapeDesc& shape, const AreaLight& light) {
+  const float sides = light.two_sided ? 2 : 1;
+  if (const auto* sphere = std::get_if<SphereDesc>(&shape.kind))  // of the untransformed one, as in pbrt
+    return light.power / (sides * kPi * 4 * kPi * sphere->radius * sphere->radius);
+  const MeshData& mesh = *std::get<InlineMeshDesc>(shape.kind).mesh;
+  const std::size_t lights = light_count(p, p.title(), mesh.triangle_count());
+  const Transform to_world = lights == 1 ? Transform{} : shape.to_world;
+  double sum = 0;
+  float least = kInfinity, most = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const float area = area_of(mesh, t, to_world);
+    sum += area, least = std::min(least, area), most = std::max(most, area);
+  }
+  if (lights == mesh.triangle_count() && most > 1.01f * least)
+    reader.warn(p.where(), "the same power for each of many triangles of different sizes (" + p.title() + ")",
+                "the same radiance for all, of the same power together");
+  return static_cast<float>(static_cast<double>(lights) * light.power / (sides * kPi * sum));
+}
+
+MeshData moved(const MeshData& mesh, float distance) {
+  MeshData out = mesh;
+  std::vector<Vec3f> normals = mesh.normals;
+  if (normals.empty()) {
+    normals.resize(mesh.positions.size());
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+      const auto* k = &mesh.indices[t];
+      const Vec3f a = mesh.positions[k[0]];
+      const Vec3f n = cross(mesh.positions[k[1]] - a, mesh.positions[k[2]] - a);
+      for (int i = 0; i < 3; ++i) normals[k[i]] += n;
+    }
+  }
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (const float len = length(normals[i]); len > 0) out.positions[i] += normals[i] * (distance / len);
+  return out;
+}
+
+// The lamp's back: the same surface turned round, 10⁻⁴ of its size behind the front.
+ShapeDesc back_of(const ShapeDesc& front) {
+  constexpr float kGap = 1e-4f;
+  ShapeDesc out = front;
+  out.flip_normals = !front.flip_normals;
+  const float side = front.flip_normals ? 1 : -1;
+  if (auto* sphere = std::get_if<SphereDesc>(&out.kind)) {
+    sphere->radius *= 1 + side * kGap;
+    return out;
+  }
+  const auto& held = std::get<InlineMeshDesc>(front.kind);
+  Vec3f low(held.mesh->positions[0]), high = low;
+  for (const Vec3f& p : held.mesh->positions) low = min(low, p), high = max(high, p);
+  const Vec3f far = max(max(low, -low), max(high, -high));
+  out.kind = InlineMeshDesc{std::make_shared<const MeshData>(
+                                moved(*held.mesh, side * kGap * (length(high - low) + 0.1f * length(far)))),
+                            held.name + " (back)"};
+  return out;
+}
+
+}  // namespace
+
+std::optional<ShapeDesc> shine(Reader& reader, Params& p, ShapeDesc& shape, const AreaLight& light) {
+  shape.emitter = AreaEmitterDesc{light.radiance, shape.id, light.where};
+  if (light.power <= 0 && !light.two_sided) return std::nullopt;
+  // Both need the mesh itself.
+  if (const auto* file = std::get_if<MeshFileDesc>(&shape.kind))
+    shape.kind = InlineMeshDesc{std::make_shared<const MeshData>(read_mesh(*file)), file->filename};
+  if (light.power > 0) shape.emitter->radiance.value *= power_factor(reader, p, shape, light);
+  if (!light.two_sided) return std::nullopt;
+  return back_of(shape);
+}
+
+}  // namespace lumirank::scenedesc::pbrt

@@ -1,0 +1,164 @@
+// Lights, with the units that spectra.h tells of.
+#include <cmath>
+
+#include "scenedesc/pbrt/reader.h"
+
+namespace lumirank::scenedesc::pbrt {
+
+namespace {
+
+// "scale", and what the film makes of radiance.
+float scale_of(Params& p) {
+  const float scale = p.number("scale", 1);
+  if (!(scale >= 0)) p.fail("scale", "is negative", "give 0 or more");
+  return scale * p.reader().imaging_ratio();
+}
+
+Rgb spectrum(Params& p, const char* name) {
+  return constant_color(p, name, Intent::illuminant)
+      .value_or(from_space(Rgb(1), p.reader().state().space, Intent::illuminant));
+}
+
+// `emitted`: lumens of a light of intensity or radiance 1.
+float power_scale(Params& p, float emitted) {
+  const float power = p.number("power", -1);
+  // The film's ratio stays, "scale" is replaced by what meets the power together with it, as in pbrt.
+  return power > 0 ? power / emitted : 1;
+}
+
+Vec3f end_of(Params& p, Vec3f from) {
+  const Vec3f to = p.point3("to", {0, 0, 1});
+  if (!(length(to - from) > 0)) p.fail("to", "is the same point as \"from\"");
+  return to;
+}
+
+PointLightDesc point(Params& p, const Transform& to_world) {
+  PointLightDesc out;
+  out.position = to_world.point(p.point3("from", {0, 0, 0}));
+  out.intensity = spectrum(p, "I") * (scale_of(p) * power_scale(p, 4 * kPi));
+  return out;
+}
+
+SpotLightDesc spot(Reader& reader, Params& p, const Transform& to_world) {
+  SpotLightDesc out;
+  const Vec3f from = p.point3("from", {0, 0, 0}), to = end_of(p, from);
+  const Vec3f position = to_world.point(from), axis = to_world.vector(to - from);
+  const Vec3f up = std::abs(axis.y) < 0.9f * length(axis) ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0};
+  out.to_world = Transform::look_at(position, position + axis, up);
+  const float cone = p.number("coneangle", 30), delta = p.number("conedeltaangle", 5);
+  if (!(cone > 0 && cone <= 180)) p.fail("coneangle", "is not between 0 and 180");
+  if (!(delta >= 0 && delta <= cone)) p.fail("conedeltaangle", "is not between 0 and \"coneangle\"");
+  out.cutoff_angle = std::min(cone, 179.9f);
+  out.beam_width = std::max(out.cutoff_angle - delta, 0.0f);
+  const float end = std::cos(cone * (kPi / 180)), start = std::cos((cone - delta) * (kPi / 180));
+  out.intensity =
+      spectrum(p, "I") * (scale_of(p) * power_scale(p, 2 * kPi * ((1 - start) + (start - end) / 2)));
+  if (delta > 0)
+    reader.warn_once(p.where(), "the smooth edge of pbrt's spot lights",
+                     "an edge that falls off with the angle");
+  return out;
+}
+
+ProfileLightDesc goniometric(Reader& reader, Params& p, const Transform& to_world) {
+  ProfileLightDesc out;
+  out.kind = ProfileLightDesc::Kind::image;
+  // pbrt swaps y and z of these lights.
+  Transform swap;
+  swap.m = {1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+  out.to_world = to_world * swap;
+  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "picture");
+  out.intensity = spectrum(p, "I") * scale_of(p);
+  if (p.number("power", -1) > 0)
+    reader.warn(p.where_of("power"), "the power of a light with a picture", "\"scale\" alone");
+  return out;
+}
+
+DirectionalLightDesc distant(Params& p, const Transform& to_world) {
+  DirectionalLightDesc out;
+  const Vec3f from = p.point3("from", {0, 0, 0});
+  out.direction = normalize(to_world.vector(end_of(p, from) - from));
+  out.irradiance = spectrum(p, "L") * scale_of(p);
+  const float illuminance = p.number("illuminance", -1);
+  if (illuminance > 0) out.irradiance *= illuminance;
+  return out;
+}
+
+decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform& to_world) {
+  const float scale = scale_of(p), illuminance = p.number("illuminance", -1);
+  if (p.has("portal")) {
+    p.ignore({"portal"});
+    reader.warn(p.where_of("portal"), "portals of environments", "the whole environment");
+  }
+  if (!p.has("filename")) {
+    // A uniform sky of radiance L has the illuminance πL.
+    return ConstantEnvironmentDesc{spectrum(p, "L") * (scale * (illuminance > 0 ? illuminance / kPi : 1))};
+  }
+  if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
+  EnvironmentMapDesc out;
+  out.filename = reader.existing_file(p.text("filename", ""), p.where_of("filename"), "environment map");
+  out.scale = scale;
+  if (illuminance > 0) out.illuminance = illuminance;
+  out.projection = EnvironmentProjection::equal_area;
+  out.to_world = to_world;
+  return out;
+}
+
+}  // namespace
+
+void Reader::read_light(Params& p, const std::string& type) {
+  if (in_object_) {
+    warn_once(p.where(), "light sources in objects", "");
+    p.ignore_all();
+    return;
+  }
+  EmitterDesc out;
+  out.where = p.where();
+  const Transform& to_world = state_.to_world;
+  if (type == "point") {
+    out.kind = point(p, to_world);
+  } else if (type == "spot") {
+    out.kind = spot(*this, p, to_world);
+  } else if (type == "distant") {
+    out.kind = distant(p, to_world);
+  } else if (type == "infinite") {
+    out.kind = infinite(*this, p, to_world);
+  } else if (type == "goniometric") {
+    out.kind = goniometric(*this, p, to_world);
+  } else if (type == "projection") {
+    warn(p.where(), "the light \"" + type + "\"", "");
+    p.ignore_all();
+    return;
+  } else {
+    throw InputError(p.where(), "the light " + in_quotes(type) + " is not known",
+                     "point, spot, distant, infinite, goniometric and projection are");
+  }
+  scene_.emitters.push_back(std::move(out));
+}
+
+void Reader::read_area_light(Params& p, const std::string& type) {
+  if (type != "diffuse")
+    throw InputError(p.where(), "the area light " + in_quotes(type) + " is not known", "diffuse is");
+  auto light = std::make_shared<AreaLight>();
+  light->where = p.where();
+  light->two_sided = p.flag("twosided", false);
+  light->power = p.number("power", -1);
+  const float scale = scale_of(p);
+  light->radiance = {Rgb(0), kNone};
+  if (p.has("filename")) {
+    if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
+    BitmapTextureDesc picture;
+    picture.filename = existing_file(p.text("filename", ""), p.where_of("filename"), "picture");
+    picture.wrap_u = picture.wrap_v = WrapMode::clamp;
+    const int texture = add_texture("", p.where(), std::move(picture));
+    light->radiance.texture = add_texture("", p.where(), ScaleTextureDesc{{Rgb(0), texture}, Rgb(scale)});
+    if (light->power > 0) {
+      warn(p.where_of("power"), "the power of a lamp with a picture", "\"scale\" alone");
+      light->power = -1;
+    }
+  } else {
+    light->radiance.value = spectrum(p, "L") * scale;
+  }
+  state_.light = std::move(light);
+}
+
+}  // namespace lumirank::scenedesc::pbrt

@@ -1,0 +1,288 @@
+// pbrt's materials reflect on both sides, so opaque ones become "twosided".
+#include <algorithm>
+#include <cmath>
+
+#include "scenedesc/pbrt/reader.h"
+
+namespace lumirank::scenedesc::pbrt {
+
+namespace {
+
+using Kind = decltype(BsdfDesc::kind);
+
+// Trowbridge-Reitz widths: α = √roughness unless "remaproughness" is false (TrowbridgeReitzDistribution of
+// pbrt-v4); below 10⁻³ pbrt takes the surface for smooth.
+struct Roughness {
+  FloatInput u, v;
+};
+
+FloatInput alpha_of(Reader& reader, Params& p, const char* name, FloatInput roughness, bool remap) {
+  if (roughness.texture == kNone) {
+    if (!(roughness.value >= 0)) p.fail(name, "is negative");
+    const float alpha = remap ? std::sqrt(roughness.value) : roughness.value;
+    return {alpha < 1e-3f ? 0 : alpha};
+  }
+  if (!remap) return roughness;
+  return {0,
+          reader.add_texture("", p.where_of(name), RootTextureDesc{ColorInput{Rgb(0), roughness.texture}})};
+}
+
+Roughness roughness(Reader& reader, Params& p, const std::string& prefix, bool remap) {
+  // Parameter names live as long as the list that remembers having been asked for them.
+  static const std::map<std::string, std::array<const char*, 3>> names = {
+      {"", {"roughness", "uroughness", "vroughness"}},
+      {"interface.", {"interface.roughness", "interface.uroughness", "interface.vroughness"}},
+      {"conductor.", {"conductor.roughness", "conductor.uroughness", "conductor.vroughness"}}};
+  const auto& [both, along_u, along_v] = names.at(prefix);
+  const FloatInput same = reader.scalar(p, both, {0});
+  const FloatInput u = reader.scalar(p, along_u, same), v = reader.scalar(p, along_v, same);
+  const bool equal = u.value == v.value && u.texture == v.texture;
+  Roughness out;
+  out.u = alpha_of(reader, p, p.has(along_u) ? along_u : both, u, remap);
+  out.v = equal ? out.u : alpha_of(reader, p, p.has(along_v) ? along_v : both, v, remap);
+  return out;
+}
+
+// The dielectric layer of coateddiffuse and coatedconductor has a thickness and may scatter.
+void ignore_layer(Reader& reader, Params& p) {
+  p.ignore({"thickness", "maxdepth", "nsamples", "g"});
+  const ColorInput albedo = reader.color(p, "albedo", {Rgb(0), kNone}, Intent::albedo);
+  if (albedo.texture != kNone || !is_black(albedo.value))
+    reader.warn(p.where_of("albedo"), "a scattering medium in the coating of " + p.title(),
+                "a clear coating");
+}
+
+}  // namespace
+
+class MaterialMaker {
+ public:
+  MaterialMaker(Reader& reader, Params& p, const std::string& id)
+      : reader_(reader), p_(p), id_(id), remap_(p.flag("remaproughness", true)) {}
+
+  int make(const std::string& type) {
+    if (type == "diffuse") return two_sided(DiffuseDesc{color("reflectance", 0.5f)});
+    if (type == "coateddiffuse") return coated_diffuse();
+    if (type == "conductor") return two_sided(conductor("", {}));
+    if (type == "coatedconductor") return coated_conductor();
+    if (type == "dielectric") return dielectric();
+    if (type == "thindielectric") return detailed(add(ThinDielectricDesc{dielectric_eta(p_, "eta", 1.5f)}));
+    if (type == "diffusetransmission") return diffuse_transmission();
+    if (type == "mix") return mix();
+    if (type == "interface" || type == "none" || type.empty()) return add(NullBsdfDesc{});
+    if (type == "hair") return hair();
+    if (type == "subsurface") return subsurface();
+    if (type == "measured") {
+      reader_.warn(p_.where(), "the material \"measured\"", "diffuse of 0.5");
+      p_.ignore({"filename"});
+      return two_sided(DiffuseDesc{});
+    }
+    throw InputError(
+        p_.where(), "the material " + in_quotes(type) + " is not known",
+        "diffuse, coateddiffuse, conductor, coatedconductor, dielectric, thindielectric, "
+        "diffusetransmission, mix, interface, hair, subsurface and measured are; scenes of pbrt-v3 "
+        "are converted by pbrt --upgrade");
+  }
+
+ private:
+  int add(Kind kind) { return reader_.add_bsdf(id_, p_.where(), std::move(kind)); }
+  ColorInput color(const char* name, float fallback) {
+    return reader_.color(p_, name, {Rgb(fallback), kNone}, Intent::albedo);
+  }
+
+  // "normalmap" and "displacement" around it.
+  int detailed(int bsdf) {
+    if (p_.has("normalmap")) {
+      BitmapTextureDesc map;
+      map.filename = reader_.existing_file(p_.text("normalmap", ""), p_.where_of("normalmap"), "normal map");
+      map.raw = true;
+      bsdf = add(NormalMapDesc{reader_.add_texture("", p_.where_of("normalmap"), map), bsdf});
+    }
+    p_.ignore({"normalmap"});
+    if (p_.has("displacement")) {
+      const FloatInput height = reader_.scalar(p_, "displacement", {0});
+      // pbrt's bump mapping: the surface's normal as if it were moved along itself.
+      if (height.texture != kNone) bsdf = add(BumpMapDesc{height.texture, 1, bsdf});
+    }
+    p_.ignore({"displacement"});
+    return bsdf;
+  }
+  int two_sided(Kind kind) {
+    const int front = detailed(add(std::move(kind)));
+    return add(TwoSidedDesc{front, front});
+  }
+
+  ConductorDesc conductor(const std::string& prefix, std::optional<float> outside) {
+    const bool coated = !prefix.empty();
+    const char* eta = coated ? "conductor.eta" : "eta";
+    const char* k = coated ? "conductor.k" : "k";
+    ConductorDesc out;
+    const Roughness r = roughness(reader_, p_, prefix, remap_);
+    out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
+    if (p_.has("reflectance")) {
+      if (p_.has(eta) || p_.has(k))
+        p_.fail("reflectance", "is given beside \"" + std::string(eta) + "\" or \"" + k + "\"",
+                "keep one of them");
+      reflecting(out);
+    } else {
+      const ConductorIndex index = conductor_index(p_, eta, k);
+      out.eta = index.eta, out.k = index.k;
+    }
+    if (outside) out.eta = out.eta / *outside, out.k = out.k / *outside;
+    return out;
+  }
+  // The index of a metal of a given reflectance at normal incidence, with η = 1 (pbrt: k = 2√r / √(1 - r)).
+  void reflecting(ConductorDesc& out) {
+    const ColorInput r = color("reflectance", 0.5f);
+    if (r.texture != kNone) {
+      reader_.warn(p_.where_of("reflectance"), "Fresnel reflection of a textured metal",
+                   "the same reflectance at all angles");
+      out.eta = Rgb(0), out.k = Rgb(1), out.specular_reflectance = r;
+      return;
+    }
+    out.eta = Rgb(1);
+    for (int i = 0; i < 3; ++i) {
+      const float value = std::clamp(r.value[i], 0.0f, 0.9999f);
+      out.k[i] = 2 * std::sqrt(value) / std::sqrt(1 - value);
+    }
+  }
+
+  // The layer over what is nested; pbrt walks at random between the two (LayeredBxDF).
+  int coated(int nested, const char* eta, const std::string& prefix) {
+    CoatingDesc out;
+    out.nested = nested;
+    out.eta = dielectric_eta(p_, eta, 1.5f);
+    const Roughness r = roughness(reader_, p_, prefix, remap_);
+    out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
+    ignore_layer(reader_, p_);
+    return two_sided(out);
+  }
+  int coated_diffuse() { return coated(add(DiffuseDesc{color("reflectance", 0.5f)}), "eta", ""); }
+  int coated_conductor() {
+    const float layer = dielectric_eta(p_, "interface.eta", 1.5f);
+    p_.ignore({"interface.thickness"});
+    return coated(add(conductor("conductor.", layer)), "interface.eta", "interface.");
+  }
+
+  int dielectric() {
+    DielectricDesc out;
+    out.eta = dielectric_eta(p_, "eta", 1.5f);
+    const Roughness r = roughness(reader_, p_, "", remap_);
+    out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
+    return detailed(add(out));
+  }
+
+  int diffuse_transmission() {
+    const ColorInput reflectance = color("reflectance", 0.25f);
+    const ColorInput transmittance = color("transmittance", 0.25f);
+    const float scale = p_.number("scale", 1);
+    if (transmittance.texture != kNone || !is_black(transmittance.value))
+      reader_.warn(p_.where(), "diffuse transmission", "its reflection alone");
+    ColorInput out = reflectance;
+    if (out.texture == kNone)
+      out.value = clamp_below(out.value * scale, 1);
+    else if (scale != 1)
+      out.texture = reader_.add_texture("", p_.where(), ScaleTextureDesc{reflectance, Rgb(scale)});
+    return two_sided(DiffuseDesc{out});
+  }
+
+  int mix() {
+    const auto names = p_.texts("materials");
+    if (names.size() != 2)
+      p_.fail("materials", "names " + std::to_string(names.size()) + " materials; 2 are needed");
+    const FloatInput amount = reader_.scalar(p_, "amount", {0.5f});
+    if (amount.texture == kNone && !(amount.value >= 0 && amount.value <= 1))
+      p_.fail("amount", "is not between 0 and 1");
+    MixtureDesc out;
+    for (int k = 0; k < 2; ++k)
+      out.parts.push_back(
+          {amount, k == 0,
+           reader_.named_material(names[static_cast<std::size_t>(k)], p_.where_of("materials"))});
+    return add(out);
+  }
+
+  int subsurface() {
+    reader_.warn(p_.where(), "subsurface scattering", "a rough plastic");
+    PlasticDesc out;
+    out.eta = p_.number("eta", 1.33f);
+    out.diffuse_reflectance = color("reflectance", 0.5f);
+    out.nonlinear = true, out.distribution = Distribution::ggx;
+    out.alpha = roughness(reader_, p_, "", remap_).u;
+    p_.ignore({"name", "sigma_a", "sigma_s", "mfp", "g", "scale"});
+    return two_sided(out);
+  }
+
+  int hair();
+
+  Reader& reader_;
+  Params& p_;
+  const std::string& id_;
+  const bool remap_;
+};
+
+// Kajiya-Kay in place of pbrt's model (Chiang et al. 2016): the colour of the fibre from its absorption as
+// that paper inverts it (section 4.2), the exponent from the width of the highlight.
+int MaterialMaker::hair() {
+  const float beta_m = p_.number("beta_m", 0.3f), beta_n = p_.number("beta_n", 0.3f);
+  p_.ignore({"alpha", "eta"});
+  Rgb sigma;
+  HairDesc out;
+  if (p_.has("reflectance") || p_.is_texture("reflectance")) {
+    out.diffuse_reflectance = color("reflectance", 0.5f);
+    p_.ignore({"sigma_a", "eumelanin", "pheomelanin"});
+  } else {
+    if (const auto given = constant_color(p_, "sigma_a", Intent::unbounded)) {
+      sigma = *given;
+      p_.ignore({"eumelanin", "pheomelanin"});
+    } else {
+      // Absorption of the two pigments (d'Eon et al. 2011, table 1).
+      const bool stated = p_.has("eumelanin") || p_.has("pheomelanin");
+      const float eu = p_.number("eumelanin", stated ? 0 : 1.3f), pheo = p_.number("pheomelanin", 0);
+      sigma = Rgb(0.419f, 0.697f, 1.37f) * eu + Rgb(0.187f, 0.4f, 1.05f) * pheo;
+    }
+    const float b = beta_n, width = 5.969f - 0.215f * b + 2.532f * b * b - 10.73f * b * b * b +
+                                    5.574f * b * b * b * b + 0.245f * b * b * b * b * b;
+    for (int i = 0; i < 3; ++i) out.diffuse_reflectance.value[i] = std::exp(-width * std::sqrt(sigma[i]));
+  }
+  // A lobe cosⁿ has about the variance 1/n, that of pbrt about β².
+  const float width = std::max(0.02f, 0.726f * beta_m + 0.812f * beta_m * beta_m);
+  out.exponent = {std::clamp(1 / (width * width), 1.0f, 1000.0f)};
+  reader_.warn_once(p_.where(), "pbrt's model of hair", "Kajiya-Kay of the same colour");
+  return add(out);
+}
+
+int Reader::make_material(Params& p, const std::string& type, const std::string& id) {
+  return MaterialMaker(*this, p, id).make(type);
+}
+
+int Reader::named_material(const std::string& name, const Place& where) {
+  const auto [it, fresh] = materials_.try_emplace(name);
+  if (fresh) it->second = {add_bsdf(name, where, DiffuseDesc{}), false, where};
+  return it->second.bsdf;
+}
+
+void Reader::name_material(Params& p, const std::string& name) {
+  const std::string type = p.required_text("type");
+  const auto found = materials_.find(name);
+  if (found != materials_.end() && found->second.defined)
+    throw InputError(p.where(), "the material " + in_quotes(name) + " is defined twice", "rename one");
+  const int made = make_material(p, type, name);
+  NamedMaterial& entry = materials_[name];
+  if (entry.bsdf == kNone) {
+    entry.bsdf = made;
+  } else {  // it was used before: what was made moves to the place that was kept for it
+    auto& slot = scene_.bsdfs[static_cast<std::size_t>(entry.bsdf)];
+    slot = scene_.bsdfs[static_cast<std::size_t>(made)];
+  }
+  entry.defined = true;
+}
+
+int Reader::current_bsdf(const Place& where) {
+  if (state_.bsdf != kNone) return state_.bsdf;
+  if (default_bsdf_ == kNone) {
+    const int front = add_bsdf("", where, DiffuseDesc{});
+    default_bsdf_ = add_bsdf("", where, TwoSidedDesc{front, front});
+  }
+  return default_bsdf_;
+}
+
+}  // namespace lumirank::scenedesc::pbrt

@@ -1,0 +1,166 @@
+// State of one reading of a pbrt scene: the graphics state and its stack, names, and what has been built.
+// The kinds of directives are in files of their own.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scenedesc/pbrt/params.h"
+#include "scenedesc/pbrt/spectra.h"
+#include "scenedesc/readers.h"
+
+namespace lumirank::scenedesc::pbrt {
+
+// What AreaLightSource says, before the shape is known.
+struct AreaLight {
+  Place where;
+  ColorInput radiance;  // "scale" included
+  float power = -1;     // lumens, of each shape; below 0: not stated
+  bool two_sided = false;
+};
+
+// What the attribute directives change and AttributeEnd restores.
+struct GraphicsState {
+  Transform to_world;
+  bool reverse = false;
+  int bsdf = kNone;  // kNone: pbrt's default, made when it is needed
+  std::shared_ptr<const AreaLight> light;
+  bool start_active = true;  // transforms change the scene at the start of the shutter
+  ColorSpace space = ColorSpace::srgb;
+  // By Attribute: of "shape", "light", "material", "medium", "texture".
+  std::map<std::string, std::shared_ptr<const std::vector<Parameter>>, std::less<>> defaults;
+};
+
+class Reader {
+ public:
+  Reader(const std::string& filename, const ReadOptions& options);
+  SceneDesc read(std::string text);
+
+  // The format has `what` and Lumirank does not. With `strict`, an InputError. `once`: only the first time.
+  void warn(const SourceLocation& where, const std::string& what, const std::string& used_instead);
+  void warn_once(const SourceLocation& where, const std::string& what, const std::string& used_instead);
+
+  SceneDesc& scene() { return scene_; }
+  GraphicsState& state() { return state_; }
+  // Factor of pixel values to radiance: exposure time × ISO / 100.
+  float imaging_ratio() const { return imaging_ratio_; }
+
+  // Names are relative to the main file's folder, or else to that of the file that says them. "" if there is
+  // no such file.
+  std::string resolve(const std::string& name, const Place& where) const;
+  std::string existing_file(const std::string& name, const Place& where, const std::string& kind);
+  std::string file_text(const std::string& path, const Place& where) const;
+
+  int add_bsdf(const std::string& id, const Place& where, decltype(BsdfDesc::kind) kind);
+  int add_texture(const std::string& id, const Place& where, decltype(TextureDesc::kind) kind);
+
+  // textures.cpp
+  void read_texture(Params& p, const std::string& name, const std::string& type, const std::string& kind);
+  ColorInput color(Params& p, const char* name, ColorInput fallback, Intent intent);
+  FloatInput scalar(Params& p, const char* name, FloatInput fallback);
+
+  // materials.cpp: an index into the scene's BSDFs.
+  int make_material(Params& p, const std::string& type, const std::string& id);
+  void name_material(Params& p, const std::string& name);
+  int named_material(const std::string& name, const Place& where);
+  int current_bsdf(const Place& where);
+
+  // shapes.cpp
+  void read_shape(Params& p, const std::string& type);
+  void begin_object(const std::string& name, const Place& where);
+  void end_object(const Place& where);
+  void read_instance(const std::string& name, const Place& where);
+
+  // lights.cpp
+  void read_light(Params& p, const std::string& type);
+  void read_area_light(Params& p, const std::string& type);
+
+  // camera.cpp
+  void read_camera(Params& p, const std::string& type);
+  void read_film(Params& p, const std::string& type);
+  void read_filter(Params& p, const std::string& type);
+  void read_sampler(Params& p, const std::string& type);
+  void read_integrator(Params& p, const std::string& type);
+  void finish_camera();
+
+ private:
+  struct Saved {
+    GraphicsState state;
+    const char* by;
+    Place where;
+  };
+  struct Camera {
+    std::string type = "perspective";
+    Place where;
+    Transform to_world;
+    std::optional<float> aspect;
+    std::vector<float> window;
+    float fov = 90, lens_radius = 0, focal_distance = 1e6f, exposure_time = 1;
+  };
+
+  void run(const File& file);
+  void directive(Tokens& tokens, const Token& word);
+  void include(Tokens& tokens, const Token& word, bool import);
+  bool transform_directive(Tokens& tokens, const Token& word);
+  bool block_directive(Tokens& tokens, const Token& word);
+  bool state_directive(Tokens& tokens, const Token& word);
+  bool object_directive(Tokens& tokens, const Token& word);
+  bool option_directive(Tokens& tokens, const Token& word);
+  std::vector<double> take_numbers(Tokens& tokens, const Token& word, std::size_t count);
+  std::string take_text(Tokens& tokens, const Token& word, const char* what);
+  Params take_params(Tokens& tokens, const Token& word, const std::string& type, const char* defaults);
+  void apply(const Transform& step, const Place& where);
+  void push(const char* by, const Place& where);
+  void pop(const char* by, const char* end, const Place& where);
+  void inherit(Tokens& tokens, const Token& word);
+  void require_world(const Token& word, const Place& where, bool in_world) const;
+  void finish();
+
+  int masked(Params& p, int bsdf);
+  void add_shape(Params& p, ShapeDesc shape, std::shared_ptr<const AreaLight> light);
+
+  const std::string main_file_;
+  const ReadOptions& options_;
+  SceneDesc scene_;
+  std::set<std::string> said_;  // warnings given once
+
+  GraphicsState state_;
+  std::vector<Saved> saved_;
+  std::deque<File> sources_;  // places refer to their names; the texts go when they are read
+  std::vector<std::string> open_files_;
+  std::size_t files_ = 0;
+  bool in_world_ = false;
+  Place world_at_;
+  std::map<std::string, Transform> coordinate_systems_;
+
+  std::map<std::string, ColorInput> color_textures_;
+  std::map<std::string, FloatInput> float_textures_;
+  struct NamedMaterial {
+    int bsdf = kNone;  // a slot that the definition fills
+    bool defined = false;
+    Place first_use;
+  };
+  std::map<std::string, NamedMaterial> materials_;
+  std::map<std::pair<int, int>, int> masks_;  // (bsdf, opacity texture) → bsdf
+  int default_bsdf_ = kNone;
+
+  std::string object_;  // being defined; in_object_ tells
+  bool in_object_ = false;
+  int object_group_ = kNone;
+  std::map<std::string, int> objects_;
+  std::vector<std::pair<int, std::string>> pending_instances_;  // shapes whose object comes later
+
+  Camera camera_;
+  FilmDesc film_;
+  int samples_ = 16;
+  bool has_camera_ = false, has_integrator_ = false;
+  float iso_ = 100, imaging_ratio_ = 1;
+
+  friend class ShapeBuilder;
+};
+
+}  // namespace lumirank::scenedesc::pbrt
