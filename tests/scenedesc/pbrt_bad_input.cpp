@@ -131,6 +131,10 @@ const BadFile kBad[] = {
     {"p_world_twice", 3, "WorldBegin after WorldBegin"},
     {"p_wrong_type", 3, "\"radius\" of Shape \"sphere\" is declared as string, and a float is needed"},
     {"p_zero_axis", 3, "the axis of Rotate is zero"},
+    {"p_texture_bomb", 12, "is made of more than 1,000 others"},
+    {"p_texture_chain", 1003, "is made of more than 1,000 others"},
+    {"p_mix_itself", 3, "holds itself or more than 64 materials"},
+    {"p_mix_bomb", 9, "holds itself or more than 64 materials"},
 };
 // clang-format on
 

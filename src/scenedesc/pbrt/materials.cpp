@@ -276,6 +276,32 @@ void Reader::name_material(Params& p, const std::string& name) {
   entry.defined = true;
 }
 
+namespace {
+
+// How many plain materials a mixture of mixtures has; they may be defined in any order. Stops at kMixed or at
+// kMixed levels, so loops end too.
+constexpr int kMixed = 64;
+int mixed_parts(const SceneDesc& scene, int bsdf, int level) {
+  if (level >= kMixed) return kMixed;
+  const auto* mixture = std::get_if<MixtureDesc>(&scene.bsdfs[static_cast<std::size_t>(bsdf)].kind);
+  if (!mixture) return 1;
+  int sum = 0;
+  for (const auto& part : mixture->parts)
+    if (sum < kMixed) sum += mixed_parts(scene, part.bsdf, level + 1);
+  return sum;
+}
+
+}  // namespace
+
+void Reader::check_mixtures() const {
+  for (std::size_t i = 0; i < scene_.bsdfs.size(); ++i)
+    if (mixed_parts(scene_, static_cast<int>(i), 0) >= kMixed)
+      throw InputError(
+          scene_.bsdfs[i].where,
+          "the mixture " + in_quotes(scene_.bsdfs[i].id) + " holds itself or more than 64 materials",
+          "mixtures of mixtures multiply; simplify them");
+}
+
 int Reader::current_bsdf(const Place& where) {
   if (state_.bsdf != kNone) return state_.bsdf;
   if (default_bsdf_ == kNone) {

@@ -68,11 +68,6 @@ int Reader::add_bsdf(const std::string& id, const Place& where, decltype(BsdfDes
   return static_cast<int>(scene_.bsdfs.size()) - 1;
 }
 
-int Reader::add_texture(const std::string& id, const Place& where, decltype(TextureDesc::kind) kind) {
-  scene_.textures.push_back({id, where, std::move(kind)});
-  return static_cast<int>(scene_.textures.size()) - 1;
-}
-
 std::string Reader::take_text(Tokens& tokens, const Token& word, const char* what) {
   if (tokens.peek().kind != Token::Kind::text)
     throw InputError(tokens.place(word), std::string(word.value) + " has no " + what,
@@ -252,6 +247,7 @@ void Reader::finish() {
     if (!material.defined)
       throw InputError(material.first_use, "the material " + in_quotes(name) + " is not defined",
                        "define it with MakeNamedMaterial");
+  check_mixtures();
   for (const auto& [index, name] : pending_instances_) {
     ShapeDesc& shape = scene_.shapes[static_cast<std::size_t>(index)];
     const auto found = objects_.find(name);

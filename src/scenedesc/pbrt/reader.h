@@ -137,6 +137,11 @@ class Reader {
   Place world_at_;
   std::map<std::string, Transform> coordinate_systems_;
 
+  void check_mixtures() const;
+  std::size_t parts_of(const ColorInput& input) const;
+
+  // Of each texture, how many look-ups one of it makes: they are nested and may share parts.
+  std::vector<std::size_t> texture_parts_;
   std::map<std::string, ColorInput> color_textures_;
   std::map<std::string, FloatInput> float_textures_;
   struct NamedMaterial {

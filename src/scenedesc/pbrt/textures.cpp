@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 
 #include "scenedesc/pbrt/reader.h"
 
@@ -52,7 +52,41 @@ BitmapTextureDesc image_map(Reader& reader, Params& p, bool spectrum) {
   return out;
 }
 
+constexpr std::size_t kParts = 1'000;  // look-ups of one texture
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <typename... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
 }  // namespace
+
+std::size_t Reader::parts_of(const ColorInput& input) const {
+  return input.texture == kNone ? 0 : texture_parts_[static_cast<std::size_t>(input.texture)];
+}
+
+int Reader::add_texture(const std::string& id, const Place& where, decltype(TextureDesc::kind) kind) {
+  const std::size_t parts =
+      1 + std::visit(Overloaded{[&](const CheckerboardTextureDesc& x) {
+                                  return std::max(parts_of(x.color0), parts_of(x.color1));
+                                },
+                                [&](const ScaleTextureDesc& x) { return parts_of(x.input); },
+                                [&](const ProductTextureDesc& x) { return parts_of(x.a) + parts_of(x.b); },
+                                [&](const MixTextureDesc& x) {
+                                  return parts_of(x.a) + parts_of(x.b) + parts_of(x.amount);
+                                },
+                                [&](const RootTextureDesc& x) { return parts_of(x.input); },
+                                [](const auto&) { return std::size_t{0}; }},
+                     kind);
+  if (parts > kParts)
+    throw InputError(where, "the texture " + in_quotes(id) + " is made of more than 1,000 others",
+                     "textures of textures multiply; simplify them");
+  texture_parts_.push_back(parts);
+  scene_.textures.push_back({id, where, std::move(kind)});
+  return static_cast<int>(scene_.textures.size()) - 1;
+}
 
 ColorInput Reader::color(Params& p, const char* name, ColorInput fallback, Intent intent) {
   if (const auto constant = constant_color(p, name, intent)) return {*constant, kNone};
