@@ -26,12 +26,15 @@ TEST(BadInput, EveryBadSceneIsRefused) {
   const TemporaryFolder folder;
   std::vector<std::string> files;
   std::vector<Arguments> runs;
+  int pbrt = 0;
   for (const std::string& file : corpus("bad"))
-    if (file.ends_with(".xml") || file.ends_with(".pbrt")) {
+    // Of the pbrt files every fifth: starting the program is most of this test's time, and that of the reader
+    // has them all.
+    if (file.ends_with(".xml") || (file.ends_with(".pbrt") && pbrt++ % 5 == 0)) {
       files.push_back(file);
       runs.push_back(render_small(file, folder / "a.exr"));
     }
-  EXPECT_GT(files.size(), 180u);
+  EXPECT_GT(files.size(), 95u);
   const auto outcomes = lumirank_each(runs);
   for (std::size_t k = 0; k < files.size(); ++k) {
     // A loop of includes is found in the file that closes it.

@@ -85,8 +85,8 @@ TEST(EqualArea, DirectionsOfTheWorldReadTheirTexels) {
   const World mirrored = sky(image, map);
   for (const Vec3f d : {Vec3f{1, 2, 3}, {-1, 2, 3}, {1, -2, 3}, {1, 2, -3}, {-3, -1, -1}, {-2, -1, 1}}) {
     const Rgb want(d.x > 0 ? 2 : 0, d.y > 0 ? 2 : 0, d.z > 0 ? 2 : 0);
-    // All of a channel is scaled to keep its mean, which 36 points per texel find to within 2 ‰ here: only the
-    // texels at the edges of the three areas hold any error, about 1/64 of them, of about ⅙ / √36 each.
+    // All of a channel is scaled to keep its mean, which 36 points per texel find to within 2 ‰ here: only
+    // the texels at the edges of the three areas hold any error, about 1/64 of them, of about ⅙ / √36 each.
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(plain.background(normalize(d))[k], want[k], 4e-3f) << k;
       EXPECT_NEAR(mirrored.background(normalize(Vec3f{-d.x, d.y, d.z}))[k], want[k], 4e-3f) << k;
