@@ -155,15 +155,18 @@ void Reader::inherit(Tokens& tokens, const Token& word) {
     throw InputError(where, "Attribute has the target " + in_quotes(target),
                      "shape, light, material, medium and texture are known");
   auto& slot = state_.defaults[target];
-  auto all =
-      slot ? std::make_shared<std::vector<Parameter>>(*slot) : std::make_shared<std::vector<Parameter>>();
+  // Copied only if a saved state shares it.
+  using List = std::vector<Parameter>;
+  const auto all = slot.use_count() == 1 ? std::const_pointer_cast<List>(slot)
+                   : slot                ? std::make_shared<List>(*slot)
+                                         : std::make_shared<List>();
   for (Parameter& p : parse_parameters(tokens)) {
     std::erase_if(*all, [&](const Parameter& old) { return old.name == p.name; });
     all->push_back(std::move(p));
   }
   if (all->size() > kInherited)
     throw InputError(where, "Attribute directives set more than 256 parameters of one kind");
-  slot = std::move(all);
+  slot = all;
 }
 
 bool Reader::option_directive(Tokens& tokens, const Token& word) {

@@ -90,7 +90,7 @@ SampledSpectrum spectrum_file(Params& p, const char* name, const std::string& fi
   Reader& reader = p.reader();
   if (reader.resolve(file, p.where_of(name)).empty())
     p.fail(name, "is " + in_quotes(file) + ", which is neither a spectrum that is known nor a file",
-           "known are metal-{Ag,Al,Au,Cr,Cu,CuZn,MgO,Ni,Ti,TiO2,W}-{eta,k}, glass-…, stdillum-…");
+           "known are metal-{Ag,Al,Au,Cu,CuZn,MgO,TiO2,…}-{eta,k}, glass-…, stdillum-…");
   std::vector<double> numbers;
   const std::string path = reader.existing_file(file, p.where_of(name), "spectrum");
   const File text{path, reader.file_text(path, p.where_of(name))};

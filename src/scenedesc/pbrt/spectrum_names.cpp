@@ -1,6 +1,5 @@
 // The spectra that pbrt knows by name.
 #include <array>
-#include <cmath>
 #include <map>
 
 #include "scenedesc/mitsuba/ior.h"
@@ -16,24 +15,6 @@ Rgb from_chromaticity(double x, double y) {
   return {static_cast<float>(3.2404542 * X - 1.5371385 - 0.4985314 * Z),
           static_cast<float>(-0.9692660 * X + 1.8760108 + 0.0415560 * Z),
           static_cast<float>(0.0556434 * X - 0.2040259 + 1.0572252 * Z)};
-}
-
-SampledSpectrum constant_spectrum(float value) { return {{300, 900}, {value, value}}; }
-
-// Sellmeier-like formulas of wavelengths in micrometres.
-double magnesium_oxide(double um) {  // Stephens and Malitson 1952
-  const auto term = [&](double b, double c) { return b * um * um / (um * um - c * c); };
-  return std::sqrt(1 + term(1.111033, 0.0712465) + term(0.8460085, 0.1375204) + term(7.808527, 26.89302));
-}
-double rutile(double um) { return std::sqrt(5.913 + 0.2441 / (um * um - 0.0803)); }  // DeVore 1951
-
-SampledSpectrum sampled(double (*index)(double)) {
-  SampledSpectrum out;
-  for (int nm = 380; nm <= 780; nm += 10) {
-    out.wavelengths.push_back(static_cast<float>(nm));
-    out.values.push_back(static_cast<float>(index(nm * 1e-3)));
-  }
-  return out;
 }
 
 }  // namespace
@@ -72,15 +53,9 @@ std::optional<SampledSpectrum> named_metal(const std::string& name) {
   const std::size_t dash = name.rfind('-');
   const std::string metal = name.substr(6, dash < 6 ? 0 : dash - 6), part = name.substr(dash + 1);
   if (part != "eta" && part != "k") return std::nullopt;
-  const bool eta = part == "eta";
-  if (metal == "MgO") return eta ? sampled(magnesium_oxide) : constant_spectrum(0);
-  if (metal == "TiO2") return eta ? sampled(rutile) : constant_spectrum(0);
-  if (metal == "CuZn")  // brass with 30 % of zinc, at three wavelengths (after Querry 1985)
-    return eta ? SampledSpectrum{{380, 450, 550, 650, 780}, {1.094f, 1.094f, 0.527f, 0.444f, 0.444f}}
-               : SampledSpectrum{{380, 450, 550, 650, 780}, {1.829f, 1.829f, 2.765f, 3.695f, 3.695f}};
   const auto measured = mitsuba::metal_spectra(metal);
   if (!measured || metal.find('_') != std::string::npos) return std::nullopt;
-  return eta ? measured->n : measured->k;
+  return part == "eta" ? measured->n : measured->k;
 }
 
 }  // namespace lumirank::scenedesc::pbrt
