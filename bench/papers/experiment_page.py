@@ -131,7 +131,7 @@ def percent(x):
     return f"{100 * x:.1f} %"
 
 
-def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=560, height=340):
+def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=600, height=340):
     """An SVG of {name: [(x, y), …]}; a point alone becomes a dashed level line."""
     points = [p for c in curves.values() for p in c if p[1] > 0 and (p[0] > 0 or not log_x)]
     if not points:
@@ -144,7 +144,7 @@ def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=560, hei
         y0 = 0.0
     x0, x1 = (x0 - 0.5, x1 + 0.5) if x0 == x1 else (x0 - 0.03 * (x1 - x0), x1 + 0.03 * (x1 - x0))
     y0, y1 = (y0 - 0.5, y1 + 0.5) if y0 == y1 else (y0 - 0.06 * (y1 - y0) * log_y, y1 + 0.06 * (y1 - y0))
-    left, right, top, bottom = 62, 150, 34, 46
+    left, right, top, bottom = 62, 170, 34, 46
 
     def px(x):
         return left + (fx(x) - x0) / (x1 - x0) * (width - left - right)
@@ -178,7 +178,9 @@ def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=560, hei
             path = " ".join(f"{px(x):.1f},{py(y):.1f}" for x, y in good)
             out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>' +
                        ("".join(f'<circle cx="{px(x):.1f}" cy="{py(y):.1f}" r="3" fill="{colour}"/>' for x, y in good) if len(good) < 30 else ""))
-        out.append(f'<text x="{width - right + 10}" y="{top + 16 + 18 * k}" fill="{colour}">{html.escape(name)}</text>')
+        y, dash = top + 12 + 18 * k, ' stroke-dasharray="6 4"' if len(good) == 1 and good[0][0] == 0 else ""
+        out.append(f'<line x1="{width - right + 8}" y1="{y}" x2="{width - right + 28}" y2="{y}" stroke="{colour}" stroke-width="2"{dash}/>'
+                   f'<text x="{width - right + 33}" y="{y + 4}">{html.escape(name)}</text>')
     return "\n".join(out + ["</svg>"])
 
 
