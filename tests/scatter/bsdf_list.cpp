@@ -114,6 +114,8 @@ std::vector<BsdfCase> build() {
   list.push_back(single("conductor_ggx_0.3", conductor(kGgx, 0.3f, 0.3f)));
   list.push_back(single("conductor_ggx_0.9", conductor(kGgx, 0.9f, 0.9f)));
   list.push_back(single("conductor_ggx_anisotropic", conductor(kGgx, 0.08f, 0.4f)));
+  list.push_back(single("conductor_ggx_brushed", conductor(kGgx, 0.03f, 0.6f)));
+  list.push_back(single("conductor_beckmann_brushed", conductor(kBeckmann, 0.6f, 0.04f)));
   list.push_back(single("conductor_beckmann_0.02", conductor(kBeckmann, 0.02f, 0.02f)));
   list.push_back(single("conductor_beckmann_0.3", conductor(kBeckmann, 0.3f, 0.3f)));
   list.push_back(single("conductor_beckmann_0.9", conductor(kBeckmann, 0.9f, 0.9f)));
@@ -142,6 +144,7 @@ std::vector<BsdfCase> build() {
   list.push_back(ward("original", 0, 0.1f, 0.1f));
   list.push_back(ward("duer", 1, 0.15f, 0.3f));
   list.push_back(ward("balanced", 2, 0.15f, 0.3f));
+  list.push_back(ward("balanced_brushed", 2, 0.04f, 0.4f));
   list.push_back(ward("balanced_sharp", 2, 0.02f, 0.02f));
   list.push_back(principled("plain", 0, 0, 0.5f, 0));
   list.push_back(principled("metal", 1, 0, 0.3f, 0));

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "base/random.h"
 #include "scatter/bsdf_list.h"
 #include "scatter/interface_table.h"
+#include "scatter/statistics.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -93,6 +96,66 @@ TEST(Microfacet, DrawnNormalsHaveTheRightMean) {
           [&](Vec3f m) { return m[k] * visible_normal_pdf(s.kind, w, m, s.alpha_u, s.alpha_v); });
       const double mean = sum[k] / n, sigma = std::sqrt((squares[k] / n - mean * mean) / n);
       EXPECT_NEAR(mean, expected, 4.5 * sigma + 2e-3) << s.alpha_u << ' ' << s.alpha_v << " coordinate " << k;
+    }
+  }
+}
+
+// Drawn visible normals against their density, cell by cell, where that is hardest: at grazing angles and
+// under strong anisotropy. Cells are even on the hemisphere of normals stretched to roughness 1; m = A·h with
+// A = diag(αu, αv, 1) has dω_m = |det A| / |A·h|³ dω_h.
+TEST(Microfacet, DrawnNormalsFollowTheirDensityAtGrazingAngles) {
+  constexpr int rings = 12, sectors = 16, n = 60000, fine = 24;
+  constexpr float angles[] = {0.02f, 0.1f, 0.7f};
+  constexpr float alphas[][2] = {{0.02f, 0.6f}, {0.9f, 0.05f}, {0.01f, 0.01f}, {1, 1}};
+  // 1 % for all tests together (Bonferroni).
+  const double significance = 0.01 / (2.0 * std::size(angles) * std::size(alphas));
+  std::uint64_t stream = 0;
+  for (const auto kind : {NormalDistribution::ggx, NormalDistribution::beckmann}) {
+    for (const auto& [au, av] : alphas) {
+      for (const float cosine : angles) {
+        const Vec3f w = at_angle(cosine, 0.9f);
+        std::vector<double> seen(rings * sectors, 0), expected(rings * sectors, 0);
+        Rng rng(4, Stage::test, stream++);
+        for (int i = 0; i < n; ++i) {
+          const Vec3f m = sample_visible_normal(kind, w, rng.next_2d(), au, av);
+          const Vec3f h = normalize({m.x / au, m.y / av, m.z});
+          const double turn = std::atan2(double(h.y), double(h.x)) / (2 * 3.14159265358979324);
+          const int ring = std::min(rings - 1, static_cast<int>((1 - h.z) * rings));
+          const int sector = std::min(sectors - 1, static_cast<int>((turn - std::floor(turn)) * sectors));
+          seen[static_cast<std::size_t>(ring * sectors + sector)] += 1;
+        }
+        double total = 0;
+        for (int r = 0; r < rings * fine; ++r) {
+          for (int k = 0; k < sectors * fine; ++k) {
+            const double z = 1 - (r + 0.5) / (rings * fine), s = std::sqrt(1 - z * z);
+            const double phi = 2 * 3.14159265358979324 * (k + 0.5) / (sectors * fine);
+            const Vec3f stretched{static_cast<float>(au * s * std::cos(phi)),
+                                  static_cast<float>(av * s * std::sin(phi)), static_cast<float>(z)};
+            const double len = length(stretched);
+            const double mass = visible_normal_pdf(kind, w, stretched / static_cast<float>(len), au, av) *
+                                au * av / (len * len * len) * 2 * 3.14159265358979324 /
+                                (rings * fine * sectors * fine);
+            expected[static_cast<std::size_t>(r / fine * sectors + k / fine)] += n * mass;
+            total += mass;
+          }
+        }
+        EXPECT_NEAR(total, 1, 3e-3) << au << ' ' << av << ' ' << cosine;
+        double chi2 = 0, rest_seen = 0, rest_expected = 0;
+        int used = 0;
+        for (std::size_t c = 0; c < seen.size(); ++c) {
+          if (expected[c] < 10) {
+            rest_seen += seen[c], rest_expected += expected[c];
+            continue;
+          }
+          chi2 += (seen[c] - expected[c]) * (seen[c] - expected[c]) / expected[c], ++used;
+        }
+        if (rest_expected >= 10)
+          chi2 += (rest_seen - rest_expected) * (rest_seen - rest_expected) / rest_expected, ++used;
+        ASSERT_GE(used, 3);
+        EXPECT_GT(chi_square_tail(chi2, used - 1), significance)
+            << (kind == NormalDistribution::ggx ? "ggx " : "beckmann ") << au << " x " << av << " at "
+            << cosine << ": " << chi2 << " with " << used - 1 << " degrees, " << total;
+      }
     }
   }
 }
