@@ -60,8 +60,7 @@ LightBound bound_of(const emitters::ProfileEmitter& e) {
 
 emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Vec3f wo) {
   bool both_sides = false;
-  for (int k = 0; k < closure.count; ++k)
-    both_sides |= closure.lobes[k].kind == scatter::LobeKind::microfacet_transmit;
+  for (int k = 0; k < closure.count; ++k) both_sides |= scatter::shines_through(closure.lobes[k].kind);
   const Vec3f n = closure.frame.n;
   return {position, dot(n, wo) < 0 ? -n : n, both_sides};
 }

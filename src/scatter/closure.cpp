@@ -138,6 +138,7 @@ float lobe_roughness(const Lobe& lobe) {
   switch (lobe.kind) {
     case LobeKind::microfacet_reflect:
     case LobeKind::microfacet_transmit:
+    case LobeKind::thin_transmit:
     case LobeKind::ward:
       return std::min({1.0f, wider * lobe.alpha_u, wider * lobe.alpha_v});
     case LobeKind::clearcoat:

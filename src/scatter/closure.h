@@ -38,6 +38,9 @@ enum class LobeKind : std::uint8_t {
   disney_diffuse,       // Disney's with retro-reflection; alpha_u = roughness, extra = flatness; see
                         // disney_lobes.cpp
   clearcoat,            // Disney's: color · F · D · G with GTR1 of width alpha_u; see disney_lobes.cpp
+  // Through thin sheets, to the other side and unbent; eta is that of the sheet from either side:
+  diffuse_transmit,  // color/π
+  thin_transmit,     // microfacet_reflect with wi mirrored to wo's side and 1 - F instead of F
   // Delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations() meet them:
   delta_reflect,   // color · F by `fresnel`; variant kThinSlab: 2F/(1 + F)
   delta_transmit,  // color · (1 - F), refracts by eta
@@ -45,6 +48,12 @@ enum class LobeKind : std::uint8_t {
                // F))
 };
 inline bool is_delta(LobeKind kind) { return kind >= LobeKind::delta_reflect; }
+
+// Smooth lobes that send light to the other side.
+inline bool shines_through(LobeKind kind) {
+  return kind == LobeKind::microfacet_transmit || kind == LobeKind::diffuse_transmit ||
+         kind == LobeKind::thin_transmit;
+}
 
 enum class FresnelKind : std::uint8_t { none, dielectric, conductor, schlick };
 enum class NormalDistribution : std::uint8_t { beckmann, ggx };

@@ -170,6 +170,14 @@ void ClosureBuilder::leaf(const WardMaterial& m, const SurfacePoint& at, float w
   push(lobe, at, weight);
 }
 
+void ClosureBuilder::leaf(const DiffuseTransmitterMaterial& m, const SurfacePoint& at, float weight) {
+  Rgb reflected = reflectance(set_.textures, m.reflectance, at.uv);
+  Rgb transmitted = reflectance(set_.textures, m.transmittance, at.uv);
+  conserve(reflected, transmitted);
+  push(lobe_of(LobeKind::diffuse, reflected), at, weight);
+  push(lobe_of(LobeKind::diffuse_transmit, transmitted), at, weight);
+}
+
 void ClosureBuilder::leaf(const MaskMaterial& m, const SurfacePoint& at, float weight) {
   const float opacity = fraction(set_.textures, m.opacity, at.uv);
   add(m.nested, at, weight * opacity);

@@ -25,6 +25,8 @@ class ClosureBuilder {
   void leaf(const PhongMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const WardMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const PrincipledMaterial& m, const SurfacePoint& at, float weight);
+  void leaf(const PrincipledThinMaterial& m, const SurfacePoint& at, float weight);
+  void leaf(const DiffuseTransmitterMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const CoatingMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const MaskMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const TwoSidedMaterial& m, const SurfacePoint& at, float weight);

@@ -22,8 +22,8 @@ inline float interface_transmittance(const Lobe& lobe, float cos_theta) {
 // interpolated.
 struct InterfaceCoefficients {
   float c[6] = {0, 1, 0, 0, 0, 0};
-  // The same for light that passes twice without losing its direction, as under a coat (coat.h): the geometric
-  // mean of T(μ) and of what gets out again at the refracted angle.
+  // The same for light that passes twice without losing its direction, as under a coat (coat.h): the
+  // geometric mean of T(μ) and of what gets out again at the refracted angle.
   float twice[6] = {0, 1, 0, 0, 0, 0};
   float diffuse_transmittance = 1;  // 2∫T(μ)μ dμ, from outside
   float internal_reflectance = 0;   // 2∫R(μ)μ dμ, from inside

@@ -28,7 +28,7 @@ Rgb quadrature_albedo(LobeView view, Vec3f wo) {
     if (pdf > 0) sum += lobe_value(view, wo, wi) * (std::abs(wi.z) / pdf);
   }
   // As a share of energy: without the scaling of radiance.
-  const float scale = transmits(view.lobe.kind) ? view.eta * view.eta : 1.0f;
+  const float scale = view.lobe.kind == LobeKind::microfacet_transmit ? view.eta * view.eta : 1.0f;
   return sum * (scale / static_cast<float>(count));
 }
 
@@ -70,6 +70,10 @@ Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
       return microfacet_reflect_value(view, wo, wi);
     case LobeKind::microfacet_transmit:
       return microfacet_transmit_value(view, wo, wi);
+    case LobeKind::diffuse_transmit:
+      return lobe.color * kInvPi;
+    case LobeKind::thin_transmit:
+      return thin_transmit_value(lobe, wo, wi);
     case LobeKind::phong:
       return phong_value(lobe, wo, wi);
     case LobeKind::ward:
@@ -101,6 +105,10 @@ float bare_pdf(LobeView view, Vec3f wo, Vec3f wi) {
       return microfacet_reflect_pdf(view, wo, wi);
     case LobeKind::microfacet_transmit:
       return microfacet_transmit_pdf(view, wo, wi);
+    case LobeKind::diffuse_transmit:
+      return pdf_cosine_hemisphere(-wi.z);
+    case LobeKind::thin_transmit:
+      return thin_transmit_pdf(view, wo, wi);
     case LobeKind::phong:
       return phong_pdf(lobe, wo, wi);
     case LobeKind::ward:
@@ -129,6 +137,11 @@ bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
       return microfacet_reflect_sample(view, wo, u, wi);
     case LobeKind::microfacet_transmit:
       return microfacet_transmit_sample(view, wo, u, wi);
+    case LobeKind::diffuse_transmit:
+      wi = -warp_cosine_hemisphere(u);
+      return wi.z < 0;
+    case LobeKind::thin_transmit:
+      return thin_transmit_sample(view, wo, u, wi);
     case LobeKind::phong:
       return phong_sample(lobe, wo, u, wi);
     case LobeKind::ward:
@@ -145,7 +158,7 @@ bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 
 Rgb bare_albedo(LobeView view, Vec3f wo) {
   const Lobe& lobe = view.lobe;
-  if (lobe.kind == LobeKind::diffuse) return lobe.color;
+  if (lobe.kind == LobeKind::diffuse || lobe.kind == LobeKind::diffuse_transmit) return lobe.color;
   if (lobe.kind == LobeKind::interfaced_diffuse)
     return lobe.color * (interface_transmittance(lobe, wo.z) * lobe.alpha_v);
   if (is_delta(lobe.kind)) {
@@ -172,6 +185,8 @@ float bare_importance(LobeView view, float cos_o) {
       return std::max(least * scale, mean(lobe.color * lobe_fresnel(view, cos_o)));
     case LobeKind::microfacet_transmit:
       return scale * std::max(least, 1 - fresnel_dielectric(cos_o, view.eta));
+    case LobeKind::thin_transmit:
+      return scale * std::max(least, 1 - fresnel_dielectric(cos_o, lobe.eta));
     case LobeKind::sheen:
       return scale * std::max(least, schlick_weight(cos_o));
     case LobeKind::clearcoat:

@@ -31,8 +31,7 @@ Rgb lobe_albedo(LobeView view, Vec3f wo);
 // black.
 float lobe_importance(LobeView view, float cos_o);
 inline bool transmits(LobeKind kind) {
-  return kind == LobeKind::microfacet_transmit || kind == LobeKind::delta_transmit ||
-         kind == LobeKind::delta_pass;
+  return shines_through(kind) || kind == LobeKind::delta_transmit || kind == LobeKind::delta_pass;
 }
 
 // A delta lobe's single direction (local) and coefficient without radiance scaling. False if there is none
@@ -68,6 +67,9 @@ bool microfacet_reflect_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
 Rgb microfacet_transmit_value(LobeView view, Vec3f wo, Vec3f wi);
 float microfacet_transmit_pdf(LobeView view, Vec3f wo, Vec3f wi);
 bool microfacet_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
+Rgb thin_transmit_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+float thin_transmit_pdf(LobeView view, Vec3f wo, Vec3f wi);
+bool thin_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
 Rgb phong_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
 float phong_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
 bool phong_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);

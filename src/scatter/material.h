@@ -80,6 +80,16 @@ struct PrincipledMaterial {
       clearcoat_gloss, flatness;
   float eta = 1.5f;
 };
+// A thin sheet that reflects and lets through diffusely, alike on both sides.
+struct DiffuseTransmitterMaterial {
+  ColorInput reflectance, transmittance;
+};
+// Mitsuba 3's principledthin: a sheet without thickness, alike on both sides. diff_trans within [0, 2].
+struct PrincipledThinMaterial {
+  ColorInput base_color;
+  FloatInput roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness, diff_trans;
+  float eta = 1.5f;
+};
 // A dielectric layer over another material (coating.cpp).
 struct CoatingMaterial {
   int nested = -1;
@@ -118,10 +128,11 @@ struct MixtureMaterial {
   std::vector<Part> parts;
 };
 
-using Material = std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial,
-                              DielectricMaterial, ThinDielectricMaterial, PlasticMaterial, PhongMaterial,
-                              WardMaterial, PrincipledMaterial, CoatingMaterial, MaskMaterial,
-                              TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
+using Material =
+    std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
+                 ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
+                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, MaskMaterial,
+                 TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

@@ -44,6 +44,24 @@ bool microfacet_reflect_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
   return wi.z > 0;
 }
 
+// A sheet without thickness: what is not reflected goes on as if reflected at its other side.
+Rgb thin_transmit_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+  wi.z = -wi.z;
+  const Vec3f m = normalize(wo + wi);
+  const float d = microfacet_d(lobe.distribution, m, lobe.alpha_u, lobe.alpha_v);
+  const float g = microfacet_g1(lobe.distribution, wo, lobe.alpha_u, lobe.alpha_v) *
+                  microfacet_g1(lobe.distribution, wi, lobe.alpha_u, lobe.alpha_v);
+  return lobe.color * ((1 - fresnel_dielectric(dot(wo, m), lobe.eta)) * d * g / (4 * wo.z * wi.z));
+}
+float thin_transmit_pdf(LobeView view, Vec3f wo, Vec3f wi) {
+  return microfacet_reflect_pdf(view, wo, {wi.x, wi.y, -wi.z});
+}
+bool thin_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
+  if (!microfacet_reflect_sample(view, wo, u, wi)) return false;
+  wi.z = -wi.z;
+  return true;
+}
+
 namespace {
 
 // The normal that refracts wo into wi, and the Jacobian's denominator; false if there is none.

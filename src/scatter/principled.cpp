@@ -5,6 +5,22 @@
 #include "scatter/fresnel.h"
 
 namespace lumirank::scatter {
+namespace {
+
+void set_roughness(Lobe& lobe, float roughness, float anisotropic) {
+  const float alpha = roughness * roughness, aspect = std::sqrt(1 - 0.9f * anisotropic);
+  lobe.alpha_u = std::clamp(alpha / aspect, 1e-3f, 4.0f);
+  lobe.alpha_v = std::max(1e-3f, alpha * aspect);
+}
+
+// The hue of a colour at luminance 1.
+Rgb tint_of(Rgb base) {
+  const float brightness = luminance(base);
+  return brightness > 0 ? base / brightness : Rgb(1);
+}
+Rgb tinted_f0(Rgb tint, float eta) { return clamp_below(tint * square((eta - 1) / (eta + 1)), 1.0f); }
+
+}  // namespace
 
 void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, float weight) {
   const TextureSet& textures = set_.textures;
@@ -16,9 +32,7 @@ void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, f
   Lobe spec;
   spec.kind = LobeKind::microfacet_reflect;
   spec.distribution = NormalDistribution::ggx;
-  const float alpha = roughness * roughness, aspect = std::sqrt(1 - 0.9f * input(m.anisotropic));
-  spec.alpha_u = std::clamp(alpha / aspect, 1e-3f, 4.0f);
-  spec.alpha_v = std::max(1e-3f, alpha * aspect);
+  set_roughness(spec, roughness, input(m.anisotropic));
   spec.eta = m.eta;
 
   Lobe through = spec;
@@ -37,15 +51,14 @@ void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, f
     return;
   }
 
-  const float brightness = luminance(base);
-  const Rgb tint = brightness > 0 ? base / brightness : Rgb(1);
+  const Rgb tint = tint_of(base);
   const float spec_tint = input(m.spec_tint);
   spec.fresnel = FresnelKind::dielectric;
   spec.color = Rgb((1 - metallic) * (1 - spec_tint));
   push(spec, at, weight);
   spec.fresnel = FresnelKind::schlick;
   spec.color = Rgb((1 - metallic) * spec_tint);
-  spec.conductor_eta = clamp_below(tint * square((m.eta - 1) / (m.eta + 1)), 1.0f);
+  spec.conductor_eta = tinted_f0(tint, m.eta);
   push(spec, at, weight);
   spec.color = Rgb(metallic);
   spec.conductor_eta = base;
@@ -69,6 +82,56 @@ void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, f
   coat.color = Rgb(0.25f * input(m.clearcoat));
   coat.alpha_u = coat.alpha_v = lerp(0.1f, 0.001f, input(m.clearcoat_gloss));
   push(coat, at, weight);
+}
+
+// The share spec_trans of the sheet is a rough window, which reflects colourless light and tints what it lets
+// through; the rest is matt and sends diff_trans/2 of its colour to the other side.
+void ClosureBuilder::leaf(const PrincipledThinMaterial& m, const SurfacePoint& at, float weight) {
+  const TextureSet& textures = set_.textures;
+  const auto input = [&](const FloatInput& f) { return fraction(textures, f, at.uv); };
+  const Rgb base = reflectance(textures, m.base_color, at.uv), tint = tint_of(base);
+  const float roughness = input(m.roughness), anisotropic = input(m.anisotropic);
+  const float window = input(m.spec_trans), matt = 1 - window;
+  const float back = matt * 0.5f * std::clamp(number(textures, m.diff_trans, at.uv), 0.0f, 2.0f);
+
+  Lobe spec;
+  spec.kind = LobeKind::microfacet_reflect;
+  spec.distribution = NormalDistribution::ggx;
+  set_roughness(spec, roughness, anisotropic);
+  // Light comes from outside on either side.
+  spec.eta = front(at) ? m.eta : 1 / m.eta;
+  const float spec_tint = input(m.spec_tint);
+  spec.fresnel = FresnelKind::dielectric;
+  spec.color = Rgb(window * (1 - spec_tint));
+  push(spec, at, weight);
+  spec.fresnel = FresnelKind::schlick;
+  spec.color = Rgb(window * spec_tint);
+  spec.conductor_eta = tinted_f0(tint, m.eta);
+  push(spec, at, weight);
+
+  Lobe through;
+  through.kind = LobeKind::thin_transmit;
+  through.distribution = NormalDistribution::ggx;
+  // Burley 2015: refraction in and out blurs less than a reflection.
+  set_roughness(through, std::clamp((0.65f * m.eta - 0.35f) * roughness, 0.0f, 1.0f), anisotropic);
+  through.eta = m.eta;
+  through.color = base * window;
+  push(through, at, weight);
+
+  Lobe diffuse;
+  diffuse.kind = LobeKind::disney_diffuse;
+  diffuse.color = base * (matt - back);
+  diffuse.alpha_u = roughness;
+  diffuse.extra = input(m.flatness);
+  push(diffuse, at, weight);
+  Lobe sheen;
+  sheen.kind = LobeKind::sheen;
+  sheen.color = lerp(Rgb(1), tint, input(m.sheen_tint)) * (input(m.sheen) * (matt - back));
+  push(sheen, at, weight);
+  Lobe behind;
+  behind.kind = LobeKind::diffuse_transmit;
+  behind.color = base * back;
+  push(behind, at, weight);
 }
 
 }  // namespace lumirank::scatter

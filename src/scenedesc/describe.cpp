@@ -125,6 +125,16 @@ std::string kind(const BsdfDesc& desc) {
                    return "hair diffuse " + show(x.diffuse_reflectance) + ", specular " +
                           show(x.specular_reflectance) + ", exponent " + show(x.exponent);
                  },
+                 [](const PrincipledThinDesc& x) {
+                   return "principledthin " + show(x.base_color) + ", roughness " + show(x.roughness) +
+                          ", anisotropic " + show(x.anisotropic) + ", spec_trans " + show(x.spec_trans) +
+                          ", spec_tint " + show(x.spec_tint) + ", sheen " + show(x.sheen) + " (tint " +
+                          show(x.sheen_tint) + "), flatness " + show(x.flatness) + ", diff_trans " +
+                          show(x.diff_trans) + ", eta " + num(x.eta);
+                 },
+                 [](const DiffuseTransmitterDesc& x) {
+                   return "diffuse sheet " + show(x.reflectance) + ", transmittance " + show(x.transmittance);
+                 },
                  [](const CoatingDesc& x) {
                    return "coating eta " + num(x.eta) + ", reflectance " + show(x.specular_reflectance) +
                           ", absorption " + show(x.absorption) + ", weight " + show(x.weight) +

@@ -144,7 +144,7 @@ struct WardDesc {
   ColorInput diffuse_reflectance{Rgb(0.5f)}, specular_reflectance{Rgb(0.2f)};
   FloatInput alpha_u{0.1f}, alpha_v{0.1f};
 };
-struct PrincipledDesc {  // Mitsuba 3's "principled" and "principledthin" without their thin-film lobes
+struct PrincipledDesc {  // Mitsuba 3's "principled"
   ColorInput base_color{Rgb(0.5f)};
   FloatInput roughness{0.5f}, anisotropic{0}, metallic{0}, spec_trans{0}, spec_tint{0}, sheen{0},
       sheen_tint{0}, clearcoat{0}, clearcoat_gloss{0}, flatness{0};
@@ -153,6 +153,17 @@ struct PrincipledDesc {  // Mitsuba 3's "principled" and "principledthin" withou
 struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fibre
   ColorInput diffuse_reflectance{Rgb(0.4f)}, specular_reflectance{Rgb(0.1f)};
   FloatInput exponent{40};  // the specular lobe falls like cosⁿ of the angle to the mirror cone
+};
+struct PrincipledThinDesc {  // Mitsuba 3's "principledthin": a sheet without thickness, alike on both sides
+  ColorInput base_color{Rgb(0.5f)};
+  FloatInput roughness{0.5f}, anisotropic{0}, spec_trans{0}, spec_tint{0}, sheen{0}, sheen_tint{0},
+      flatness{0}, diff_trans{0};  // diff_trans: 0 to 2, all of the matt light goes through
+  float eta = 1.5f;
+};
+// A thin sheet that reflects and lets through diffusely, alike on both sides: Mitsuba 0.6's "difftrans",
+// pbrt's diffusetransmission. If both together exceed 1, they are scaled down alike.
+struct DiffuseTransmitterDesc {
+  ColorInput reflectance{Rgb(0)}, transmittance{Rgb(0.5f)};
 };
 // A dielectric layer over the nested BSDF, without scattering in it; smooth if alpha_u and alpha_v are the
 // constant 0. Mitsuba 0.6's "coating" and "roughcoating", pbrt's coateddiffuse and coatedconductor (over a
@@ -199,8 +210,8 @@ struct BsdfDesc {
   std::string id;
   SourceLocation where;
   std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc, ThinDielectricDesc,
-               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, CoatingDesc, HairDesc, MaskDesc,
-               TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>
+               PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, PrincipledThinDesc, DiffuseTransmitterDesc,
+               CoatingDesc, HairDesc, MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>
       kind;
 };
 

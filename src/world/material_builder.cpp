@@ -77,6 +77,8 @@ bool MaterialBuilder::transmits(int material) const {
     bool operator()(const sc::PrincipledMaterial& m) const {
       return m.spec_trans.texture >= 0 || m.spec_trans.value > 0;
     }
+    bool operator()(const sc::PrincipledThinMaterial&) const { return true; }
+    bool operator()(const sc::DiffuseTransmitterMaterial&) const { return true; }
     bool operator()(const sc::CoatingMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::BumpMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::NormalMapMaterial& m) const { return all.transmits(m.nested); }
@@ -206,6 +208,19 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
     sc::Material operator()(const sd::HairDesc& d) const {
       self.notes_.warn(where, "a hair BSDF on a surface", "diffuse of its diffuse reflectance");
       return sc::DiffuseMaterial{color(d.diffuse_reflectance)};
+    }
+    sc::Material operator()(const sd::PrincipledThinDesc& d) const {
+      sc::PrincipledThinMaterial m;
+      m.base_color = color(d.base_color);
+      m.roughness = number(d.roughness), m.anisotropic = number(d.anisotropic);
+      m.spec_trans = number(d.spec_trans), m.spec_tint = number(d.spec_tint);
+      m.sheen = number(d.sheen), m.sheen_tint = number(d.sheen_tint);
+      m.flatness = number(d.flatness), m.diff_trans = number(d.diff_trans);
+      m.eta = checked_eta(d.eta, where);
+      return m;
+    }
+    sc::Material operator()(const sd::DiffuseTransmitterDesc& d) const {
+      return sc::DiffuseTransmitterMaterial{color(d.reflectance), color(d.transmittance)};
     }
     sc::Material operator()(const sd::CoatingDesc& d) const {
       sc::CoatingMaterial m;

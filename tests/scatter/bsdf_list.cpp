@@ -66,6 +66,16 @@ BsdfCase principled(std::string name, float metallic, float spec_trans, float ro
   return c;
 }
 
+BsdfCase thin(std::string name, float spec_trans, float diff_trans, float roughness, float extras) {
+  PrincipledThinMaterial m;
+  m.base_color = color(0.8f, 0.5f, 0.2f);
+  m.roughness = number(roughness), m.spec_trans = number(spec_trans), m.diff_trans = number(diff_trans);
+  m.anisotropic = m.spec_tint = m.sheen = m.sheen_tint = m.flatness = number(extras);
+  BsdfCase c = single("principledthin_" + name, m);
+  c.inside_too = true;
+  return c;
+}
+
 BsdfCase ward(std::string name, int variant, float au, float av) {
   BsdfCase c = single("ward_" + name, WardMaterial{variant, gray(0.3f), gray(0.6f), number(au), number(av)});
   if (variant < 2)
@@ -153,6 +163,14 @@ std::vector<BsdfCase> build() {
   list.push_back(principled("everything", 0.3f, 0.4f, 0.4f, 0.5f));
   list.push_back(principled("opaque_extras", 0.2f, 0, 0.6f, 1));
 
+  list.push_back(thin("leaf", 0, 0.8f, 0.5f, 0));
+  list.push_back(thin("window", 1, 0, 0.3f, 0));
+  list.push_back(thin("everything", 0.5f, 1.2f, 0.4f, 0.6f));
+  list.back().energy_exempt = "sheen is added on top";
+  list.push_back(
+      single("diffuse_transmitter", DiffuseTransmitterMaterial{gray(0.4f), color(0.6f, 0.5f, 0.1f)}));
+  list.back().inside_too = true;
+
   list.push_back(nested("coating_smooth_diffuse", DiffuseMaterial{gray(1)}, layer(kGgx, 0, 1.5f, 0, 1)));
   list.push_back(nested("coating_smooth_absorbing", DiffuseMaterial{color(0.8f, 0.5f, 0.2f)},
                         layer(kGgx, 0, 1.5f, 0.3f, 1)));
@@ -180,6 +198,9 @@ std::vector<BsdfCase> build() {
   list.push_back(
       nested("coating_glass", dielectric(kGgx, 1.5f, 0.1f, 0.1f), layer(kGgx, 0.2f, 1.4f, 0.1f, 1)));
   list.back().inside_too = true, list.back().eta = 1.5f;
+  list.push_back(nested("coating_diffuse_transmitter", DiffuseTransmitterMaterial{gray(0.4f), gray(0.6f)},
+                        layer(kGgx, 0.2f, 1.4f, 0, 1)));
+  list.back().inside_too = true;
   BsdfCase coated_principled = principled("coated", 0.3f, 0.4f, 0.4f, 0.5f);
   coated_principled.set.materials.push_back(layer(kGgx, 0.1f, 1.5f, 0.1f, 0.8f));
   coated_principled.material = 1;

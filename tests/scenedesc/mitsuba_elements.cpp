@@ -212,6 +212,26 @@ TEST(MitsubaPrincipled, SpecularIsAnIndex) {
   EXPECT_EQ(desc.metallic.value, 1);
 }
 
+TEST(MitsubaPrincipled, ThinSheets) {
+  const SceneDesc scene = parse(
+      kCamera +
+      "<bsdf type=\"principledthin\"><float name=\"diff_trans\" value=\"1.5\"/><float name=\"spec_trans\" "
+      "value=\"0.25\"/></bsdf><bsdf type=\"difftrans\"><rgb name=\"transmittance\" value=\"0.1 0.2 "
+      "0.3\"/></bsdf>");
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto& sheet = std::get<PrincipledThinDesc>(scene.bsdfs.at(0).kind);
+  EXPECT_EQ(sheet.diff_trans.value, 1.5f);
+  EXPECT_EQ(sheet.spec_trans.value, 0.25f);
+  EXPECT_EQ(sheet.eta, 1.5f);
+  EXPECT_EQ(std::get<DiffuseTransmitterDesc>(scene.bsdfs.at(1).kind).transmittance.value,
+            Rgb(0.1f, 0.2f, 0.3f));
+  EXPECT_THROW(
+      parse(kCamera + "<bsdf type=\"principledthin\"><float name=\"diff_trans\" value=\"2.5\"/></bsdf>"),
+      InputError);
+  EXPECT_THROW(parse(kCamera + "<bsdf type=\"principledthin\"><float name=\"sheen\" value=\"1.5\"/></bsdf>"),
+               InputError);
+}
+
 TEST(MitsubaMixture, WeightsAndComplement) {
   const SceneDesc scene = parse(kCamera +
                                 "<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.25\"/><bsdf "

@@ -176,6 +176,11 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
   principled.roughness = value(0.3f), principled.sheen_tint = value(0.5f),
   principled.clearcoat_gloss = value(0.9f);
   all.push_back(add_bsdf(desc, principled));
+  PrincipledThinDesc sheet;
+  sheet.spec_trans = value(0.4f), sheet.diff_trans = value(0.9f), sheet.anisotropic = value(0.5f);
+  sheet.sheen = value(0.3f), sheet.spec_tint = value(0.5f);
+  all.push_back(add_bsdf(desc, sheet));
+  all.push_back(add_bsdf(desc, DiffuseTransmitterDesc{color(0.2f, 0.3f, 0.1f), color(0.5f, 0.2f, 0.4f)}));
   for (const float alpha : {0.0f, 0.2f}) {  // metal and matt colour under varnish
     CoatingDesc coating;
     coating.alpha_u = coating.alpha_v = value(alpha);

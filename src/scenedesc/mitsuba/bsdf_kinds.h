@@ -15,7 +15,9 @@ BsdfKind conductor(Reader& reader, Plugin& p);
 BsdfKind plastic(Reader& reader, Plugin& p);
 BsdfKind phong(Reader& reader, Plugin& p);
 BsdfKind ward(Reader& reader, Plugin& p);
+BsdfKind diffuse_transmitter(Reader& reader, Plugin& p);
 BsdfKind principled(Reader& reader, Plugin& p);
+BsdfKind principled_thin(Reader& reader, Plugin& p);
 
 BsdfKind coating(Reader& reader, Plugin& p);
 BsdfKind mask(Reader& reader, Plugin& p);

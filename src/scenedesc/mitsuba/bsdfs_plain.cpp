@@ -189,43 +189,9 @@ BsdfKind ward(Reader&, Plugin& p) {
   return out;
 }
 
-BsdfKind principled(Reader& reader, Plugin& p) {
-  PrincipledDesc out;
-  if (p.type() == "principledthin")
-    reader.warn(p.where(), "the thin-film lobes of \"principledthin\"", "\"principled\"");
-  out.base_color = p.reflectance("base_color", Rgb(0.5f));
-  const std::pair<const char*, FloatInput*> inputs[] = {{"roughness", &out.roughness},
-                                                        {"anisotropic", &out.anisotropic},
-                                                        {"metallic", &out.metallic},
-                                                        {"spec_trans", &out.spec_trans},
-                                                        {"spec_tint", &out.spec_tint},
-                                                        {"sheen", &out.sheen},
-                                                        {"sheen_tint", &out.sheen_tint},
-                                                        {"clearcoat", &out.clearcoat},
-                                                        {"clearcoat_gloss", &out.clearcoat_gloss},
-                                                        {"flatness", &out.flatness}};
-  for (const auto& [name, input] : inputs) {
-    *input = p.scalar(name, input->value);
-    if (input->texture == kNone && !(input->value >= 0 && input->value <= 1))
-      throw InputError(p.where_of(name),
-                       std::string("\"") + name + "\" of " + p.title() + " is not between 0 and 1");
-  }
-  if (const auto eta = p.number("eta")) {
-    if (p.has("specular"))
-      throw InputError(p.where_of("specular"), p.title() + " has both \"eta\" and \"specular\"",
-                       "keep one of them");
-    if (!(*eta > 1)) throw InputError(p.where_of("eta"), "\"eta\" of " + p.title() + " is not above 1");
-    out.eta = *eta;
-  } else {
-    // Reflectance at normal incidence is 0.08·specular.
-    const float specular = p.number("specular", 0.5f);
-    if (!(specular > 0 && specular <= 1))
-      throw InputError(p.where_of("specular"), "\"specular\" of " + p.title() + " is not in (0, 1]");
-    out.eta = 2 / (1 - std::sqrt(0.08f * specular)) - 1;
-  }
-  if (p.type() == "principledthin") p.ignore({"diff_trans"});
-  p.ignore({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate",
-            "main_specular_sampling", "clearcoat_sampling", "diffuse_sampling"});
+BsdfKind diffuse_transmitter(Reader&, Plugin& p) {
+  DiffuseTransmitterDesc out;
+  out.transmittance = p.reflectance("transmittance", Rgb(0.5f));
   return out;
 }
 

@@ -99,6 +99,13 @@ Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lo
       return oren_nayar(lobe, at);
     case LobeKind::microfacet_reflect:
       return microfacet(group, form, lobe, at);
+    case LobeKind::thin_transmit: {
+      const Lane f = fresnel_dielectric(at.cos_d, lobe.eta);
+      const Lane d =
+          normals(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
+      const Lane g1 = masking(form.distribution, at.cos_i, stretched(group, at.i, lobe));
+      return lobe.color * ((one() - f) * d * g1 / at.cos_i);
+    }
     case LobeKind::phong:
       return lobe.color * phong(lobe, at);
     case LobeKind::ward:
@@ -130,7 +137,8 @@ void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, c
       lobe.eta = splat(0.17f) * s2 / (s2 + splat(0.13f));
       return;
     }
-    case LobeKind::microfacet_reflect: {
+    case LobeKind::microfacet_reflect:
+    case LobeKind::thin_transmit: {
       const Lane g1 = masking(form.distribution, cos_o, stretched(group, across(group, wo, cos_o), lobe));
       lobe.color = lobe.color * (g1 / (splat(4) * cos_o));
       return;
@@ -205,17 +213,38 @@ void prepare(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats) {
   }
 }
 
+// The lobes that shine through, for wi behind: they are evaluated at wi mirrored to wo's side.
+Lane3 eval_behind(const ScatterGroup& group, const Lane3& wi, Lane cos_i, LaneMask direct) {
+  const ScatterForm& form = *group.form;
+  const LaneMask lit = group.answers & (cos_i < splat(-kGrazing)) & (dot(group.ng, wi) < kZero);
+  Lane3 f = black();
+  if (bits(lit) == 0) return f;
+  const Lane3 mirrored = wi - group.n * (splat(2) * cos_i);
+  Meeting at{group.wo, mirrored, group.cos_o, select(lit, -cos_i, one()), {}, {}, {}, {}, {}};
+  find_half_vector(group, at);
+  for (std::size_t k = 0; k < form.lobes.size(); ++k) {
+    if (!scatter::shines_through(form.lobes[k].kind)) continue;
+    const LobeLanes& lobe = group.lobes[k];
+    Lane3 part = value(group, form.lobes[k], lobe, at);
+    if (group.some_traced) part = select(direct & lobe.traced, black(), part);
+    f = f + part;
+  }
+  return select(lit, f, black());
+}
+
 Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
   const ScatterForm& form = *group.form;
   const Lane cos_i = dot(group.n, wi);
   const LaneMask lit = group.answers & (cos_i > splat(kGrazing)) & (dot(group.ng, wi) > kZero);
+  const Lane3 behind = form.transmits ? eval_behind(group, wi, cos_i, direct) : black();
+  if (bits(lit) == 0) return behind;
   Lane3 f = black();
-  if (bits(lit) == 0) return f;
 
   Meeting at{group.wo, wi, group.cos_o, select(lit, cos_i, one()), {}, {}, {}, {}, {}};
   if (form.microfacets) find_half_vector(group, at);
   for (std::size_t k = 0; k < form.lobes.size(); ++k) {
     const LobeForm& kind = form.lobes[k];
+    if (scatter::shines_through(kind.kind)) continue;
     const LobeLanes& lobe = group.lobes[k];
     Lane3 part = kind.coated ? under_coat(group, kind, lobe, group.coats[k], wi, at.cos_i)
                              : value(group, kind, lobe, at);
@@ -223,7 +252,7 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
     if (group.some_traced && !is_matt(kind.kind)) part = select(direct & lobe.traced, black(), part);
     f = f + part;
   }
-  return select(lit, f, black());
+  return select(lit, f, behind);
 }
 
 }  // namespace lumirank::transport

@@ -8,6 +8,7 @@ namespace {
 using scatter::LobeKind;
 
 bool has_lane_code(const scatter::Lobe& lobe) {
+  if (lobe.coat && scatter::shines_through(lobe.kind)) return false;
   switch (lobe.kind) {
     case LobeKind::diffuse:
     case LobeKind::interfaced_diffuse:
@@ -17,6 +18,8 @@ bool has_lane_code(const scatter::Lobe& lobe) {
     case LobeKind::sheen:
     case LobeKind::disney_diffuse:
     case LobeKind::clearcoat:
+    case LobeKind::diffuse_transmit:
+    case LobeKind::thin_transmit:
       return true;
     case LobeKind::microfacet_reflect:
       return lobe.variant == 0;
@@ -31,7 +34,8 @@ bool needs_half_vector(LobeKind kind) {
 }
 
 bool is_anisotropic(const scatter::Lobe& lobe) {
-  return (lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::ward) &&
+  return (lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::ward ||
+          lobe.kind == LobeKind::thin_transmit) &&
          lobe.alpha_u != lobe.alpha_v;
 }
 
@@ -39,7 +43,7 @@ ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
   ScatterForm form;
   form.in_lanes = std::all_of(lobes.begin(), lobes.end(), has_lane_code);
   for (const scatter::Lobe& lobe : lobes) {
-    form.transmits = form.transmits || lobe.kind == LobeKind::microfacet_transmit;
+    form.transmits = form.transmits || scatter::shines_through(lobe.kind);
     const bool coated = static_cast<bool>(lobe.coat);
     form.microfacets = form.microfacets || (needs_half_vector(lobe.kind) && !coated);
     form.anisotropic = form.anisotropic || is_anisotropic(lobe);
