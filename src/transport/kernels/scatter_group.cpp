@@ -35,10 +35,11 @@ void put_cone(LobeCones& cones, int lane, std::span<const scatter::Lobe> lobes, 
     if (least >= kBroad) continue;
     const bool two_widths =
         lobe.kind == scatter::LobeKind::microfacet_reflect || lobe.kind == scatter::LobeKind::ward;
-    const float most = two_widths ? std::max(lobe.alpha_u, lobe.alpha_v) : least;
+    const float wider = lobe.coat ? lobe.coat.bend : 1.0f;  // refraction into the open
+    const float most = two_widths ? wider * std::max(lobe.alpha_u, lobe.alpha_v) : least;
     sharpest = std::min(sharpest, least * most);
     reach = std::max(reach, std::min(kPi, kReach * most));
-    anywhere = anywhere || lobe.kind == scatter::LobeKind::microfacet_transmit;
+    anywhere = anywhere || scatter::shines_through(lobe.kind);
   }
   if (anywhere) reach = kPi;
   put(cones.axis, lane, n * (2 * dot(n, wo)) - wo);
