@@ -33,17 +33,21 @@ std::string warning_text(const scenedesc::Warning& warning) {
   return text;
 }
 
+void tell(const Sinks& sinks, const std::vector<scenedesc::Warning>& warnings) {
+  for (const auto& w : warnings)
+    if (w.harmless)
+      sinks.say(warning_text(w));
+    else
+      sinks.warn(warning_text(w));
+}
+
 world::World build_world(const Scene& scene, const Sinks& sinks,
                          std::vector<scenedesc::Warning>* keep = nullptr) {
   std::vector<scenedesc::Warning> warnings;
   world::BuildOptions options;
   options.strict = scene.impl().options.strict;
   world::World world = world::World::build(scene.impl().desc, options, warnings, sinks);
-  for (const auto& w : warnings)
-    if (w.harmless)
-      sinks.say(warning_text(w));
-    else
-      sinks.warn(warning_text(w));
+  tell(sinks, warnings);
   if (keep) *keep = std::move(warnings);
   return world;
 }
@@ -168,8 +172,7 @@ Scene Scene::load(const std::string& filename, const LoadOptions& options, const
   read.strict = options.strict;
   read.environment = options.environment;
   impl->desc = scenedesc::read_scene(filename, read);
-  for (const auto& w : impl->desc.warnings)
-    if (!w.harmless) sinks.warn(warning_text(w));
+  tell(sinks, impl->desc.warnings);
   Scene scene;
   scene.impl_ = std::move(impl);
   return scene;

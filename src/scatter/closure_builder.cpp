@@ -130,8 +130,9 @@ void ClosureBuilder::leaf(const PlasticMaterial& m, const SurfacePoint& at, floa
   coat.alpha_u = coat.alpha_v = alpha;
   coat.eta = m.eta;
   push(coat, at, weight);
-  push(interfaced_diffuse_lobe(reflectance(set_.textures, m.diffuse_reflectance, at.uv), m.eta,
-                               m.distribution, alpha, m.nonlinear),
+  const Rgb base = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
+  push(m.lossless ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
+                  : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear),
        at, weight);
 }
 

@@ -8,6 +8,7 @@ InterfaceCoefficients interface_coefficients(NormalDistribution distribution, fl
   if (alpha > 0) return interface_table(distribution).lookup(alpha, eta);
   InterfaceCoefficients smooth;
   smooth.diffuse_transmittance = 1 - fresnel_diffuse_reflectance(eta);
+  smooth.diffuse_left = smooth.diffuse_transmittance;
   smooth.internal_reflectance = fresnel_diffuse_reflectance(1 / eta);
   return smooth;
 }
@@ -25,6 +26,20 @@ Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distributi
   lobe.conductor_k = {k.c[3], k.c[4], k.c[5]};
   const Rgb trapped = nonlinear ? color * k.internal_reflectance : Rgb(k.internal_reflectance);
   lobe.color = color / ((Rgb(1) - trapped) * (eta * eta));
+  return lobe;
+}
+
+Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha) {
+  const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
+  Lobe lobe;
+  lobe.kind = LobeKind::interfaced_diffuse;
+  lobe.distribution = distribution;
+  lobe.alpha_u = alpha;
+  lobe.alpha_v = k.diffuse_left;
+  lobe.eta = eta;
+  lobe.conductor_eta = {k.left[0], k.left[1], k.left[2]};
+  lobe.conductor_k = {k.left[3], k.left[4], k.left[5]};
+  lobe.color = color / k.diffuse_left;
   return lobe;
 }
 

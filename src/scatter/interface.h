@@ -25,7 +25,10 @@ struct InterfaceCoefficients {
   // The same for light that passes twice without losing its direction, as under a coat (coat.h): the
   // geometric mean of T(μ) and of what gets out again at the refracted angle.
   float twice[6] = {0, 1, 0, 0, 0, 0};
+  // What the layer's reflection leaves, 1 - R(μ) from outside: T(μ) and the light that masking loses.
+  float left[6] = {0, 1, 0, 0, 0, 0};
   float diffuse_transmittance = 1;  // 2∫T(μ)μ dμ, from outside
+  float diffuse_left = 1;           // 2∫(1 - R(μ))μ dμ, from outside
   float internal_reflectance = 0;   // 2∫R(μ)μ dμ, from inside
 };
 // alpha = 0: smooth. Thread-safe; the same numbers whoever asks first.
@@ -35,5 +38,8 @@ InterfaceCoefficients interface_coefficients(NormalDistribution distribution, fl
 // nonlinear. All that does not depend on directions is folded into the lobe's colour.
 Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
                              bool nonlinear);
+// A base that gets all that the layer does not reflect: color/π·L(wi)·L(wo)/(2∫L(μ)μ dμ), L = 1 - R. With the
+// layer's reflection it sends back all light if it is white (Kelemen and Szirmay-Kalos 2001).
+Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha);
 
 }  // namespace lumirank::scatter

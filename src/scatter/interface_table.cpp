@@ -155,15 +155,20 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
       fit(rule, eta, twice, cell.twice);
       // From inside, the relative index is the inverse one, whose means stand in the mirrored column.
       // Reflectance jumps at the critical angle, which the rule cannot integrate; what is lost does not.
-      double outside = 0, lost_inside = 0;
+      std::array<double, kCosines> left;
+      for (int k = 0; k < kCosines; ++k) left[k] = 1 - means[e][k].reflectance;
+      fit(rule, eta, left, cell.left);
+      double outside = 0, all_left = 0, lost_inside = 0;
       for (int k = 0; k < kCosines; ++k) {
         const InterfaceMeans& inside = means[kEtas - 1 - e][k];
         outside += 2 * rule.w[k] * rule.x[k] * t[k];
+        all_left += 2 * rule.w[k] * rule.x[k] * left[k];
         lost_inside += 2 * rule.w[k] * rule.x[k] * (1 - inside.transmittance - inside.reflectance);
       }
       // Kept as differences from the smooth interface, which are nearly linear in what is interpolated.
       const double smooth = 1 - fresnel_diffuse_reflectance(eta);
       cell.diffuse_transmittance = static_cast<float>(outside - smooth);
+      cell.diffuse_left = static_cast<float>(all_left - smooth);
       cell.internal_reflectance = static_cast<float>((smooth - outside) / (eta * eta) - lost_inside);
       cells_[static_cast<std::size_t>(a) * kEtas + e] = cell;
     }
@@ -178,15 +183,20 @@ InterfaceCoefficients InterfaceTable::lookup(float alpha, float eta) const {
   const float fa = a - static_cast<float>(a0), fe = e - static_cast<float>(e0);
   InterfaceCoefficients out;
   const float held = std::exp(static_cast<float>(kLogRange) * (2 * e / (kEtas - 1) - 1));
-  out.c[1] = out.twice[1] = 0;
-  out.diffuse_transmittance = 1 - fresnel_diffuse_reflectance(held);
+  out.c[1] = out.twice[1] = out.left[1] = 0;
+  out.diffuse_transmittance = out.diffuse_left = 1 - fresnel_diffuse_reflectance(held);
   out.internal_reflectance = fresnel_diffuse_reflectance(1 / held);
   for (int da = 0; da < 2; ++da) {
     for (int de = 0; de < 2; ++de) {
       const float w = (da ? fa : 1 - fa) * (de ? fe : 1 - fe);
       const InterfaceCoefficients& cell = cells_[static_cast<std::size_t>(a0 + da) * kEtas + (e0 + de)];
-      for (int i = 0; i < kTerms; ++i) out.c[i] += w * cell.c[i], out.twice[i] += w * cell.twice[i];
+      for (int i = 0; i < kTerms; ++i) {
+        out.c[i] += w * cell.c[i];
+        out.twice[i] += w * cell.twice[i];
+        out.left[i] += w * cell.left[i];
+      }
       out.diffuse_transmittance += w * cell.diffuse_transmittance;
+      out.diffuse_left += w * cell.diffuse_left;
       out.internal_reflectance += w * cell.internal_reflectance;
     }
   }

@@ -64,6 +64,7 @@ struct PlasticMaterial {
   NormalDistribution distribution;
   FloatInput alpha;
   bool smooth = true;
+  bool lossless = false;  // see PlasticDesc
 };
 struct PhongMaterial {
   ColorInput diffuse_reflectance, specular_reflectance;

@@ -181,6 +181,7 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
       m.diffuse_reflectance = color(d.diffuse_reflectance);
       m.specular_reflectance = color(d.specular_reflectance);
       m.nonlinear = d.nonlinear;
+      m.lossless = d.lossless;
       m.distribution = world::convert(d.distribution);
       m.alpha = number(d.alpha);
       m.smooth = is_zero(d.alpha);

@@ -46,6 +46,22 @@ TEST(BadInput, EveryBadSceneIsRefused) {
   EXPECT_TRUE(files_in(folder / "").empty());
 }
 
+TEST(BadInput, EveryBadGltfSceneIsRefused) {
+  const TemporaryFolder folder;
+  std::vector<std::string> files;
+  std::vector<Arguments> runs;
+  for (const std::string& file : corpus("bad"))
+    if (file.ends_with(".gltf") || file.ends_with(".glb")) {
+      files.push_back(file);
+      runs.push_back(render_small(file, folder / "a.exr"));
+    }
+  EXPECT_GT(files.size(), 90u);
+  const auto outcomes = lumirank_each(runs);
+  for (std::size_t k = 0; k < files.size(); ++k)
+    expect_refused(outcomes[k], fs::path(files[k]).filename().string());
+  EXPECT_TRUE(files_in(folder / "").empty());
+}
+
 TEST(BadInput, EveryBadMeshIsRefused) {
   const TemporaryFolder folder, out;
   const auto files = corpus("bad_meshes");

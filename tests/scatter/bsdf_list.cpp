@@ -148,6 +148,11 @@ std::vector<BsdfCase> build() {
   list.push_back(single("plastic_beckmann_0.1", plastic(kBeckmann, 0.1f, false)));
   list.push_back(single("plastic_ggx_0.4_nonlinear", plastic(kGgx, 0.4f, true)));
   list.push_back(single("plastic_ggx_0.05", plastic(kGgx, 0.05f, false)));
+  for (const float alpha : {0.16f, 1.0f}) {
+    PlasticMaterial all = plastic(kGgx, alpha, false);
+    all.lossless = true;
+    list.push_back(single(alpha < 1 ? "plastic_ggx_0.16_lossless" : "plastic_ggx_1_lossless", all));
+  }
   list.push_back(single("phong_30", PhongMaterial{gray(0.5f), gray(0.3f), number(30)}));
   list.push_back(single("phong_1000", PhongMaterial{gray(0.1f), gray(0.9f), number(1000)}));
   list.push_back(single("phong_0", PhongMaterial{gray(0), gray(1), number(0)}));

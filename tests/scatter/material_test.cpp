@@ -1,5 +1,7 @@
 // What the materials make of their inputs: closed forms, nesting, perturbed frames, straight passage.
 #include "scatter/material.h"
+#include "scatter/interface.h"
+#include "scatter/interface_table.h"
 
 #include <gtest/gtest.h>
 
@@ -74,6 +76,20 @@ TEST(Plastic, SmoothMatchesItsFormula) {
 }
 
 // White nonlinear plastic gives everything back: what enters, 1 - F, leaves in the end.
+// R(μ) of the layer and 1 - R(μ) of a white base add up, within the 0.01 of the polynomial fit.
+TEST(Plastic, WhiteLosslessSendsBackAllAtAnyRoughness) {
+  for (const float alpha : {0.0f, 0.05f, 0.3f, 1.0f})
+    for (const float eta : {1.1f, 1.5f, 2.0f})
+      for (const float mu : {0.1f, 0.3f, 0.6f, 1.0f}) {
+        const double reflected =
+            alpha > 0 ? interface_means(NormalDistribution::ggx, alpha, eta, mu, 64).reflectance
+                      : fresnel_dielectric(mu, eta);
+        const Lobe base = lossless_diffuse_lobe(Rgb(1), eta, NormalDistribution::ggx, alpha);
+        const float left = base.color.g * base.alpha_v * interface_transmittance(base, mu);
+        EXPECT_NEAR(reflected + left, 1, 0.01) << alpha << ' ' << eta << ' ' << mu;
+      }
+}
+
 TEST(Plastic, WhiteNonlinearIsLossless) {
   PlasticMaterial m{1.6f, gray(1), gray(1), true, NormalDistribution::ggx, number(0), true};
   const MaterialSet set = materials({m});

@@ -1,9 +1,9 @@
 // Metallic-roughness materials and their extensions as sums of BSDFs.
 //
 // glTF 2.0, appendix B: a metal is GGX with Schlick's Fresnel factor from the base colour: "principled" with
-// metallic 1 is that formula. A dielectric is a diffuse base under a GGX interface of index 1.5: "plastic",
-// which divides the light between the two without making any; the appendix's own base · (1 - F(half vector))
-// sends back more than it receives at grazing angles.
+// metallic 1 is that formula. A dielectric is a GGX reflection of index 1.5 over a diffuse base: "plastic",
+// lossless, whose base gets what is not reflected, so that nothing is lost or made; the appendix's own base ·
+// (1 - F(half vector)) sends back more than it receives at grazing angles.
 #include "scenedesc/gltf/surface.h"
 
 namespace lumirank::scenedesc::gltf {
@@ -59,6 +59,7 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
       desc.specular_reflectance = tint;
       desc.distribution = Distribution::ggx;
       desc.alpha = s.alpha;
+      desc.lossless = true;
       plastic = add_bsdf(material, desc);
     }
     if (!is_constant(weight, 1)) diffuse = add_bsdf(material, DiffuseDesc{s.base});

@@ -1,0 +1,180 @@
+// glTF materials at the point of a built world against the formulas of glTF 2.0, appendix B.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "scatter/closure.h"
+#include "scenedesc/readers.h"
+#include "world/world.h"
+
+namespace lumirank::world {
+namespace {
+
+// A triangle around the origin in z = 0 that faces +z, with uvs whose u runs along +x and v (downwards in
+// glTF) along `v_along`·y.
+std::string scene_of(const std::string& material, int v_along = -1) {
+  // Three vertices: positions (36 bytes) and uvs (24 bytes).
+  const float floats[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  float uvs[6];
+  for (int k = 0; k < 3; ++k) {
+    uvs[2 * k] = floats[3 * k];
+    uvs[2 * k + 1] = static_cast<float>(v_along) * floats[3 * k + 1];
+  }
+  std::string data;
+  const auto add = [&](const void* from, std::size_t size) {
+    constexpr char kHex[] = "0123456789ABCDEF";
+    for (std::size_t k = 0; k < size; ++k) {
+      const unsigned char c = static_cast<const unsigned char*>(from)[k];
+      data += {'%', kHex[c >> 4], kHex[c & 15]};
+    }
+  };
+  add(floats, sizeof floats);
+  add(uvs, sizeof uvs);
+  return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":
+    {"POSITION":0,"TEXCOORD_0":1},"material":0}]}],"materials":[)" +
+         material + R"(],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+    {"bufferView":0,"byteOffset":36,"componentType":5126,"count":3,"type":"VEC2"}],
+    "bufferViews":[{"buffer":0,"byteLength":60}],"buffers":[{"byteLength":60,"uri":"data:,)" +
+         data + "\"}]}";
+}
+
+struct Point {
+  World world;
+  SurfaceHit hit;
+};
+Point built(const std::string& text) {
+  scenedesc::SceneDesc desc = scenedesc::parse_gltf(text, "made.gltf");
+  std::vector<scenedesc::Warning> warnings;
+  World world = World::build(desc, {}, warnings);
+  const auto hit = world.intersect({{0, 0, 1}, {0, 0, -1}});
+  return {std::move(world), hit.value()};
+}
+
+Vec3f direction(float cosine, float angle) {
+  const float s = std::sqrt(1 - cosine * cosine);
+  return {s * std::cos(angle), s * std::sin(angle), cosine};
+}
+
+// D·V and the Schlick weight of appendix B.3.
+struct Specular {
+  double dv, weight;
+};
+Specular specular(double alpha, Vec3f wo, Vec3f wi) {
+  const Vec3f h = normalize(wo + wi);
+  const double a2 = alpha * alpha, nh = h.z, no = wo.z, ni = wi.z;
+  const double d = a2 / (M_PI * std::pow(nh * nh * (a2 - 1) + 1, 2));
+  const double g_o = 2 * no / (no + std::sqrt(a2 + (1 - a2) * no * no));
+  const double g_i = 2 * ni / (ni + std::sqrt(a2 + (1 - a2) * ni * ni));
+  return {d * g_o * g_i / (4 * no * ni), std::pow(1 - std::abs(dot(wo, h)), 5)};
+}
+
+template <typename Check>
+void for_directions(float least_cosine, const Check& check) {
+  for (const float co : {0.1f, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f})
+    for (const float ci : {0.1f, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f})
+      for (const float angle : {0.0f, 1.0f, 2.0f, 3.1f})
+        if (std::min(co, ci) >= least_cosine) check(direction(co, 0), direction(ci, angle));
+}
+
+std::string material(double metallic, double roughness) {
+  return R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.5,0.2,1],"metallicFactor":)" +
+         std::to_string(metallic) + ",\"roughnessFactor\":" + std::to_string(roughness) + "}}";
+}
+
+TEST(GltfBrdf, MetalsFollowTheAppendix) {
+  for (const double roughness : {0.1, 0.4, 1.0}) {
+    const Point p = built(scene_of(material(1, roughness)));
+    for_directions(0, [&](Vec3f wo, Vec3f wi) {
+      const Rgb f = scatter::eval_f(p.world.materials().closure(p.hit.material, p.hit.point, wo), wo, wi);
+      const Specular s = specular(roughness * roughness, wo, wi);
+      const Rgb base{0.8f, 0.5f, 0.2f};
+      for (int k = 0; k < 3; ++k) {
+        const double expected = (base[k] + (1 - base[k]) * s.weight) * s.dv;
+        // The half vector's cosine is rounded to 6e-8, by which D changes by 4 · 6e-8 / alpha² of itself; a
+        // dozen other roundings beside it.
+        const double alpha = roughness * roughness;
+        EXPECT_NEAR(f[k], expected, expected * (3e-6 + 5e-7 / (alpha * alpha)))
+            << roughness << ' ' << wo.z << ' ' << wi.z;
+      }
+    });
+  }
+}
+
+// The base of a dielectric gets what its interface lets in, not base · (1 - F(h)): within 8 % of the appendix
+// for light that comes and goes at less than 60 degrees; the reflection is Fresnel's instead of Schlick's,
+// within 0.005 of F there.
+TEST(GltfBrdf, DielectricsStayNearTheAppendix) {
+  for (const double roughness : {0.3, 0.6, 1.0}) {
+    const Point p = built(scene_of(material(0, roughness)));
+    double most = 0;
+    for_directions(0.5f, [&](Vec3f wo, Vec3f wi) {
+      const Rgb f = scatter::eval_f(p.world.materials().closure(p.hit.material, p.hit.point, wo), wo, wi);
+      const Specular s = specular(roughness * roughness, wo, wi);
+      const double fresnel = 0.04 + 0.96 * s.weight;
+      const Rgb base{0.8f, 0.5f, 0.2f};
+      for (int k = 0; k < 3; ++k) {
+        const double diffuse = base[k] / M_PI * (1 - fresnel), expected = diffuse + fresnel * s.dv;
+        EXPECT_NEAR(f[k], expected, 0.08 * diffuse + 0.005 * s.dv) << roughness << ' ' << wo.z << ' ' << wi.z;
+        most = std::max(most, std::abs(f[k] - expected) / expected);
+      }
+    });
+    RecordProperty("largest_difference_" + std::to_string(roughness), std::to_string(most));
+    std::printf("roughness %g: largest relative difference %.3f\n", roughness, most);
+  }
+}
+
+// By the rule of the closure's own sampling, 4096 draws: white surfaces send back no more than they receive.
+TEST(GltfBrdf, WhiteSurfacesMakeNoLight) {
+  for (const double metallic : {0.0, 0.5, 1.0})
+    for (const double roughness : {0.2, 0.5, 1.0}) {
+      std::string white = material(metallic, roughness);
+      white.replace(white.find("0.8,0.5,0.2"), 11, "1,1,1");
+      const Point p = built(scene_of(white));
+      for (const float cosine : {0.05f, 0.2f, 0.5f, 1.0f}) {
+        const Vec3f wo = direction(cosine, 0);
+        const scatter::Closure closure = p.world.materials().closure(p.hit.material, p.hit.point, wo);
+        double sum = 0, squares = 0;
+        const int side = 64;
+        for (int i = 0; i < side * side; ++i) {
+          const float u = (static_cast<float>(i % side) + 0.5f) / side,
+                      v = (static_cast<float>(i / side) + 0.5f) / side;
+          const float choice = std::fmod(0.5f + 0.61803399f * static_cast<float>(i), 1.0f);
+          const auto s = scatter::sample(closure, wo, choice, {u, v}, scatter::Lobes::all);
+          const double w = s ? s->weight.g : 0.0;
+          sum += w, squares += w * w;
+        }
+        const double n = side * side, mean = sum / n;
+        const double deviation = std::sqrt(std::max(0.0, squares / n - mean * mean) / n);
+        EXPECT_LT(mean, 1.01 + 4 * deviation) << metallic << ' ' << roughness << ' ' << cosine;
+        // A dielectric loses nothing: up to the fit of 1 - R, 0.01.
+        if (metallic == 0) {
+          EXPECT_NEAR(mean, 1, 0.01 + 4 * deviation) << roughness << ' ' << cosine;
+        }
+        std::printf("metallic %g roughness %g cos %g: albedo %.3f\n", metallic, roughness, cosine, mean);
+      }
+    }
+}
+
+// A normal map that leans towards green, "up in the picture": smaller v of glTF, whichever way the uvs turn
+// it.
+TEST(GltfBrdf, NormalMapsFollowMirroredUvs) {
+  for (const int v_along : {-1, 1}) {
+    scatter::MaterialSet set;
+    const Point p = built(scene_of(material(0, 1), v_along));
+    set.textures.textures.push_back(scatter::ConstantTexture{{0.5f, 0.75f, 0.933f}});
+    set.materials.push_back(scatter::DiffuseMaterial{{Rgb(0.5f), -1}});
+    set.materials.push_back(scatter::NormalMapMaterial{0, 0, 1, true});
+    const Vec3f n = set.closure(1, p.hit.point, {0, 0, 1}).frame.n;
+    EXPECT_NEAR(n.x, 0, 1e-5f);
+    // v runs along v_along · y, so up is -v_along · y: (0.5, 0.866) by the colour.
+    EXPECT_NEAR(n.y, -0.5f * static_cast<float>(v_along), 1e-3f);
+    // Flattened to half: tan is half of 0.5 / 0.866.
+    set.materials.push_back(scatter::NormalMapMaterial{0, 0, 0.5f, true});
+    const Vec3f half = set.closure(2, p.hit.point, {0, 0, 1}).frame.n;
+    EXPECT_NEAR(std::abs(half.y) / half.z, 0.25 / 0.866, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace lumirank::world
