@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Writes the seed corpora of the fuzz targets: small good files that reach every branch of the readers once."""
+import base64
+import json
 import pathlib
 import struct
 import zlib
@@ -109,11 +111,99 @@ def ies():
         write("ies", path.name, path.read_bytes())
 
 
+def gltf():
+    corners = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+
+    def scene(data=corners):
+        return {
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+            "buffers": [{"byteLength": len(data),
+                         "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}
+
+    def write_json(name, content):
+        write("gltf", name, json.dumps(content) + "\n")
+
+    write_json("plain.gltf", scene())
+    binary = scene()
+    del binary["buffers"][0]["uri"]
+    text = json.dumps(binary).encode()
+    text += b" " * (-len(text) % 4)
+    body = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(corners)) + b"BIN\0" + corners
+    write("gltf", "plain.glb", b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body)
+
+    rich = scene()
+    rich["materials"] = [
+        {"name": "m", "doubleSided": True, "alphaMode": "MASK", "alphaCutoff": 0.4, "emissiveFactor": [1, 0.5, 0],
+         "normalTexture": {"index": 0, "scale": 0.5, "texCoord": 1},
+         "pbrMetallicRoughness": {
+             "baseColorFactor": [1, 0.5, 0.2, 0.9], "metallicFactor": 0.5, "roughnessFactor": 0.3,
+             "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {
+                 "offset": [0.1, 0.2], "rotation": 0.3, "scale": [2, 3], "texCoord": 0}}},
+             "metallicRoughnessTexture": {"index": 0}},
+         "extensions": {
+             "KHR_materials_ior": {"ior": 1.4},
+             "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1, 1, 0.5]},
+             "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.1},
+             "KHR_materials_sheen": {"sheenColorFactor": [0.1, 0.2, 0.3]},
+             "KHR_materials_transmission": {"transmissionFactor": 0.2},
+             "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2},
+             "KHR_materials_emissive_strength": {"emissiveStrength": 3}}},
+        {"extensions": {"KHR_materials_unlit": {}}}]
+    rich["textures"] = [{"source": 0, "sampler": 0}]
+    rich["samplers"] = [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]
+    rich["images"] = [{"bufferView": 1, "mimeType": "image/png"}]
+    rich["accessors"][0]["sparse"] = {"count": 1, "indices": {"bufferView": 1, "componentType": 5121},
+                                      "values": {"bufferView": 0}}
+    rich["accessors"].append({"bufferView": 0, "componentType": 5121, "normalized": True, "count": 4, "type": "VEC4"})
+    rich["meshes"][0]["weights"] = [0.5]
+    rich["meshes"][0]["primitives"][0].update(material=0, targets=[{"POSITION": 0}])
+    rich["meshes"][0]["primitives"].append({"attributes": {"POSITION": 0, "COLOR_0": 2}, "mode": 5, "material": 1})
+    rich["nodes"] = [{"mesh": 0, "children": [1, 2], "rotation": [0, 0, 0.7, 0.7], "scale": [1, 2, 3]},
+                     {"camera": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1]},
+                     {"extensions": {"KHR_lights_punctual": {"light": 0}}}]
+    rich["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1, "aspectRatio": 1.5}},
+                       {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 10}}]
+    rich["extensions"] = {"KHR_lights_punctual": {"lights": [
+        {"type": "spot", "intensity": 3, "range": 10, "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.4}}]}}
+    rich["animations"], rich["extensionsUsed"] = [{}], ["EXT_unheard_of", "KHR_materials_ior"]
+    write_json("rich.gltf", rich)
+
+    skin = scene(corners + bytes(16) + struct.pack("<16f", 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
+                 + bytes([255, 0, 0, 0] * 4))
+    skin["nodes"] = [{"mesh": 0, "skin": 0}, {"translation": [0, 1, 0]}]
+    skin["scenes"] = [{"nodes": [0, 1]}]
+    skin["skins"] = [{"joints": [1], "inverseBindMatrices": 3}]
+    skin["bufferViews"] += [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in
+                            ((60, 16), (76, 64), (140, 16))]
+    skin["accessors"] += [{"bufferView": 2, "componentType": 5121, "count": 4, "type": "VEC4"},
+                          {"bufferView": 3, "componentType": 5126, "count": 1, "type": "MAT4"},
+                          {"bufferView": 4, "componentType": 5121, "normalized": True, "count": 4, "type": "VEC4"}]
+    skin["meshes"][0]["primitives"][0]["attributes"].update(JOINTS_0=2, WEIGHTS_0=4)
+    write_json("skin.gltf", skin)
+
+    instances = scene()
+    instances["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
+    write_json("instances.gltf", instances)
+    packed = {"buffer": 0, "byteLength": 48, "byteStride": 12, "count": 4, "mode": "ATTRIBUTES"}
+    meshopt = scene()
+    meshopt["bufferViews"][0]["extensions"] = {"EXT_meshopt_compression": packed}
+    write_json("meshopt.gltf", meshopt)
+    draco = scene()
+    draco["meshes"][0]["primitives"][0]["extensions"] = {
+        "KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
+    write_json("draco.gltf", draco)
+
+
 def main():
     obj()
     ply()
     serialized()
     ies()
+    gltf()
     for name, text in SCENES.items():
         write("mitsuba", name, text)
 
