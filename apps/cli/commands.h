@@ -49,7 +49,7 @@ struct OutputOptions {
 };
 void add_output_options(CLI::App& command, OutputOptions& outputs);
 // Throws InputError before any work is done if something could not be written.
-void check_outputs(const OutputOptions& outputs);
+void check_outputs(const OutputOptions& outputs, const RenderSettings& settings);
 PreviewCallback preview_writer(const OutputOptions& outputs);
 // Writes images and report and says so; exit code 130 if the run was interrupted.
 int write_outputs(const OutputOptions& outputs, const RenderResult& result, Console& console, bool quiet);

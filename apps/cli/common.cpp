@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -91,6 +93,28 @@ void add_setting_options(CLI::App& command, CommonOptions& common, const std::ve
   }
 }
 
+namespace {
+
+void read_range(const std::string& text, DisplaySettings& display) {
+  std::istringstream in(text);
+  char colon = 0;
+  if (!(in >> display.lux_low >> colon >> display.lux_high) || colon != ':' || in.peek() != EOF ||
+      !(display.lux_low >= 0 && display.lux_high > display.lux_low && display.lux_high < 1e12))
+    throw InputError("'" + text + "' is not a range of lux", "write it as LOW:HIGH with 0 ≤ LOW < HIGH");
+}
+
+// Beside each PNG picture: room.png → room.illuminance.png.
+std::vector<std::string> illuminance_files(const OutputOptions& outputs) {
+  std::vector<std::string> files;
+  for (const auto& image : outputs.images) {
+    std::filesystem::path file(image);
+    if (file.extension() == ".png") files.push_back(file.replace_extension(".illuminance.png").string());
+  }
+  return files;
+}
+
+}  // namespace
+
 void add_output_options(CLI::App& command, OutputOptions& outputs) {
   command.add_option("-o,--output", outputs.images, "image file: .exr, .png or .pfm; repeatable")
       ->required()
@@ -100,12 +124,18 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
   command.add_option("--exposure", outputs.display.exposure, "stops, for PNG (default 0)");
   command.add_option("--tonemap", outputs.display.tonemap, "for PNG: none, reinhard or agx (default none)")
       ->check(CLI::IsMember({"none", "reinhard", "agx"}));
+  command.add_option_function<std::string>(
+      "--illuminance-range", [&outputs](const std::string& text) { read_range(text, outputs.display); },
+      "LOW:HIGH, lux: the scale of the false colours of --aov illuminance (default: 0 to a round number)");
 }
 
-void check_outputs(const OutputOptions& outputs) {
+void check_outputs(const OutputOptions& outputs, const RenderSettings& settings) {
+  const bool illuminance = std::count(settings.aovs.begin(), settings.aovs.end(), "illuminance") > 0;
   if (!(std::abs(outputs.display.exposure) <= 100))  // also what is not a number
     throw InputError("--exposure must lie between -100 and 100 stops");
   for (const auto& file : outputs.images) check_writable(file);
+  if (illuminance)
+    for (const auto& file : illuminance_files(outputs)) check_writable(file);
   if (!outputs.preview.empty()) check_writable(outputs.preview);
   if (!outputs.report.empty()) check_text_writable(outputs.report);
 }
@@ -117,6 +147,11 @@ PreviewCallback preview_writer(const OutputOptions& outputs) {
 
 int write_outputs(const OutputOptions& outputs, const RenderResult& result, Console& console, bool quiet) {
   for (const auto& file : outputs.images) write_picture(file, result.picture, outputs.display);
+  const auto& planes = result.picture.planes;
+  std::vector<std::string> written = outputs.images;
+  if (std::any_of(planes.begin(), planes.end(), [](const Plane& p) { return p.name == "illuminance"; }))
+    for (const auto& file : illuminance_files(outputs))
+      write_illuminance(file, result.picture, outputs.display), written.push_back(file);
   if (!outputs.preview.empty()) write_picture(outputs.preview, result.picture, outputs.display);
   if (!outputs.report.empty()) write_text(outputs.report, result.report_json);
   console.clear();
@@ -124,7 +159,7 @@ int write_outputs(const OutputOptions& outputs, const RenderResult& result, Cons
     std::fprintf(stderr, "interrupted: what was finished has been written to %s\n",
                  outputs.images.front().c_str());
   else if (!quiet)
-    for (const auto& file : outputs.images) std::printf("wrote %s\n", file.c_str());
+    for (const auto& file : written) std::printf("wrote %s\n", file.c_str());
   return result.interrupted ? 130 : 0;
 }
 

@@ -26,7 +26,7 @@ void add_render(CLI::App& app, Action& action) {
       const CommonOptions& common = options->common;
       const RenderSettings settings = common.render_settings();
       validate(settings);
-      check_outputs(options->outputs);
+      check_outputs(options->outputs, settings);
       Console console(common.verbosity());
       const Scene scene = Scene::load(common.scene, common.load_options(), console.sinks());
       const RenderResult result = render(scene, settings, console.sinks(), preview_writer(options->outputs));
@@ -64,7 +64,7 @@ void add_reference(CLI::App& app, Action& action) {
     action = [options] {
       const CommonOptions& common = options->common;
       const RenderSettings settings = common.render_settings();
-      check_outputs(options->outputs);
+      check_outputs(options->outputs, settings);
       Console console(common.verbosity());
       const Scene scene = Scene::load(common.scene, common.load_options(), console.sinks());
       const RenderResult result =

@@ -69,6 +69,9 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
 // By extension: .exr (all planes), .png, .pfm. Whole or absent.
 void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display = {});
 void check_writable(const std::string& filename);
+// The plane "illuminance" in false colours with a scale in lux, as PNG. Throws InputError if there is none.
+void write_illuminance(const std::string& filename, const Picture& picture,
+                       const DisplaySettings& display = {});
 // A small text file (report, settings), written to a temporary name and renamed.
 void write_text(const std::string& filename, const std::string& text);
 // Throws InputError if write_text could not write there; leaves nothing behind.

@@ -58,6 +58,8 @@ struct ReferenceSettings {
 struct DisplaySettings {
   double exposure = 0;           // stops
   std::string tonemap = "none";  // none, reinhard, agx
+  // Ends of the scale of false-colour pictures of the illuminance, in lux; high 0: from 0 to a round number.
+  double lux_low = 0, lux_high = 0;
 };
 
 // One row of the table of settings.

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "render/illuminance.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -103,11 +104,13 @@ int passes_over_columns(const RenderSettings& settings) {
     bounces = bounces || aov == "direct" || aov == "indirect";
     lights = lights || aov.starts_with("light:");
   }
-  return 1 + (bounces ? 1 : 0) + (lights ? 1 : 0);
+  return 1 + (bounces ? 1 : 0) + (lights ? 1 : 0) + (wants_illuminance(settings) ? 1 : 0);
 }
 
 void check_aovs(const world::World& world, const RenderSettings& settings) {
   const auto& emitters = world.emitters();
+  if (wants_illuminance(settings) && settings.compensate > 0)
+    throw InputError("what --compensate traces is no part of 'illuminance'", "leave out one of them");
   for (const std::string& aov : settings.aovs) {
     if (!aov.starts_with("light:")) continue;
     if (traced_roughness(settings) > 0)

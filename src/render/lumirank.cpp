@@ -12,9 +12,11 @@
 #include "film/atomic_file.h"
 #include "film/image_io.h"
 #include "film/metrics.h"
+#include "film/scale_bar.h"
 #include "methods/timed_choices.h"
 #include "render/aovs.h"
 #include "render/error_advice.h"
+#include "render/illuminance.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
 #include "render/report.h"
@@ -276,6 +278,13 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
       sinks.warn(advice);
       estimate.trace.notes["error.advice"] = advice;
     }
+    std::optional<film::Image> illuminance;
+    if (rendering::wants_illuminance(settings) && !result.interrupted) {
+      run.on_estimate = {};
+      illuminance =
+          rendering::render_illuminance(setup, settings, *method, run, scene.impl().desc.lumens_per_unit);
+      result.interrupted = !illuminance;
+    }
     if (!result.interrupted) choices.expect_end();
 
     const Timer film_timer;
@@ -304,6 +313,10 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     const auto evaluated = counters.entries_evaluated.load(), culled = counters.entries_culled.load(),
                rays = counters.rays_shadow.load();
     if (!rendering::add_aovs(result.picture, setup, settings, estimate, sinks)) result.interrupted = true;
+    if (illuminance)
+      result.picture.planes.push_back({"illuminance", rendering::to_picture(*illuminance).planes[0].rgb});
+    else if (rendering::wants_illuminance(settings))
+      sinks.warn("interrupted: the picture has no layer illuminance");
     counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
     setup.seconds["film"] = film_timer.seconds() + rest_seconds;
     // An interrupted run cannot be repeated: where it was stopped was no choice of its own.
@@ -359,6 +372,17 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
 
 void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display) {
   film::write_image(filename, to_layers(picture), to_display_options(display));
+}
+
+void write_illuminance(const std::string& filename, const Picture& picture, const DisplaySettings& display) {
+  for (const auto& [name, image] : to_layers(picture).layers) {
+    if (name != "illuminance") continue;
+    film::Range range = film::round_range(image);
+    if (display.lux_high > display.lux_low)
+      range = {static_cast<float>(display.lux_low), static_cast<float>(display.lux_high)};
+    return film::write_image(filename, {film::with_scale(image, range, "lux"), {}});
+  }
+  throw InputError({filename, 0}, "the picture has no illuminance", "render it with --aov illuminance");
 }
 
 void check_writable(const std::string& filename) { film::check_writable(filename); }

@@ -155,6 +155,24 @@ Clamped even_areas(transport::VirtualLights& lights, const world::World& world, 
 }
 }  // namespace
 
+transport::SceneMatrixSettings matrix_settings(const Setup& setup, const RenderSettings& settings) {
+  transport::SceneMatrixSettings ms;
+  ms.seed = settings.seed;
+  ms.clamp = static_cast<float>(settings.clamp);
+  ms.compensated = settings.compensate > 0;
+  using Rules = transport::SphereRules;
+  ms.spheres.indicator =
+      settings.sphere_indicator == "cosine" ? Rules::Indicator::cosine : Rules::Indicator::disc;
+  ms.spheres.strategies =
+      settings.sphere_strategies == "cone" ? Rules::Strategies::cone : Rules::Strategies::all;
+  ms.spheres.samples = settings.sphere_samples == "cone" ? Rules::Samples::cone : Rules::Samples::overlap;
+  ms.max_depth = setup.view.max_depth;
+  ms.traced_direct_below = static_cast<float>(setup.traced_below);
+  for (const auto& aov : settings.aovs)
+    if (aov.starts_with("light:") || aov == "direct" || aov == "indirect") ms.group_by_emitter = true;
+  return ms;
+}
+
 void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks) {
   const Timer timer;
   setup.matrix.reset();  // before its lights change
@@ -182,21 +200,8 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   if (sinks.cancelled()) throw Cancelled();
 
   const Timer matrix_timer;
-  transport::SceneMatrixSettings ms;
-  ms.seed = settings.seed;
-  ms.clamp = static_cast<float>(settings.clamp);
-  ms.compensated = settings.compensate > 0;
-  using Rules = transport::SphereRules;
-  ms.spheres.indicator =
-      settings.sphere_indicator == "cosine" ? Rules::Indicator::cosine : Rules::Indicator::disc;
-  ms.spheres.strategies =
-      settings.sphere_strategies == "cone" ? Rules::Strategies::cone : Rules::Strategies::all;
-  ms.spheres.samples = settings.sphere_samples == "cone" ? Rules::Samples::cone : Rules::Samples::overlap;
-  ms.max_depth = setup.view.max_depth;
-  ms.traced_direct_below = static_cast<float>(setup.traced_below);
-  for (const auto& aov : settings.aovs)
-    if (aov.starts_with("light:") || aov == "direct" || aov == "indirect") ms.group_by_emitter = true;
-  setup.matrix = std::make_unique<transport::SceneMatrix>(*setup.world, setup.receivers, setup.lights, ms);
+  setup.matrix = std::make_unique<transport::SceneMatrix>(*setup.world, setup.receivers, setup.lights,
+                                                          matrix_settings(setup, settings));
   setup.seconds["matrix"] = matrix_timer.seconds();
 }
 

@@ -50,6 +50,7 @@ struct Setup {
 double traced_roughness(const RenderSettings& settings);
 
 void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
+transport::SceneMatrixSettings matrix_settings(const Setup& setup, const RenderSettings& settings);
 // `count` virtual lights and the matrix over them.
 void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks);
 

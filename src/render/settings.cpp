@@ -129,23 +129,24 @@ Row crop_row() {
 
 bool known_aov(const std::string& name) {
   if (name.starts_with("light:") && name.size() > 6) return true;
-  static const std::vector<std::string> names = {"direct", "indirect", "emission", "albedo",
+  static const std::vector<std::string> names = {"direct", "indirect", "emission", "illuminance", "albedo",
                                                  "normal", "depth",    "position", "samples"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 Row aov_row() {
   return {{"aov", "list", "",
-           "direct,indirect,emission,albedo,normal,depth,position,samples,light:NAME,light:*", "",
+           "direct,indirect,emission,illuminance,albedo,normal,depth,position,samples,light:NAME,light:*", "",
            "further EXR layers, separated by commas; light:NAME is the part of one emitter or group, light:* "
            "all of them"},
           [](RenderSettings& s, const std::string& text) {
             s.aovs.clear();
             for (const auto& name : split(text, ',')) {
               if (!known_aov(name))
-                throw InputError("'" + name + "' is not an AOV",
-                                 "choose from direct, indirect, emission, albedo, normal, depth, position, "
-                                 "samples, light:NAME");
+                throw InputError(
+                    "'" + name + "' is not an AOV",
+                    "choose from direct, indirect, emission, illuminance, albedo, normal, depth, position, "
+                    "samples, light:NAME");
               s.aovs.push_back(name);
             }
           },

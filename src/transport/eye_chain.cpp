@@ -102,7 +102,9 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, s
     const Closure closure = world_.materials().closure(hit->material, hit->point, wo);
     if (from_eye && first) {
       const float side = dot(closure.frame.n, wo) < 0 ? -1.0f : 1.0f;
-      *first = {scatter::albedo(closure, wo), closure.frame.n * side, hit->point.position, hit->hit.t};
+      const float ng_side = dot(closure.ng, wo) < 0 ? -1.0f : 1.0f;
+      *first = {scatter::albedo(closure, wo), closure.frame.n * side, closure.ng * ng_side,
+                hit->point.position, hit->hit.t};
     }
     const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
     // Where the two normals disagree about the side of wo, the smooth lobes are 0 (scatter::eval).

@@ -21,7 +21,7 @@ struct EyeVertex {
 
 struct FirstHit {
   Rgb albedo;
-  Vec3f normal, position;
+  Vec3f normal, ng, position;  // normals on the eye's side
   float distance = kInfinity;
 };
 

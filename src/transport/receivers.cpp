@@ -84,6 +84,7 @@ class ReceiverTracer {
     if (settings_.first_hits) {
       result_.first_albedo.resize(samples);
       result_.first_normal.resize(samples);
+      result_.first_ng.resize(samples);
       result_.first_position.resize(samples);
       result_.first_distance.resize(samples);
     }
@@ -135,6 +136,7 @@ class ReceiverTracer {
       if (!settings_.first_hits) continue;
       result_.first_albedo[sample] = first.albedo;
       result_.first_normal[sample] = first.normal;
+      result_.first_ng[sample] = first.ng;
       result_.first_position[sample] = first.position;
       result_.first_distance[sample] = first.distance;
     }
@@ -219,6 +221,26 @@ std::size_t Receivers::memory_bytes() const {
          bytes(depth) + bytes(closure) + bytes(albedo) + closures.memory_bytes() + bytes(film) +
          bytes(emission) + bytes(first_albedo) + bytes(first_normal) + bytes(first_position) +
          bytes(first_distance);
+}
+
+Receivers white_receivers(const Receivers& seen) {
+  Receivers out;
+  out.film = seen.film;
+  out.emission.assign(seen.samples(), Rgb(0));
+  out.width = seen.width, out.height = seen.height;
+  for (std::size_t k = 0; k < seen.samples(); ++k) {
+    if (!std::isfinite(seen.first_distance[k])) continue;
+    out.position.push_back(seen.first_position[k]);
+    out.normal.push_back(seen.first_normal[k]), out.ng.push_back(seen.first_ng[k]);
+    // Light is received from above the surface, at whatever angle it is looked at: even where a shading
+    // normal turns away from the eye, wo must lie on the side of both.
+    out.wo.push_back(normalize(seen.first_normal[k] + seen.first_ng[k]));
+    out.weight.push_back(Rgb(1)), out.albedo.push_back(Rgb(1));
+    out.sample.push_back(static_cast<std::uint32_t>(k));
+    out.depth.push_back(1);
+    out.closure.push_back(Receivers::kLambertian);
+  }
+  return out;
 }
 
 }  // namespace lumirank::transport

@@ -50,7 +50,7 @@ struct Receivers {
   // First hit of each sample, for AOVs: zero (distance: infinite) where the background is seen. Empty if not
   // asked for.
   std::vector<Rgb> first_albedo;
-  std::vector<Vec3f> first_normal, first_position;
+  std::vector<Vec3f> first_normal, first_ng, first_position;  // normals on the eye's side
   std::vector<float> first_distance;
   int width = 0, height = 0;  // of the cropped film
 
@@ -61,6 +61,10 @@ struct Receivers {
   std::size_t samples() const { return film.size(); }
   std::size_t memory_bytes() const;
 };
+
+// A white diffuse receiver (albedo 1) at every first hit, for the irradiance there: E = π times its radiance.
+// Weights are 1, depths 1; film samples stay those of `seen`, which has its first hits.
+Receivers white_receivers(const Receivers& seen);
 
 Receivers trace_receivers(const world::World& world, const world::Camera& camera,
                           const ReceiverSettings& settings, const Sinks& sinks = {});

@@ -89,6 +89,8 @@ TEST(Commands, WrongOptionsOfRender) {
       {{"--crop", "8,0,8,8"}, "beyond the film of 12x10"},
       {{"--camera", "left"}, "there is no camera 'left'"},
       {{"--aov", "beauty"}, "choose from direct, indirect"},
+      {{"--illuminance-range", "5"}, "LOW:HIGH"},
+      {{"--illuminance-range", "5:5"}, "LOW:HIGH"},
       {{"--aov", "light:moon"}, "there is no light 'moon'; the lights are lamp"},
       {{"--aov", "light:lamp", "--direct", "traced"}, "--direct traced"},
       {{"--define", "x"}, "KEY=VALUE"},

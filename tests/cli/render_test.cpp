@@ -48,6 +48,18 @@ TEST_F(Render, EveryFormatInOneRun) {
   EXPECT_EQ(files_in(folder_ / "").size(), 4u) << "no temporary file is left";
 }
 
+TEST_F(Render, IlluminanceHasAFalseColourPictureBesideEachPng) {
+  const Outcome outcome =
+      lumirank(render_small(scene_, folder_ / "a.exr") +
+               Arguments{"-o", folder_ / "a.png", "--aov", "illuminance", "--illuminance-range", "0:2e6"});
+  EXPECT_SUCCESS(outcome);
+  EXPECT_NE(outcome.out.find("a.illuminance.png"), std::string::npos);
+  const Pixels p = read_pixels(folder_ / "a.illuminance.png");
+  EXPECT_EQ(p.width, 12);
+  EXPECT_GT(p.height, 10) << "the scale";
+  EXPECT_EQ(files_in(folder_ / "").size(), 4u);
+}
+
 TEST_F(Render, QuietSaysNothing) {
   const Outcome outcome = lumirank(render_small(scene_, folder_ / "a.exr") + Arguments{"--quiet"});
   EXPECT_SUCCESS(outcome);
@@ -128,8 +140,9 @@ TEST_F(Render, ReplayRepeatsWhatTheClockDecided) {
   }
   // The rest of the paths and the layers share the budget.
   const std::string file = folder_ / "first.exr";
-  EXPECT_SUCCESS(lumirank({"render", scene_, "-o", file, "--lights", "20000", "--size", "60x50", "--time",
-                           "0.5", "--rest", "trace", "--aov", "direct,light:*", "--report", report}));
+  EXPECT_SUCCESS(
+      lumirank({"render", scene_, "-o", file, "--lights", "20000", "--size", "60x50", "--time", "0.5",
+                "--rest", "trace", "--aov", "direct,light:*,illuminance", "--report", report}));
   EXPECT_TRUE(read_json(report)["choices"].contains("rest_paths"));
   EXPECT_SUCCESS(lumirank({"render", scene_, "-o", again, "--replay", report, "--threads", "2"}));
   EXPECT_EQ(read_pixels(again), read_pixels(file));
