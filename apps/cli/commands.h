@@ -20,6 +20,7 @@ void add_render(CLI::App& app, Action& action);
 void add_reference(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_error(CLI::App& app, Action& action);
+void add_convert(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_methods(CLI::App& app, Action& action);
 

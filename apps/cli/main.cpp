@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   cli::add_compare(app, action);
   cli::add_error(app, action);
   cli::add_info(app, action);
+  cli::add_convert(app, action);
   cli::add_methods(app, action);
   app.footer(
       "Examples:\n"

@@ -1,0 +1,44 @@
+// `lumirank convert`: a scene of any format as Mitsuba 3 XML with the files that it needs.
+#include <filesystem>
+
+#include "base/error.h"
+#include "film/atomic_file.h"
+#include "lumirank/convert.h"
+#include "render/pipeline.h"
+#include "scenedesc/mitsuba_writer/mitsuba_writer.h"
+
+namespace lumirank {
+
+std::vector<std::string> convert(const Scene& scene, const std::string& filename, const Sinks& sinks) {
+  namespace fs = std::filesystem;
+  if (fs::path(filename).extension() != ".xml")
+    throw InputError({filename, 0}, "a scene is written as Mitsuba XML only",
+                     "give a name that ends in .xml");
+  const auto& desc = scene.impl().desc;
+  const scenedesc::WrittenScene written = scenedesc::write_mitsuba(desc, filename);
+  std::vector<std::string> names;
+  for (const auto& file : written.files)
+    names.push_back((fs::path(filename).parent_path() / file.name).string());
+  names.push_back(filename);
+  for (const std::string& name : names)
+    for (const std::string& input : scenedesc::files_of(desc)) {
+      std::error_code absent;
+      if (fs::equivalent(name, input, absent) && !absent)
+        throw InputError({name, 0}, "this file is part of the scene that is converted",
+                         "choose another name");
+    }
+  for (const auto& w : written.warnings) {
+    std::string text = to_string(w.where);
+    text += (text.empty() ? "" : ": ") + w.what;
+    text += w.used_instead.empty() ? "; left out" : "; written instead: " + w.used_instead;
+    if (scene.impl().options.strict) throw InputError(w.where, w.what, "--strict is given");
+    sinks.warn(text);
+  }
+  // The scene last: whoever finds it finds all its files.
+  for (std::size_t k = 0; k < written.files.size(); ++k)
+    film::write_whole_file(names[k], written.files[k].bytes);
+  film::write_whole_file(filename, written.xml);
+  return names;
+}
+
+}  // namespace lumirank

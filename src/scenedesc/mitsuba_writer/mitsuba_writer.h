@@ -1,0 +1,34 @@
+// A scene description as Mitsuba 3 XML, whatever format it was read from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenedesc/scene_desc.h"
+
+namespace lumirank::scenedesc {
+
+struct WrittenFile {
+  std::string name;  // in the folder of the scene file
+  std::string bytes;
+};
+
+struct WrittenScene {
+  std::string xml;
+  std::vector<WrittenFile> files;  // meshes, pictures and curves that the description itself holds
+  // What Mitsuba 3 cannot say, and what is written in its place.
+  std::vector<Warning> warnings;
+};
+
+// `filename` (OUT.xml) only names: files that the scene refers to are named relative to its folder, and those
+// of `files` begin with its stem. Nothing is written. Reads mesh files whose normals are to be made anew and
+// IES profiles; InputError if one cannot be read.
+WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename);
+
+// Every file that the description names.
+std::vector<std::string> files_of(const SceneDesc& scene);
+
+// A mesh as a binary PLY file: x y z, and as far as it has them nx ny nz, u v, r g b, as floats.
+std::string ply_bytes(const MeshData& mesh);
+
+}  // namespace lumirank::scenedesc

@@ -1,0 +1,127 @@
+#include "scenedesc/mitsuba_writer/writer.h"
+
+namespace lumirank::scenedesc {
+namespace {
+
+const char* wrap_name(WrapMode mode) {
+  return mode == WrapMode::repeat ? "repeat" : (mode == WrapMode::mirror ? "mirror" : "clamp");
+}
+
+Transform spread(const UvTransform& uv) {
+  Transform t;
+  for (std::size_t row = 0; row < 2; ++row) {
+    t.m[4 * row] = uv.m[3 * row], t.m[4 * row + 1] = uv.m[3 * row + 1];
+    t.m[4 * row + 3] = uv.m[3 * row + 2];
+  }
+  return t;
+}
+
+// Mitsuba's v runs down the picture: the reader's flip, undone.
+UvTransform unflip_v(UvTransform t) {
+  for (int i = 3; i < 6; ++i) t.m[i] = 0.0f - t.m[i];
+  t.m[5] += 1;
+  return t;
+}
+
+}  // namespace
+
+MitsubaWriter::Input MitsubaWriter::resolve(const ColorInput& input) {
+  return input.texture == kNone ? Input{input.value, kNone} : resolve(input.texture);
+}
+
+// Mitsuba 3 has pictures, checkerboards and vertex colours; what is made of them is followed to one of these.
+MitsubaWriter::Input MitsubaWriter::resolve(int index) {
+  const TextureDesc& t = scene_.textures[static_cast<std::size_t>(index)];
+  if (const auto* scale = std::get_if<ScaleTextureDesc>(&t.kind)) {
+    const Input in = resolve(scale->input);
+    if (in.texture == kNone) return {in.value * scale->scale, kNone};
+    if (!(scale->scale == Rgb(1))) warn(t.where, "a texture scaled by a number", "the texture itself");
+    return in;
+  }
+  if (const auto* product = std::get_if<ProductTextureDesc>(&t.kind)) {
+    const Input a = resolve(product->a), b = resolve(product->b);
+    if (a.texture == kNone && b.texture == kNone) return {a.value * b.value, kNone};
+    const Input& one = a.texture != kNone ? a : b;
+    const Input& other = a.texture != kNone ? b : a;
+    if (other.texture != kNone)
+      warn(t.where, "a product of two textures", "the first of them");
+    else if (!(other.value == Rgb(1)))
+      warn(t.where, "a texture scaled by a number", "the texture itself");
+    return one;
+  }
+  if (const auto* threshold = std::get_if<ThresholdTextureDesc>(&t.kind)) {
+    const Input in = resolve(threshold->input);
+    if (in.texture == kNone) return {Rgb(luminance(in.value) >= threshold->threshold ? 1.0f : 0.0f), kNone};
+    warn(t.where, "a texture with a threshold", "the texture itself");
+    return in;
+  }
+  return {Rgb(0), index};
+}
+
+void MitsubaWriter::color(const char* name, const ColorInput& input) {
+  const Input in = resolve(input);
+  if (in.texture == kNone)
+    xml_.color(name, in.value);
+  else
+    xml_.reference(texture_ids_[static_cast<std::size_t>(in.texture)], name);
+}
+
+void MitsubaWriter::scalar(const char* name, const FloatInput& input) {
+  const Input in = input.texture == kNone ? Input{Rgb(input.value), kNone} : resolve(input.texture);
+  if (in.texture == kNone)
+    xml_.number(name, input.texture == kNone ? input.value : luminance(in.value));
+  else
+    xml_.reference(texture_ids_[static_cast<std::size_t>(in.texture)], name);
+}
+
+void MitsubaWriter::constant(const char* name, const FloatInput& input, const SourceLocation& where,
+                             const char* what) {
+  float value = input.value;
+  if (input.texture != kNone) {
+    const Input in = resolve(input.texture);
+    value = in.texture == kNone ? luminance(in.value) : 0.2f;
+    if (in.texture != kNone) warn(where, what, "0.2 everywhere");
+  }
+  xml_.number(name, value);
+}
+
+std::string MitsubaWriter::picture_of(const BitmapTextureDesc& bitmap) {
+  if (!bitmap.bytes) return relative(bitmap.filename);
+  std::string& name = stored_[bitmap.bytes.get()];
+  if (name.empty()) {
+    const bool png = bitmap.bytes->compare(0, 4, "\x89PNG") == 0;
+    name = add_file("picture_" + std::to_string(out_.files.size()), png ? ".png" : ".jpg", *bitmap.bytes);
+  }
+  return name;
+}
+
+void MitsubaWriter::texture(int index) {
+  const TextureDesc& t = scene_.textures[static_cast<std::size_t>(index)];
+  const std::string& id = texture_ids_[static_cast<std::size_t>(index)];
+  if (const auto* bitmap = std::get_if<BitmapTextureDesc>(&t.kind)) {
+    if (bitmap->channel != TextureChannel::rgb)
+      warn(t.where, "a single channel of a picture", "the luminance of all");
+    xml_.open("texture", {{"type", "bitmap"}, {"id", id}});
+    xml_.string("filename", picture_of(*bitmap));
+    xml_.flag("raw", bitmap->raw);
+    xml_.string("filter_type", bitmap->filter == FilterMode::nearest ? "nearest" : "bilinear");
+    if (bitmap->wrap_u != bitmap->wrap_v)
+      warn(t.where, "two different wrap modes of a picture", wrap_name(bitmap->wrap_u));
+    xml_.string("wrap_mode", wrap_name(bitmap->wrap_u));
+    xml_.transform("to_uv", spread(unflip_v(bitmap->to_uv)));
+    xml_.close();
+  } else if (const auto* board = std::get_if<CheckerboardTextureDesc>(&t.kind)) {
+    xml_.open("texture", {{"type", "checkerboard"}, {"id", id}});
+    color("color0", board->color0), color("color1", board->color1);
+    xml_.transform("to_uv", spread(board->to_uv));
+    xml_.close();
+  } else if (std::holds_alternative<VertexColorTextureDesc>(t.kind)) {
+    xml_.open("texture", {{"type", "mesh_attribute"}, {"id", id}});
+    xml_.string("name", "vertex_color");
+    xml_.close();
+  } else {
+    resolve(index);  // written where it is used; says here what is lost
+  }
+}
+
+}  // namespace lumirank::scenedesc

@@ -1,0 +1,76 @@
+// The state of one conversion. Internal to this folder.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "scenedesc/mitsuba_writer/mitsuba_writer.h"
+#include "scenedesc/mitsuba_writer/xml.h"
+
+namespace lumirank::scenedesc {
+
+class MitsubaWriter {
+ public:
+  MitsubaWriter(const SceneDesc& scene, const std::string& filename);
+  WrittenScene write();
+
+ private:
+  // An input as Mitsuba 3 has it: another texture, or a constant.
+  struct Input {
+    Rgb value;
+    int texture = kNone;
+  };
+
+  void warn(const SourceLocation& where, const std::string& what, const std::string& instead);
+  std::string unique_id(const std::string& wanted, const std::string& otherwise);
+  std::string relative(const std::string& file) const;
+  std::string add_file(const std::string& what, const std::string& extension, std::string bytes);
+
+  // textures.cpp
+  Input resolve(int texture);
+  Input resolve(const ColorInput& input);
+  void texture(int index);
+  void color(const char* name, const ColorInput& input);
+  void scalar(const char* name, const FloatInput& input);
+  // The scalar as a constant where Mitsuba 3 takes no texture.
+  void constant(const char* name, const FloatInput& input, const SourceLocation& where, const char* what);
+  std::string picture_of(const BitmapTextureDesc& bitmap);
+
+  // bsdfs.cpp
+  void bsdf(int index);
+  void kind_of(const BsdfDesc& desc, const std::string& id);
+  void open_bsdf(const char* type, const std::string& id);
+  void roughness(Distribution distribution, const FloatInput& alpha_u, const FloatInput& alpha_v);
+  bool transmits(int index) const;
+  void dull_and_glossy(const std::string& id, const ColorInput& dull, const ColorInput& glossy,
+                       const FloatInput& alpha_u, const FloatInput& alpha_v);
+  void coating(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id);
+  void mixture(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id);
+  void blend_rest(const MixtureDesc& d, std::size_t from, double sum, const std::string& id);
+
+  // shapes.cpp
+  void shape(int index);
+  void mesh(const ShapeDesc& shape, const MeshFileDesc& file);
+  void ply(const ShapeDesc& shape, const MeshData& mesh, const std::string& id);
+  void curves(const ShapeDesc& shape, const CurvesDesc& curves, const std::string& id);
+  void open_shape(const char* type, const std::string& id);
+
+  // lights.cpp
+  void emitter(const EmitterDesc& emitter);
+  void sky(const SunSkyDesc& d, const EmitterDesc& from, const std::string& id);
+  void sensor(const SensorDesc& sensor);
+  void filter(const FilterDesc& filter, const SourceLocation& where);
+
+  const SceneDesc& scene_;
+  std::filesystem::path filename_;
+  Xml xml_;
+  WrittenScene out_;
+  std::vector<std::string> texture_ids_, bsdf_ids_, shape_ids_;
+  std::set<std::string> taken_, warned_;
+  std::map<const void*, std::string> stored_;  // meshes and pictures that are used more than once
+};
+
+}  // namespace lumirank::scenedesc

@@ -1,0 +1,293 @@
+// Read, written, read again: the same description, for every variant that Mitsuba 3 has, and a stand-in with
+// a warning for every other.
+#include "scenedesc/mitsuba_writer/mitsuba_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+
+#include "scenedesc/readers.h"
+#include "support/scene_file.h"
+
+namespace lumirank::scenedesc {
+namespace {
+
+// The listing without the head, made-up names and warnings.
+std::string listing(const SceneDesc& scene) {
+  std::string text = describe(scene);
+  text.erase(0, text.find(", depth"));
+  text.erase(text.rfind(" warnings\n"));
+  text.erase(text.rfind('\n'));
+  return std::regex_replace(text, std::regex("\n  ([0-9]+) \"[^\"]*\":"), "\n  $1:");
+}
+
+struct RoundTrip {
+  WrittenScene first, second;
+  SceneDesc again;
+  RoundTrip(const SceneDesc& scene, const test::TemporaryFolder& folder) {
+    const std::string name = folder / "out.xml";
+    first = write_mitsuba(scene, name);
+    for (const WrittenFile& file : first.files)
+      std::ofstream(folder / file.name, std::ios::binary) << file.bytes;
+    again = parse_mitsuba(first.xml, name);
+    second = write_mitsuba(again, name);
+  }
+};
+
+TEST(MitsubaWriter, ExamplesComeBackAsTheyWere) {
+  for (const char* name : {"box", "courtyard", "interior", "lamps", "recesses"}) {
+    const test::TemporaryFolder folder;
+    const SceneDesc scene = read_mitsuba(std::string(LUMIRANK_EXAMPLES) + "/" + name + ".xml");
+    const RoundTrip trip(scene, folder);
+    if (std::string(name) == "courtyard") {  // its sky is turned by 90° and back, which rounds
+      const auto& a = std::get<SunSkyDesc>(scene.emitters.at(0).kind);
+      const auto& b = std::get<SunSkyDesc>(trip.again.emitters.at(0).kind);
+      EXPECT_LT(length(a.to_world.vector(a.sun_direction) - b.to_world.vector(b.sun_direction)), 1e-6f);
+      EXPECT_EQ(a.sun_scale, b.sun_scale);
+      EXPECT_EQ(a.sky_scale, b.sky_scale);
+    } else {
+      EXPECT_TRUE(listing(scene) == listing(trip.again)) << name;
+      // The listing rounds numbers; what is written has all their digits.
+      EXPECT_TRUE(trip.first.xml == trip.second.xml) << name;
+    }
+    for (std::size_t k = 0; k < scene.shapes.size(); ++k) {
+      EXPECT_EQ(scene.shapes[k].to_world, trip.again.shapes[k].to_world);
+      if (!scene.shapes[k].id.empty() && scene.shapes[k].id.find('.') == std::string::npos) {
+        EXPECT_EQ(scene.shapes[k].id, trip.again.shapes[k].id) << name;
+      }
+    }
+  }
+}
+
+MeshData triangle() {
+  MeshData m;
+  m.positions = {{0, 0, 0}, {1, 0, 0.1f}, {0, 1, 0}};
+  m.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  m.uvs = {{0, 0.25f}, {1, 0}, {0, 1}};
+  m.colors = {{1, 0, 0}, {0, 0.3f, 0}, {0, 0, 1}};
+  m.indices = {0, 1, 2};
+  return m;
+}
+
+TEST(MitsubaWriter, AMeshInMemoryBecomesAPlyFileWithAllItHas) {
+  const MeshData m = triangle(), back = parse_ply(ply_bytes(m), "m.ply");
+  EXPECT_EQ(back.positions, m.positions);
+  EXPECT_EQ(back.normals, m.normals);
+  EXPECT_EQ(back.uvs, m.uvs);
+  EXPECT_EQ(back.colors, m.colors);
+  EXPECT_EQ(back.indices, m.indices);
+}
+
+// One of each that Mitsuba 3 can say.
+SceneDesc everything_it_has(const test::TemporaryFolder& folder) {
+  std::ofstream(folder / "a picture & more.png") << "";
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  scene.sensors[0].film.filter.kind = FilterKind::gaussian;
+  SensorDesc lens;
+  lens.id = "lens";
+  lens.kind = SensorKind::thinlens;
+  lens.aperture_radius = 0.1f, lens.focus_distance = 3, lens.fov_x = 33.3f;
+  lens.film.filter.kind = FilterKind::mitchell;
+  lens.film.crop_x = 3, lens.film.crop_y = 4, lens.film.crop_width = 100, lens.film.crop_height = 50;
+  lens.to_world = Transform::look_at({1, 2, 3}, {0, 0, 0.1f}, {0, 1, 0});
+  lens.samples_per_pixel = 8;
+  scene.sensors.push_back(lens);
+  SensorDesc flat;
+  flat.id = "flat", flat.kind = SensorKind::orthographic;
+  flat.film.filter.kind = FilterKind::lanczos;
+  scene.sensors.push_back(flat);
+  const auto texture = [&](auto kind) {
+    TextureDesc t;
+    t.kind = std::move(kind);
+    scene.textures.push_back(std::move(t));
+    return static_cast<int>(scene.textures.size()) - 1;
+  };
+  BitmapTextureDesc picture;
+  picture.filename = folder / "a picture & more.png";
+  picture.filter = FilterMode::nearest, picture.wrap_u = picture.wrap_v = WrapMode::mirror;
+  picture.to_uv.m[0] = 2, picture.to_uv.m[2] = 0.25f, picture.to_uv.m[4] = -3;
+  const int bitmap = texture(picture), board = texture(CheckerboardTextureDesc{});
+  const int colors = texture(VertexColorTextureDesc{});
+  const auto bsdf = [&](auto kind) {
+    BsdfDesc b;
+    b.kind = std::move(kind);
+    scene.bsdfs.push_back(std::move(b));
+    return static_cast<int>(scene.bsdfs.size()) - 1;
+  };
+  const int matt = bsdf(DiffuseDesc{{Rgb(0), bitmap}});
+  bsdf(NullBsdfDesc{});
+  bsdf(ConductorDesc{});
+  const int metal = bsdf(
+      ConductorDesc{Rgb(0.2f, 0.9f, 1.1f), Rgb(3, 2, 2), {Rgb(0.9f)}, Distribution::ggx, {0.1f}, {0.3f}});
+  bsdf(DielectricDesc{});
+  bsdf(DielectricDesc{1.3f, {Rgb(1)}, {Rgb(0.5f)}, Distribution::beckmann, {0, board}, {0, board}});
+  bsdf(ThinDielectricDesc{});
+  bsdf(PlasticDesc{});
+  bsdf(PlasticDesc{1.7f, {Rgb(0), colors}, {Rgb(1)}, true, Distribution::ggx, {0.2f}});
+  PrincipledDesc p;
+  p.metallic.value = 0.3f, p.clearcoat.texture = board;
+  bsdf(p);
+  bsdf(MaskDesc{{0, board}, matt});
+  bsdf(TwoSidedDesc{matt, matt});
+  bsdf(TwoSidedDesc{matt, metal});
+  bsdf(BumpMapDesc{bitmap, 0.5f, matt});
+  NormalMapDesc normal;
+  normal.texture = bitmap, normal.nested = metal;
+  bsdf(normal);
+  bsdf(MixtureDesc{{{{0.3f}, true, matt}, {{0.3f}, false, metal}}});
+  const auto shape = [&](auto kind) -> ShapeDesc& {
+    ShapeDesc s;
+    s.kind = std::move(kind);
+    s.bsdf = matt;
+    s.to_world = Transform::rotate(1, 2, 3, 40) * Transform::scale(0.3, 2, -1);
+    scene.shapes.push_back(std::move(s));
+    return scene.shapes.back();
+  };
+  shape(RectangleDesc{}).emitter.emplace().radiance.texture = board;
+  shape(CubeDesc{}).flip_normals = true;
+  shape(SphereDesc{{1, 2, 3}, 0.7f});
+  shape(DiskDesc{});
+  shape(CylinderDesc{{0, 1, 0}, {3, 0, 0}, 0.2f});
+  std::ofstream(folder / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  shape(MeshFileDesc{MeshFormat::obj, folder / "m.obj", 0, true, false, {}});
+  shape(CubeDesc{}).in_group = true;
+  shape(ShapeGroupDesc{{static_cast<int>(scene.shapes.size()) - 1}});
+  scene.shapes.back().bsdf = kNone, scene.shapes.back().to_world = {};
+  shape(InstanceDesc{static_cast<int>(scene.shapes.size()) - 1}).bsdf = kNone;
+  const auto light = [&](auto kind, const char* id = "") {
+    EmitterDesc e;
+    e.kind = std::move(kind);
+    e.id = id;
+    scene.emitters.push_back(std::move(e));
+  };
+  light(PointLightDesc{{1, 2, 3}, Rgb(4, 5, 6)}, "bulb");
+  light(SpotLightDesc{Transform::rotate(1, 0, 0, 90), Rgb(2), 30, 10});
+  light(DirectionalLightDesc{{0, 0, -1}, Rgb(2)});
+  light(ConstantEnvironmentDesc{Rgb(0.1f, 0.2f, 0.3f)});
+  std::ofstream(folder / "sky.exr") << "";
+  light(EnvironmentMapDesc{folder / "sky.exr", 2.5f, Transform::rotate(0, 1, 0, 30)});
+  return scene;
+}
+
+TEST(MitsubaWriter, EveryVariantThatMitsubaHasComesBack) {
+  const test::TemporaryFolder folder;
+  const SceneDesc scene = everything_it_has(folder);
+  const RoundTrip trip(scene, folder);
+  EXPECT_EQ(listing(scene), listing(trip.again));
+  EXPECT_EQ(trip.first.xml, trip.second.xml);
+  EXPECT_TRUE(trip.first.warnings.empty()) << trip.first.warnings[0].what;
+  EXPECT_TRUE(trip.again.warnings.empty()) << trip.again.warnings[0].what;
+  EXPECT_EQ(trip.again.emitters[0].id, "bulb");
+  EXPECT_EQ(trip.first.xml.find(folder / ""), std::string::npos) << "names are relative";
+}
+
+// What Mitsuba 3 lacks: a warning that names it, and a file that is read without any.
+TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
+  const auto expect = [](const char* what, auto&& change) {
+    const test::TemporaryFolder folder;
+    SceneDesc scene;
+    scene.sensors.emplace_back();
+    scene.bsdfs.emplace_back().kind = DiffuseDesc{};
+    scene.textures.emplace_back().kind = CheckerboardTextureDesc{};
+    ShapeDesc& s = scene.shapes.emplace_back();
+    s.kind = CubeDesc{};
+    s.bsdf = 0;
+    change(scene);
+    s.bsdf = static_cast<int>(scene.bsdfs.size()) - 1;
+    const RoundTrip trip(scene, folder);
+    ASSERT_FALSE(trip.first.warnings.empty()) << what;
+    EXPECT_NE(trip.first.warnings[0].what.find(what), std::string::npos) << trip.first.warnings[0].what;
+    EXPECT_TRUE(trip.again.warnings.empty()) << what << ": " << trip.again.warnings[0].what;
+    EXPECT_EQ(trip.again.shapes.size(), 1u);
+  };
+  const auto bsdf = [](auto kind) {
+    return [kind](SceneDesc& scene) { scene.bsdfs.emplace_back().kind = kind; };
+  };
+  expect("Oren-Nayar", bsdf(RoughDiffuseDesc{}));
+  expect("Phong", bsdf(PhongDesc{}));
+  expect("Ward", bsdf(WardDesc{}));
+  expect("hair", bsdf(HairDesc{}));
+  CoatingDesc coat;
+  coat.nested = 0;
+  expect("coating", bsdf(coat));
+  expect("textured weights", bsdf(MixtureDesc{{{{0, 0}, false, 0}, {{0.2f}, false, 0}, {{0.2f}, false, 0}}}));
+  expect("scaled", [](SceneDesc& scene) {
+    scene.textures.emplace_back().kind = ScaleTextureDesc{{Rgb(0), 0}, Rgb(2)};
+    scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 1}};
+  });
+  expect("product", [](SceneDesc& scene) {
+    scene.textures.emplace_back().kind = ProductTextureDesc{{Rgb(0), 0}, {Rgb(0), 0}};
+    scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 1}};
+  });
+  expect("threshold", [](SceneDesc& scene) {
+    scene.textures.emplace_back().kind = ThresholdTextureDesc{{Rgb(0), 0}};
+    scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 1}};
+  });
+  expect("IES", [](SceneDesc& scene) {
+    ProfileLightDesc light;
+    light.filename = std::string(LUMIRANK_TEST_DATA) + "/ies/even.ies";
+    scene.emitters.emplace_back().kind = light;
+  });
+  expect("photometric", [](SceneDesc& scene) { scene.lumens_per_unit = 1; });
+}
+
+TEST(MitsubaWriter, AnIesProfileBecomesAPointLightOfItsPower) {
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  ProfileLightDesc light;  // 1000 cd over a half sphere: a mean of 500 cd
+  light.filename = std::string(LUMIRANK_TEST_DATA) + "/ies/even.ies";
+  light.to_world = Transform::translate(1, 2, 3);
+  scene.emitters.emplace_back().kind = light;
+  const SceneDesc again = parse_mitsuba(write_mitsuba(scene, "out.xml").xml, "out.xml");
+  const auto& point = std::get<PointLightDesc>(again.emitters.at(0).kind);
+  EXPECT_NEAR(point.intensity.g * kLumensPerUnit, 500, 0.01);
+  EXPECT_EQ(point.position, (Vec3f{1, 2, 3}));
+}
+
+TEST(MitsubaWriter, MeshesAndPicturesInMemoryAreWrittenOnce) {
+  const test::TemporaryFolder folder;
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  const auto mesh = std::make_shared<const MeshData>(triangle());
+  for (int k = 0; k < 2; ++k) scene.shapes.emplace_back().kind = InlineMeshDesc{mesh, "both"};
+  BitmapTextureDesc picture;
+  picture.bytes = std::make_shared<const std::string>("\x89PNG and so on");
+  for (int k = 0; k < 2; ++k) scene.textures.emplace_back().kind = picture;
+  const RoundTrip trip(scene, folder);
+  ASSERT_EQ(trip.first.files.size(), 2u);
+  EXPECT_EQ(trip.first.files[0].bytes, *picture.bytes);
+  const auto& file = std::get<MeshFileDesc>(trip.again.shapes.at(1).kind);
+  EXPECT_EQ(read_mesh(file).positions, mesh->positions);
+  EXPECT_EQ(read_mesh(file).uvs, mesh->uvs);
+}
+
+// A Bézier piece and its b-spline are one curve: equal at both ends and in the middle.
+TEST(MitsubaWriter, BezierCurvesBecomeTheSameBSplines) {
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  CurvesDesc c;
+  c.basis = CurvesDesc::Basis::bezier;
+  c.points = {{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {4, 0, 0}};
+  c.radii = {0.1f, 0.1f, 0.1f, 0.1f};
+  c.first = {0, 4};
+  scene.shapes.emplace_back().kind = c;
+  const WrittenScene out = write_mitsuba(scene, "out.xml");
+  ASSERT_EQ(out.files.size(), 1u);
+  std::istringstream in(out.files[0].bytes);
+  double s[4][4];
+  for (auto& p : s)
+    for (double& x : p) ASSERT_TRUE(in >> x);
+  for (int a = 0; a < 3; ++a) {
+    const auto b = [&](std::size_t k) { return double{c.points[k][a]}; };
+    EXPECT_NEAR((s[0][a] + 4 * s[1][a] + s[2][a]) / 6, b(0), 1e-5);
+    EXPECT_NEAR((s[1][a] + 4 * s[2][a] + s[3][a]) / 6, b(3), 1e-5);
+    EXPECT_NEAR((s[0][a] + 23 * s[1][a] + 23 * s[2][a] + s[3][a]) / 48,
+                (b(0) + 3 * b(1) + 3 * b(2) + b(3)) / 8, 1e-5);
+  }
+  EXPECT_NEAR(s[2][3], 0.1, 1e-6);
+}
+
+}  // namespace
+}  // namespace lumirank::scenedesc
