@@ -204,11 +204,13 @@ void MitsubaWriter::coating(const CoatingDesc& d, const BsdfDesc& desc, const st
 
 void MitsubaWriter::mixture(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id) {
   const auto nested = [&](int k) { xml_.reference(bsdf_ids_[static_cast<std::size_t>(k)]); };
-  if (d.parts.size() == 2 && d.parts[0].complement && !d.parts[1].complement &&
+  // A pair of complementary weights, either way round: the first has the complement.
+  if (d.parts.size() == 2 && d.parts[0].complement != d.parts[1].complement &&
       same(d.parts[0].weight, d.parts[1].weight)) {
+    const std::size_t rest = d.parts[0].complement ? 0 : 1;
     open_bsdf("blendbsdf", id);
-    scalar("weight", d.parts[1].weight);
-    nested(d.parts[0].bsdf), nested(d.parts[1].bsdf);
+    scalar("weight", d.parts[0].weight);
+    nested(d.parts[rest].bsdf), nested(d.parts[1 - rest].bsdf);
     return xml_.close();
   }
   double sum = 0;

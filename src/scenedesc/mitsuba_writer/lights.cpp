@@ -56,6 +56,8 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
     open("constant");
     xml_.color("radiance", constant->radiance);
   } else if (const auto* map = std::get_if<EnvironmentMapDesc>(&e.kind)) {
+    if (map->projection != EnvironmentProjection::latitude_longitude)
+      return warn(e.where, "an environment in the equal-area projection", "");
     open("envmap");
     xml_.string("filename", relative(map->filename));
     xml_.number("scale", map->scale);

@@ -56,12 +56,10 @@ void MitsubaWriter::open_shape(const char* type, const std::string& id) {
   xml_.open("shape", {{"type", type}, {"id", id}});
 }
 
-void MitsubaWriter::mesh(const ShapeDesc& s, const MeshFileDesc& file) {
-  const std::string& id = shape_ids_[static_cast<std::size_t>(&s - scene_.shapes.data())];
-  if (file.max_smooth_angle) {  // the normals as they come out of it
-    MeshData made = read_mesh(file);
-    return ply(s, made, id);
-  }
+void MitsubaWriter::mesh(const MeshFileDesc& file, const std::string& id) {
+  // Written with the normals as they come out of it.
+  if (file.max_smooth_angle || (!file.smooth_without_normals && !file.face_normals))
+    return ply(read_mesh(file), id, "");
   const char* types[] = {"obj", "ply", "serialized"};
   open_shape(types[static_cast<int>(file.format)], id);
   xml_.string("filename", relative(file.filename));
@@ -70,8 +68,7 @@ void MitsubaWriter::mesh(const ShapeDesc& s, const MeshFileDesc& file) {
   xml_.flag("flip_tex_coords", file.flip_tex_coords);
 }
 
-void MitsubaWriter::ply(const ShapeDesc&, const MeshData& mesh, const std::string& id) {
-  std::string& name = stored_[&mesh];
+void MitsubaWriter::ply(const MeshData& mesh, const std::string& id, std::string name) {
   if (name.empty()) name = add_file("mesh_" + std::to_string(out_.files.size()), ".ply", ply_bytes(mesh));
   open_shape("ply", id);
   xml_.string("filename", name);
@@ -129,9 +126,12 @@ void MitsubaWriter::shape(int index) {
   const std::string& id = shape_ids_[static_cast<std::size_t>(index)];
   bool group = false, instance = false;
   if (const auto* file = std::get_if<MeshFileDesc>(&s.kind)) {
-    mesh(s, *file);
+    mesh(*file, id);
   } else if (const auto* held = std::get_if<InlineMeshDesc>(&s.kind)) {
-    ply(s, *held->mesh, id);
+    std::string& name = stored_[held->mesh.get()];  // shapes may share it
+    if (name.empty())
+      name = add_file("mesh_" + std::to_string(out_.files.size()), ".ply", ply_bytes(*held->mesh));
+    ply(*held->mesh, id, name);
   } else if (std::holds_alternative<RectangleDesc>(s.kind)) {
     open_shape("rectangle", id);
   } else if (std::holds_alternative<CubeDesc>(s.kind)) {

@@ -49,6 +49,19 @@ MitsubaWriter::Input MitsubaWriter::resolve(int index) {
       warn(t.where, "a texture scaled by a number", "the texture itself");
     return one;
   }
+  if (const auto* mix = std::get_if<MixTextureDesc>(&t.kind)) {
+    const Input a = resolve(mix->a), b = resolve(mix->b), amount = resolve(mix->amount);
+    if (a.texture == kNone && b.texture == kNone && amount.texture == kNone)
+      return {a.value + (b.value - a.value) * amount.value, kNone};
+    warn(t.where, "a mixture of textures", "the heavier of them");
+    return amount.texture == kNone && luminance(amount.value) > 0.5f ? b : a;
+  }
+  if (const auto* root = std::get_if<RootTextureDesc>(&t.kind)) {
+    const Input in = resolve(root->input);
+    if (in.texture == kNone) return {sqrt(in.value), kNone};
+    warn(t.where, "the square root of a texture", "the texture itself");
+    return in;
+  }
   if (const auto* threshold = std::get_if<ThresholdTextureDesc>(&t.kind)) {
     const Input in = resolve(threshold->input);
     if (in.texture == kNone) return {Rgb(luminance(in.value) >= threshold->threshold ? 1.0f : 0.0f), kNone};

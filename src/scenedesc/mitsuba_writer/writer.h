@@ -53,8 +53,9 @@ class MitsubaWriter {
 
   // shapes.cpp
   void shape(int index);
-  void mesh(const ShapeDesc& shape, const MeshFileDesc& file);
-  void ply(const ShapeDesc& shape, const MeshData& mesh, const std::string& id);
+  void mesh(const MeshFileDesc& file, const std::string& id);
+  // name: of the file, if it has been written.
+  void ply(const MeshData& mesh, const std::string& id, std::string name);
   void curves(const ShapeDesc& shape, const CurvesDesc& curves, const std::string& id);
   void open_shape(const char* type, const std::string& id);
 
