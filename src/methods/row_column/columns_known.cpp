@@ -39,9 +39,10 @@ struct Spread {
     weight = 0;
   }
   void add(std::span<const float> x, double q) {
+    const double inverse = 1 / q;
     for (std::size_t d = 0; d < sums.size(); ++d) {
       const double v = static_cast<double>(x[d]);
-      sums[d] += v, squares[d] += v * v / q;
+      sums[d] += v, squares[d] += v * v * inverse;
     }
     weight += q;
   }
