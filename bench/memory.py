@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Memory of row-column sampling with lights in the millions, structure by structure.
 
-    bench/memory.py OUT scene.xml [scene.xml …] [--lights 1000000 4000000] [--rows 1024] [--columns 10000]
-                    [--size 800x600] [--spp 4] [--time SECONDS] [--limit GB] [--program PATH]
+    bench/memory.py OUT scene.xml [scene.xml …] [--lights 1000000 4000000] [--light-type sphere] [--rows 1024]
+                    [--columns 10000] [--size 800x600] [--spp 4] [--time SECONDS] [--limit GB] [--program PATH]
 
 One render per scene and number of lights. OUT/memory.md has a table of what each part takes, in all and per light (or per
 receiver), beside the peak of the process; OUT/memory.json holds the same in full. With --limit the exit code is 1 if a peak
@@ -21,7 +21,7 @@ PARTS = ["scene", "receivers", "lights", "matrix", "sketch", "held_out"]
 def render(args, scene, lights, report):
     settings = [f"{key}={value}" for key, value in (("rows", args.rows), ("columns", args.columns)) if value > 0]
     command = [str(args.program.resolve()), "render", str(scene), "-o", str(report.with_suffix(".exr")), "--report", str(report), "--quiet",
-               "--lights", str(lights), "--size", args.size, "--spp", str(args.spp), "--time", str(args.time)]
+               "--lights", str(lights), "--light-type", args.light_type, "--size", args.size, "--spp", str(args.spp), "--time", str(args.time)]
     for setting in settings:
         command += ["--set", setting]
     print("$", " ".join(command), flush=True)
@@ -53,6 +53,7 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("scenes", type=pathlib.Path, nargs="+")
     parser.add_argument("--lights", type=int, nargs="+", default=[1000000, 4000000])
+    parser.add_argument("--light-type", default="sphere")
     parser.add_argument("--rows", type=int, default=1024, help="0: automatic")
     parser.add_argument("--columns", type=int, default=10000, help="0: automatic")
     parser.add_argument("--size", default="800x600")
