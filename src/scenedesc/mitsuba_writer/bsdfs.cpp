@@ -32,7 +32,8 @@ bool MitsubaWriter::transmits(int index) const {
   if (index == kNone) return false;
   const auto& kind = scene_.bsdfs[static_cast<std::size_t>(index)].kind;
   if (std::holds_alternative<DielectricDesc>(kind) || std::holds_alternative<ThinDielectricDesc>(kind) ||
-      std::holds_alternative<NullBsdfDesc>(kind) || std::holds_alternative<MaskDesc>(kind))
+      std::holds_alternative<NullBsdfDesc>(kind) || std::holds_alternative<MaskDesc>(kind) ||
+      std::holds_alternative<PrincipledThinDesc>(kind))
     return true;
   if (const auto* p = std::get_if<PrincipledDesc>(&kind))
     return p->spec_trans.texture != kNone || p->spec_trans.value > 0;
@@ -115,6 +116,21 @@ void MitsubaWriter::kind_of(const BsdfDesc& desc, const std::string& id) {
     for (const auto& [name, input] : inputs)
       if (input->texture != kNone || input->value != 0 || input == &p->roughness) scalar(name, *input);
     xml_.number("eta", p->eta);
+  } else if (const auto* sheet = std::get_if<PrincipledThinDesc>(&kind)) {
+    open_bsdf("principledthin", id);
+    color("base_color", sheet->base_color);
+    const std::pair<const char*, const FloatInput*> inputs[] = {
+        {"roughness", &sheet->roughness},   {"anisotropic", &sheet->anisotropic},
+        {"spec_trans", &sheet->spec_trans}, {"spec_tint", &sheet->spec_tint},
+        {"sheen", &sheet->sheen},           {"sheen_tint", &sheet->sheen_tint},
+        {"flatness", &sheet->flatness},     {"diff_trans", &sheet->diff_trans}};
+    for (const auto& [name, input] : inputs)
+      if (input->texture != kNone || input->value != 0 || input == &sheet->roughness) scalar(name, *input);
+    xml_.number("eta", sheet->eta);
+  } else if (const auto* paper = std::get_if<DiffuseTransmitterDesc>(&kind)) {
+    warn(desc.where, "diffuse transmission", "diffuse reflection alone");
+    open_bsdf("diffuse", id);
+    color("reflectance", paper->reflectance);
   } else if (const auto* hair = std::get_if<HairDesc>(&kind)) {
     warn(desc.where, "Kajiya and Kay's hair", "diffuse");
     open_bsdf("diffuse", id);
