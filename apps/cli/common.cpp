@@ -50,7 +50,8 @@ Verbosity CommonOptions::verbosity() const {
 }
 
 void add_scene_options(CLI::App& command, CommonOptions& common) {
-  command.add_option("scene", common.scene, "scene file (Mitsuba XML 0.6 or 3, pbrt-v4, glTF 2.0)")->required();
+  command.add_option("scene", common.scene, "scene file (Mitsuba XML 0.6 or 3, pbrt-v4, glTF 2.0)")
+      ->required();
   command.add_option("--define", common.defines, "NAME=VALUE: a value for $NAME in the scene; repeatable")
       ->allow_extra_args(false);
   command.add_option("--environment", common.environment,

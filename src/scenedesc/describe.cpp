@@ -102,8 +102,7 @@ std::string kind(const BsdfDesc& desc) {
                  [](const PlasticDesc& x) {
                    return "plastic eta " + num(x.eta) + ", diffuse " + show(x.diffuse_reflectance) +
                           ", specular " + show(x.specular_reflectance) + (x.nonlinear ? ", nonlinear" : "") +
-                          (x.lossless ? ", lossless" : "") +
-                          rough(x.distribution, x.alpha, x.alpha);
+                          (x.lossless ? ", lossless" : "") + rough(x.distribution, x.alpha, x.alpha);
                  },
                  [](const PhongDesc& x) {
                    return "phong diffuse " + show(x.diffuse_reflectance) + ", specular " +

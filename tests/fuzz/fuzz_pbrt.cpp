@@ -7,8 +7,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const auto scene = lumirank::scenedesc::parse_pbrt(
-        std::string(reinterpret_cast<const char*>(data), size), "fuzz.pbrt");
+    const auto scene =
+        lumirank::scenedesc::parse_pbrt(std::string(reinterpret_cast<const char*>(data), size), "fuzz.pbrt");
     (void)lumirank::scenedesc::describe(scene);
   } catch (const lumirank::InputError&) {
   }
