@@ -63,8 +63,8 @@ TEST(PbrtMaterial, ConductorOfAColourHasThatReflectanceAtNormalIncidence) {
 }
 
 TEST(PbrtMaterial, ConductorsByColoursAndByNames) {
-  const auto& rgb =
-      inner<ConductorDesc>(pbrt_material("\"conductor\" \"rgb eta\" [ 1.6 .9 .5 ] \"rgb k\" [ 9 6 4 ]"));
+  const SceneDesc by_numbers = pbrt_material("\"conductor\" \"rgb eta\" [ 1.6 .9 .5 ] \"rgb k\" [ 9 6 4 ]");
+  const auto& rgb = inner<ConductorDesc>(by_numbers);
   EXPECT_EQ(rgb.eta, Rgb(1.6f, .9f, .5f));
   EXPECT_EQ(rgb.k, Rgb(9, 6, 4));
   // Reflectance of copper under D65: reddish, of gold more so in the blue, of silver white.
