@@ -1,3 +1,4 @@
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -48,7 +49,12 @@ void write_with_oiio(const std::string& filename, const char* format, const OIIO
   file.commit();
 }
 
-void write_exr(const std::string& filename, const LayeredImage& image) {
+struct Interleaved {
+  OIIO::ImageSpec spec;
+  std::vector<float> data;
+};
+
+Interleaved as_exr(const LayeredImage& image) {
   const std::size_t pixels = image.color.pixels.size();
   const int channels = 3 * static_cast<int>(1 + image.layers.size());
   OIIO::ImageSpec spec(image.color.width, image.color.height, channels, OIIO::TypeDesc::FLOAT);
@@ -68,7 +74,12 @@ void write_exr(const std::string& filename, const LayeredImage& image) {
   }
   spec.attribute("compression", "zip");
   spec.attribute("oiio:ColorSpace", "Linear");
-  write_with_oiio(filename, "openexr", spec, OIIO::TypeDesc::FLOAT, data.data());
+  return {std::move(spec), std::move(data)};
+}
+
+void write_exr(const std::string& filename, const LayeredImage& image) {
+  const Interleaved exr = as_exr(image);
+  write_with_oiio(filename, "openexr", exr.spec, OIIO::TypeDesc::FLOAT, exr.data.data());
 }
 
 void write_png(const std::string& filename, const Image& image, const DisplayOptions& display) {
@@ -79,6 +90,20 @@ void write_png(const std::string& filename, const Image& image, const DisplayOpt
 }
 
 }  // namespace
+
+std::string encode_exr(const Image& image) {
+  Interleaved exr = as_exr({image, {}});
+  exr.spec.set_format(OIIO::TypeDesc::HALF);
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = OIIO::ImageOutput::create("openexr", &memory);
+  if (!output) throw InternalError("OpenImageIO cannot write OpenEXR: " + OIIO::geterror());
+  output->threads(1);
+  if (!output->open("picture.exr", exr.spec) ||
+      !output->write_image(OIIO::TypeDesc::FLOAT, exr.data.data()) || !output->close())
+    throw InternalError("a picture in memory cannot be encoded: " + output->geterror());
+  return {bytes.begin(), bytes.end()};
+}
 
 void check_writable(const std::string& filename) {
   require_known_extension(filename);

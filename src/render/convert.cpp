@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "film/atomic_file.h"
 #include "lumirank/convert.h"
+#include "render/paint_texture.h"
 #include "render/pipeline.h"
 #include "scenedesc/mitsuba_writer/mitsuba_writer.h"
 
@@ -15,7 +16,8 @@ std::vector<std::string> convert(const Scene& scene, const std::string& filename
     throw InputError({filename, 0}, "a scene is written as Mitsuba XML only",
                      "give a name that ends in .xml");
   const auto& desc = scene.impl().desc;
-  const scenedesc::WrittenScene written = scenedesc::write_mitsuba(desc, filename);
+  const scenedesc::WrittenScene written = scenedesc::write_mitsuba(
+      desc, filename, [&](int texture) { return rendering::paint_texture(desc, texture); });
   std::vector<std::string> names;
   for (const auto& file : written.files)
     names.push_back((fs::path(filename).parent_path() / file.name).string());

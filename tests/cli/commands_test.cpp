@@ -9,7 +9,7 @@ namespace lumirank::test {
 namespace {
 
 TEST(Commands, HelpOfEachShowsAnExample) {
-  for (const char* command : {"render", "reference", "compare", "error", "info", "methods"}) {
+  for (const char* command : {"render", "reference", "compare", "convert", "error", "info", "methods"}) {
     const Outcome help = lumirank({command, "--help"});
     EXPECT_SUCCESS(help) << command;
     const auto at = help.out.find("Example");
@@ -19,7 +19,7 @@ TEST(Commands, HelpOfEachShowsAnExample) {
   }
   const Outcome all = lumirank({"--help"});
   EXPECT_SUCCESS(all);
-  for (const char* command : {"render", "reference", "compare", "error", "info", "methods"})
+  for (const char* command : {"render", "reference", "compare", "convert", "error", "info", "methods"})
     EXPECT_NE(all.out.find(command), std::string::npos);
 }
 

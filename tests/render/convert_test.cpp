@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "film/image_io.h"
 #include "lumirank/convert.h"
 #include "support/scene_file.h"
 
@@ -23,6 +24,57 @@ TEST(Convert, TheConvertedSceneHasTheSamePicture) {
     EXPECT_EQ(render(scene, settings).picture.planes[0].rgb, render(again, settings).picture.planes[0].rgb)
         << name;
   }
+}
+
+// A scaled picture, a product and a mixture of pictures and a single channel become pictures of their values
+// in 16-bit floats. With direct light alone the picture is linear in them, so that rounding changes it by at
+// most 2^-11 of itself; a unit in the last place of each float step is left to the rest.
+TEST(Convert, PaintsTexturesThatAreMadeOfPictures) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, int width, auto&& value) {
+    film::LayeredImage image;
+    image.color = film::Image(width, 2);
+    for (int k = 0; k < 2 * width; ++k) image.color.pixels[static_cast<std::size_t>(k)] = value(k);
+    film::write_image(folder / name, image);
+  };
+  write("a.exr", 2, [](int k) { return Rgb(0.1f + 0.2f * static_cast<float>(k), 0.5f, 0.3f); });
+  write("b.exr", 4, [](int k) { return Rgb(0.9f, 0.1f * static_cast<float>(k), 0.7f); });
+  std::ofstream(folder / "scene.pbrt") << R"(
+Camera "perspective" "float fov" 60
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+PixelFilter "box"
+WorldBegin
+LightSource "point" "point3 from" [ 0 0 1 ] "rgb I" [ 4 3 2 ]
+Texture "a" "spectrum" "imagemap" "string filename" "a.exr" "string filter" "point"
+Texture "b" "spectrum" "imagemap" "string filename" "b.exr" "string filter" "point"
+Texture "grey" "float" "imagemap" "string filename" "b.exr" "string filter" "point"
+Texture "twice" "spectrum" "scale" "texture tex" "a" "rgb scale" [ 0.5 0.7 1.1 ]
+Texture "both" "spectrum" "scale" "texture tex" "twice" "texture scale" "b"
+Texture "mixed" "spectrum" "mix" "texture tex1" "a" "rgb tex2" [ 0.2 0.3 0.4 ] "texture amount" "grey"
+Material "diffuse" "texture reflectance" "both"
+Shape "bilinearmesh" "point3 P" [ -2 -2 3  0 -2 3  -2 2 3  0 2 3 ]
+Material "diffuse" "texture reflectance" "mixed"
+Shape "bilinearmesh" "point3 P" [ 0 -2 3  2 -2 3  0 2 3  2 2 3 ]
+)";
+  const Scene scene = Scene::load(folder / "scene.pbrt");
+  std::vector<std::string> warnings;
+  Sinks sinks;
+  sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(convert(scene, folder / "out.xml", sinks).size(),
+            1u + 2 + 2);  // the scene, two meshes, two pictures
+  ASSERT_EQ(warnings.size(), 1u) << warnings.back();
+  EXPECT_NE(warnings[0].find("photometric"), std::string::npos) << warnings[0];
+  RenderSettings settings;
+  settings.spp = 1, settings.method = "brute-force", settings.max_depth = 2;
+  const auto a = render(scene, settings).picture.planes[0].rgb;
+  const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
+  ASSERT_EQ(a.size(), b.size());
+  float most = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_NEAR(a[k], b[k], std::abs(a[k]) * (std::ldexp(1.0f, -11) + std::ldexp(16.0f, -23))) << k;
+    most = std::max(most, a[k]);
+  }
+  EXPECT_GT(most, 0);
 }
 
 TEST(Convert, DoesNotOverwriteWhatItReads) {

@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <regex>
+#include <set>
 
 #include "scenedesc/readers.h"
 #include "support/scene_file.h"
@@ -129,6 +130,13 @@ SceneDesc everything_it_has(const test::TemporaryFolder& folder) {
   PrincipledDesc p;
   p.metallic.value = 0.3f, p.clearcoat.texture = board;
   bsdf(p);
+  PrincipledThinDesc sheet;
+  sheet.base_color.texture = bitmap;
+  sheet.roughness.value = 0.3f, sheet.anisotropic.value = 0.4f, sheet.spec_trans.texture = board;
+  sheet.spec_tint.value = 0.6f, sheet.sheen.value = 0.7f, sheet.sheen_tint.value = 0.8f;
+  sheet.flatness.value = 0.9f, sheet.diff_trans.value = 1.1f, sheet.eta = 1.6f;
+  bsdf(sheet);
+  bsdf(PrincipledThinDesc{});
   bsdf(MaskDesc{{0, board}, matt});
   bsdf(TwoSidedDesc{matt, matt});
   bsdf(TwoSidedDesc{matt, metal});
@@ -209,6 +217,10 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
   expect("Phong", bsdf(PhongDesc{}));
   expect("Ward", bsdf(WardDesc{}));
   expect("hair", bsdf(HairDesc{}));
+  expect("diffuse transmission", bsdf(DiffuseTransmitterDesc{}));
+  PlasticDesc rough;
+  rough.alpha.value = 0.25f, rough.lossless = true;
+  expect("loses nothing", bsdf(rough));
   CoatingDesc coat;
   coat.nested = 0;
   expect("coating", bsdf(coat));
@@ -233,6 +245,94 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
   expect("photometric", [](SceneDesc& scene) { scene.lumens_per_unit = 1; });
 }
 
+// Kelemen and Szirmay-Kalos' base under a smooth layer is Mitsuba's linear plastic: color/π · (1 - F(i))(1 -
+// F(o)) / (1 - F̄), for (1 - F̄ from inside) · η² = 1 - F̄. A rough one becomes principled, whose roughness is
+// √α.
+TEST(MitsubaWriter, PlasticThatLosesNothing) {
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  PlasticDesc smooth;
+  smooth.lossless = true, smooth.nonlinear = true;
+  scene.bsdfs.emplace_back().kind = smooth;
+  PlasticDesc rough = smooth;
+  rough.alpha.value = 0.36f, rough.eta = 1.4f;
+  scene.bsdfs.emplace_back().kind = rough;
+  scene.textures.emplace_back().kind = CheckerboardTextureDesc{};
+  scene.textures.emplace_back().kind = ProductTextureDesc{{Rgb(0), 0}, {Rgb(0), 0}};
+  rough.alpha.texture = 1;
+  scene.bsdfs.emplace_back().kind = rough;
+  for (int k = 0; k < 3; ++k) {
+    scene.shapes.emplace_back().kind = CubeDesc{};
+    scene.shapes.back().bsdf = k;
+  }
+  const WrittenScene out = write_mitsuba(scene, "out.xml");
+  const SceneDesc again = parse_mitsuba(out.xml, "out.xml");
+  const auto kind = [&](int shape) {
+    return again.bsdfs[static_cast<std::size_t>(again.shapes.at(static_cast<std::size_t>(shape)).bsdf)].kind;
+  };
+  EXPECT_FALSE(std::get<PlasticDesc>(kind(0)).nonlinear);
+  const auto a = std::get<PrincipledDesc>(kind(1)), b = std::get<PrincipledDesc>(kind(2));
+  EXPECT_FLOAT_EQ(a.roughness.value, 0.6f);
+  EXPECT_FLOAT_EQ(a.eta, 1.4f);
+  // The root of a square is what was squared, and the square itself is not written.
+  ASSERT_EQ(again.textures.size(), 1u);
+  EXPECT_EQ(b.roughness.texture, 0);
+  ASSERT_EQ(out.warnings.size(), 1u);  // both are of the same place
+  EXPECT_NE(out.warnings[0].what.find("loses nothing"), std::string::npos);
+}
+
+TEST(MitsubaWriter, TexturesThatCanBePaintedAre) {
+  const test::TemporaryFolder folder;
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  BitmapTextureDesc grey;
+  grey.filename = folder / "a.png", grey.channel = TextureChannel::green;
+  scene.textures.emplace_back().kind = grey;
+  scene.textures.emplace_back().kind = ScaleTextureDesc{{Rgb(0), 0}, Rgb(2)};
+  scene.textures.emplace_back().kind = CheckerboardTextureDesc{{Rgb(0), 1}, {Rgb(0.5f)}, {}};
+  scene.textures.emplace_back().kind = ScaleTextureDesc{{Rgb(0), 2}, Rgb(2)};
+  scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 0}};
+  scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 2}};
+  scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 3}};
+  std::vector<int> wanted;
+  const WrittenScene out = write_mitsuba(scene, folder / "out.xml", [&](int texture) {
+    wanted.push_back(texture);
+    BitmapTextureDesc made;
+    made.bytes = std::make_shared<const std::string>("\x76\x2f\x31\x01 number " + std::to_string(texture));
+    made.to_uv.m[0] = 3;
+    return texture < 2 ? std::optional(made) : std::nullopt;
+  });
+  EXPECT_EQ(std::multiset<int>(wanted.begin(), wanted.end()), (std::multiset<int>{0, 1, 3}));
+  ASSERT_EQ(out.warnings.size(), 1u);
+  EXPECT_NE(out.warnings[0].what.find("scaled"), std::string::npos);
+  ASSERT_EQ(out.files.size(), 2u);
+  for (const WrittenFile& file : out.files) {
+    EXPECT_TRUE(file.name.ends_with(".exr")) << file.name;
+    std::ofstream(folder / file.name, std::ios::binary) << file.bytes;
+  }
+  const SceneDesc again = parse_mitsuba(out.xml, folder / "out.xml");
+  ASSERT_EQ(again.textures.size(), 3u);
+  EXPECT_TRUE(again.warnings.empty());
+  int pictures = 0;
+  for (const TextureDesc& t : again.textures)
+    if (const auto* b = std::get_if<BitmapTextureDesc>(&t.kind)) {
+      ++pictures;
+      EXPECT_EQ(b->to_uv.m[0], 3);
+    } else {
+      EXPECT_NE(std::get<CheckerboardTextureDesc>(t.kind).color0.texture, kNone);
+    }
+  EXPECT_EQ(pictures, 2);
+}
+
+// pbrt's cameras see from their very place; Mitsuba wants a distance above 0.
+TEST(MitsubaWriter, ANearClipOfNothingIsNearlyNothing) {
+  SceneDesc scene;
+  scene.sensors.emplace_back().near_clip = 0;
+  const SceneDesc again = parse_mitsuba(write_mitsuba(scene, "out.xml").xml, "out.xml");
+  EXPECT_GT(again.sensors.at(0).near_clip, 0);
+  EXPECT_LE(again.sensors.at(0).near_clip, 1e-4f);
+}
+
 TEST(MitsubaWriter, AnIesProfileBecomesAPointLightOfItsPower) {
   SceneDesc scene;
   scene.sensors.emplace_back();
@@ -254,10 +354,13 @@ TEST(MitsubaWriter, MeshesAndPicturesInMemoryAreWrittenOnce) {
   for (int k = 0; k < 2; ++k) scene.shapes.emplace_back().kind = InlineMeshDesc{mesh, "both"};
   BitmapTextureDesc picture;
   picture.bytes = std::make_shared<const std::string>("\x89PNG and so on");
-  for (int k = 0; k < 2; ++k) scene.textures.emplace_back().kind = picture;
+  for (int k = 0; k < 2; ++k) {
+    scene.textures.emplace_back().kind = picture;
+    scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), k}};
+  }
   const RoundTrip trip(scene, folder);
   ASSERT_EQ(trip.first.files.size(), 2u);
-  EXPECT_EQ(trip.first.files[0].bytes, *picture.bytes);
+  EXPECT_EQ(trip.first.files[1].bytes, *picture.bytes);
   const auto& file = std::get<MeshFileDesc>(trip.again.shapes.at(1).kind);
   EXPECT_EQ(read_mesh(file).positions, mesh->positions);
   EXPECT_EQ(read_mesh(file).uvs, mesh->uvs);

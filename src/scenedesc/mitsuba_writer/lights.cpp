@@ -1,4 +1,5 @@
 // Emitters besides shapes, and the camera.
+#include <algorithm>
 #include <cmath>
 
 #include "scenedesc/ies/ies.h"
@@ -6,6 +7,8 @@
 
 namespace lumirank::scenedesc {
 namespace {
+
+constexpr float kNearest = 1e-4f;  // Mitsuba's cameras do not see from their very place
 
 // Mean over the sphere of a table that is bilinear in the angles, by the trapezoidal rule in each cell.
 double mean_of(const PolarTable& t) {
@@ -19,6 +22,19 @@ double mean_of(const PolarTable& t) {
              (double{t.phi[c + 1]} - t.phi[c]);
     }
   return sum / (4 * 3.14159265358979323846);
+}
+
+float own_radius(const FilterDesc& f) {
+  switch (f.kind) {
+    case FilterKind::box:
+      return 0.5f;
+    case FilterKind::gaussian:
+      return 4 * f.stddev;
+    case FilterKind::lanczos:
+      return static_cast<float>(f.lobes);
+    default:
+      return f.kind == FilterKind::tent ? 1.0f : 2.0f;
+  }
 }
 
 }  // namespace
@@ -90,7 +106,7 @@ void MitsubaWriter::filter(const FilterDesc& f, const SourceLocation& where) {
   if (f.kind == FilterKind::lanczos) xml_.integer("lobes", f.lobes);
   if (f.kind == FilterKind::tent && f.radius > 0)
     xml_.number("radius", f.radius);
-  else if (f.radius > 0)
+  else if (f.radius > 0 && f.radius != own_radius(f))
     warn(where, "a radius of this reconstruction filter", "its own");
   xml_.close();
 }
@@ -110,7 +126,7 @@ void MitsubaWriter::sensor(const SensorDesc& s) {
     xml_.number("aperture_radius", s.aperture_radius);
     xml_.number("focus_distance", s.focus_distance);
   }
-  xml_.number("near_clip", s.near_clip), xml_.number("far_clip", s.far_clip);
+  xml_.number("near_clip", std::max(s.near_clip, kNearest)), xml_.number("far_clip", s.far_clip);
   xml_.transform("to_world", s.to_world);
   xml_.open("film", {{"type", "hdrfilm"}});
   xml_.integer("width", s.film.width), xml_.integer("height", s.film.height);

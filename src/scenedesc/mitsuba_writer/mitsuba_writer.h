@@ -1,6 +1,8 @@
 // A scene description as Mitsuba 3 XML, whatever format it was read from.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,10 +22,15 @@ struct WrittenScene {
   std::vector<Warning> warnings;
 };
 
+// A picture in place of a texture that is made of pictures (products, mixtures, single channels, …), or
+// nothing if no single picture has its values. The writer itself opens no pictures.
+using PaintTexture = std::function<std::optional<BitmapTextureDesc>(int texture)>;
+
 // `filename` (OUT.xml) only names: files that the scene refers to are named relative to its folder, and those
 // of `files` begin with its stem. Nothing is written. Reads mesh files whose normals are to be made anew and
 // IES profiles; InputError if one cannot be read.
-WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename);
+WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename,
+                           const PaintTexture& paint = nullptr);
 
 // Every file that the description names.
 std::vector<std::string> files_of(const SceneDesc& scene);

@@ -16,6 +16,11 @@ Transform spread(const UvTransform& uv) {
   return t;
 }
 
+bool is_plain(const TextureDesc& t) {
+  const auto* bitmap = std::get_if<BitmapTextureDesc>(&t.kind);
+  return bitmap && bitmap->channel == TextureChannel::rgb;
+}
+
 // Mitsuba's v runs down the picture: the reader's flip, undone.
 UvTransform unflip_v(UvTransform t) {
   for (int i = 3; i < 6; ++i) t.m[i] = 0.0f - t.m[i];
@@ -29,13 +34,26 @@ MitsubaWriter::Input MitsubaWriter::resolve(const ColorInput& input) {
   return input.texture == kNone ? Input{input.value, kNone} : resolve(input.texture);
 }
 
-// Mitsuba 3 has pictures, checkerboards and vertex colours; what is made of them is followed to one of these.
+bool MitsubaWriter::painted(int index) {
+  if (!paint_) return false;
+  const auto [it, fresh] = painted_.try_emplace(index);
+  if (fresh) it->second = paint_(index);
+  return it->second.has_value();
+}
+
+// Mitsuba 3 has pictures, checkerboards and vertex colours; what is made of pictures alone is painted, and
+// what is made of others is followed to one of these.
 MitsubaWriter::Input MitsubaWriter::resolve(int index) {
   const TextureDesc& t = scene_.textures[static_cast<std::size_t>(index)];
-  if (const auto* scale = std::get_if<ScaleTextureDesc>(&t.kind)) {
+  const auto* scale = std::get_if<ScaleTextureDesc>(&t.kind);
+  if (scale && scale->scale == Rgb(1)) return resolve(scale->input);
+  if (std::holds_alternative<CheckerboardTextureDesc>(t.kind) ||
+      std::holds_alternative<VertexColorTextureDesc>(t.kind) || is_plain(t) || painted(index))
+    return {Rgb(0), index};
+  if (scale) {
     const Input in = resolve(scale->input);
     if (in.texture == kNone) return {in.value * scale->scale, kNone};
-    if (!(scale->scale == Rgb(1))) warn(t.where, "a texture scaled by a number", "the texture itself");
+    warn(t.where, "a texture scaled by a number", "the texture itself");
     return in;
   }
   if (const auto* product = std::get_if<ProductTextureDesc>(&t.kind)) {
@@ -68,7 +86,7 @@ MitsubaWriter::Input MitsubaWriter::resolve(int index) {
     warn(t.where, "a texture with a threshold", "the texture itself");
     return in;
   }
-  return {Rgb(0), index};
+  return {Rgb(0), index};  // a single channel that is not painted
 }
 
 void MitsubaWriter::color(const char* name, const ColorInput& input) {
@@ -76,7 +94,7 @@ void MitsubaWriter::color(const char* name, const ColorInput& input) {
   if (in.texture == kNone)
     xml_.color(name, in.value);
   else
-    xml_.reference(texture_ids_[static_cast<std::size_t>(in.texture)], name);
+    reference(in.texture, name);
 }
 
 void MitsubaWriter::scalar(const char* name, const FloatInput& input) {
@@ -84,7 +102,7 @@ void MitsubaWriter::scalar(const char* name, const FloatInput& input) {
   if (in.texture == kNone)
     xml_.number(name, input.texture == kNone ? input.value : luminance(in.value));
   else
-    xml_.reference(texture_ids_[static_cast<std::size_t>(in.texture)], name);
+    reference(in.texture, name);
 }
 
 void MitsubaWriter::constant(const char* name, const FloatInput& input, const SourceLocation& where,
@@ -102,38 +120,59 @@ std::string MitsubaWriter::picture_of(const BitmapTextureDesc& bitmap) {
   if (!bitmap.bytes) return relative(bitmap.filename);
   std::string& name = stored_[bitmap.bytes.get()];
   if (name.empty()) {
-    const bool png = bitmap.bytes->compare(0, 4, "\x89PNG") == 0;
-    name = add_file("picture_" + std::to_string(out_.files.size()), png ? ".png" : ".jpg", *bitmap.bytes);
+    const bool png = bitmap.bytes->starts_with("\x89PNG"),
+               exr = bitmap.bytes->starts_with("\x76\x2f\x31\x01");
+    name = add_file("picture_" + std::to_string(out_.files.size()), png ? ".png" : (exr ? ".exr" : ".jpg"),
+                    *bitmap.bytes);
   }
   return name;
 }
 
+void MitsubaWriter::bitmap(const BitmapTextureDesc& desc, const SourceLocation& where,
+                           const std::string& id) {
+  if (desc.channel != TextureChannel::rgb)
+    warn(where, "a single channel of a picture", "the luminance of all");
+  xml_.open("texture", {{"type", "bitmap"}, {"id", id}});
+  xml_.string("filename", picture_of(desc));
+  xml_.flag("raw", desc.raw);
+  xml_.string("filter_type", desc.filter == FilterMode::nearest ? "nearest" : "bilinear");
+  if (desc.wrap_u != desc.wrap_v)
+    warn(where, "two different wrap modes of a picture", wrap_name(desc.wrap_u));
+  xml_.string("wrap_mode", wrap_name(desc.wrap_u));
+  xml_.transform("to_uv", spread(unflip_v(desc.to_uv)));
+  xml_.close();
+}
+
+void MitsubaWriter::reference(int texture, const char* name) {
+  asked_.push_back(texture);
+  xml_.reference(texture_ids_[static_cast<std::size_t>(texture)], name);
+}
+
+std::string MitsubaWriter::asked_textures() {
+  for (std::size_t k = 0; k < asked_.size(); ++k) texture(asked_[k]);  // more may be asked for meanwhile
+  return xml_.take();
+}
+
 void MitsubaWriter::texture(int index) {
+  if (!written_.insert(index).second) return;
   const TextureDesc& t = scene_.textures[static_cast<std::size_t>(index)];
   const std::string& id = texture_ids_[static_cast<std::size_t>(index)];
-  if (const auto* bitmap = std::get_if<BitmapTextureDesc>(&t.kind)) {
-    if (bitmap->channel != TextureChannel::rgb)
-      warn(t.where, "a single channel of a picture", "the luminance of all");
-    xml_.open("texture", {{"type", "bitmap"}, {"id", id}});
-    xml_.string("filename", picture_of(*bitmap));
-    xml_.flag("raw", bitmap->raw);
-    xml_.string("filter_type", bitmap->filter == FilterMode::nearest ? "nearest" : "bilinear");
-    if (bitmap->wrap_u != bitmap->wrap_v)
-      warn(t.where, "two different wrap modes of a picture", wrap_name(bitmap->wrap_u));
-    xml_.string("wrap_mode", wrap_name(bitmap->wrap_u));
-    xml_.transform("to_uv", spread(unflip_v(bitmap->to_uv)));
-    xml_.close();
+  if (const auto made = painted_.find(index); made != painted_.end() && made->second) {
+    bitmap(*made->second, t.where, id);
+  } else if (const auto* picture = std::get_if<BitmapTextureDesc>(&t.kind)) {
+    bitmap(*picture, t.where, id);
   } else if (const auto* board = std::get_if<CheckerboardTextureDesc>(&t.kind)) {
+    // What it refers to comes before it.
+    for (const ColorInput& part : {board->color0, board->color1})
+      if (const Input in = resolve(part); in.texture != kNone) texture(in.texture);
     xml_.open("texture", {{"type", "checkerboard"}, {"id", id}});
     color("color0", board->color0), color("color1", board->color1);
     xml_.transform("to_uv", spread(board->to_uv));
     xml_.close();
-  } else if (std::holds_alternative<VertexColorTextureDesc>(t.kind)) {
+  } else {
     xml_.open("texture", {{"type", "mesh_attribute"}, {"id", id}});
     xml_.string("name", "vertex_color");
     xml_.close();
-  } else {
-    resolve(index);  // written where it is used; says here what is lost
   }
 }
 

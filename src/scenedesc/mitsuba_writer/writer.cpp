@@ -4,8 +4,8 @@
 
 namespace lumirank::scenedesc {
 
-MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename)
-    : scene_(scene), filename_(filename) {
+MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename, const PaintTexture& paint)
+    : scene_(scene), filename_(filename), paint_(paint) {
   // Names that the scene states are kept before any is made up.
   const auto name_all = [&](const auto& list, const char* what, std::vector<std::string>& ids) {
     ids.assign(list.size(), {});
@@ -28,12 +28,14 @@ WrittenScene MitsubaWriter::write() {
     warn({scene_.source_file, 0}, "photometric units", "the numbers as they are, which stand for W/nm there");
   for (const SensorDesc& s : scene_.sensors) sensor(s);
   for (const EmitterDesc& e : scene_.emitters) emitter(e);
-  for (std::size_t k = 0; k < scene_.textures.size(); ++k) texture(static_cast<int>(k));
+  // Only textures that something reads are written, before what reads them.
+  const std::string head = xml_.take();
   for (std::size_t k = 0; k < scene_.bsdfs.size(); ++k) bsdf(static_cast<int>(k));
   for (std::size_t k = 0; k < scene_.shapes.size(); ++k)
     if (!scene_.shapes[k].in_group) shape(static_cast<int>(k));
+  const std::string body = xml_.take(), textures = asked_textures();
   xml_.close();
-  out_.xml = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + xml_.take();
+  out_.xml = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + head + textures + body + xml_.take();
   return std::move(out_);
 }
 
@@ -67,8 +69,8 @@ std::string MitsubaWriter::add_file(const std::string& what, const std::string& 
   return name;
 }
 
-WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename) {
-  return MitsubaWriter(scene, filename).write();
+WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename, const PaintTexture& paint) {
+  return MitsubaWriter(scene, filename, paint).write();
 }
 
 std::vector<std::string> files_of(const SceneDesc& scene) {

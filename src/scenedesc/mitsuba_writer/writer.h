@@ -14,7 +14,7 @@ namespace lumirank::scenedesc {
 
 class MitsubaWriter {
  public:
-  MitsubaWriter(const SceneDesc& scene, const std::string& filename);
+  MitsubaWriter(const SceneDesc& scene, const std::string& filename, const PaintTexture& paint);
   WrittenScene write();
 
  private:
@@ -32,7 +32,13 @@ class MitsubaWriter {
   // textures.cpp
   Input resolve(int texture);
   Input resolve(const ColorInput& input);
+  // Whether a picture that is painted takes the place of the texture.
+  bool painted(int index);
+  void bitmap(const BitmapTextureDesc& desc, const SourceLocation& where, const std::string& id);
   void texture(int index);
+  // The texture by its name, and its definition along with all that are asked for.
+  void reference(int texture, const char* name);
+  std::string asked_textures();
   void color(const char* name, const ColorInput& input);
   void scalar(const char* name, const FloatInput& input);
   // The scalar as a constant where Mitsuba 3 takes no texture.
@@ -47,6 +53,7 @@ class MitsubaWriter {
   bool transmits(int index) const;
   void dull_and_glossy(const std::string& id, const ColorInput& dull, const ColorInput& glossy,
                        const FloatInput& alpha_u, const FloatInput& alpha_v);
+  void lossless_plastic(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id);
   void coating(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id);
   void mixture(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id);
   void blend_rest(const MixtureDesc& d, std::size_t from, double sum, const std::string& id);
@@ -71,6 +78,10 @@ class MitsubaWriter {
   WrittenScene out_;
   std::vector<std::string> texture_ids_, bsdf_ids_, shape_ids_;
   std::set<std::string> taken_, warned_;
+  const PaintTexture& paint_;
+  std::map<int, std::optional<BitmapTextureDesc>> painted_;
+  std::vector<int> asked_;                     // textures that something reads
+  std::set<int> written_;                      // of these
   std::map<const void*, std::string> stored_;  // meshes and pictures that are used more than once
 };
 
