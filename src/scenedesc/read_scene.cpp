@@ -3,7 +3,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "scenedesc/readers.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -24,16 +24,18 @@ void replace_environment(SceneDesc& scene, const std::string& filename) {
   EnvironmentMapDesc map;
   map.filename = std::filesystem::absolute(filename).lexically_normal().string();
   const SourceLocation where{scene.source_file, 0};
-  if (removed > 0)
-    scene.warnings.push_back({where, "the scene's own environment gives way to --environment", "", true});
+  if (removed > 0) add_note(scene, where, "the scene's own environment gives way to --environment");
   scene.emitters.push_back({"environment", where, map});
 }
 
-void light_if_dark(SceneDesc& scene) {
+void light_if_dark(SceneDesc& scene, const ReadOptions& options) {
   if (!scene.emitters.empty()) return;
   for (const ShapeDesc& shape : scene.shapes)
     if (shape.emitter) return;
   const SourceLocation where{scene.source_file, 0};
+  if (options.strict)
+    throw InputError(where, "the scene has no light",
+                     "give --environment; without --strict it gets a white environment");
   scene.emitters.push_back({"environment", where, ConstantEnvironmentDesc{Rgb(1)}});
   scene.warnings.push_back({where, "the scene has no light", "a white environment; see --environment"});
 }
@@ -56,7 +58,7 @@ SceneDesc read_scene(const std::string& filename, const ReadOptions& options) {
   if (!options.environment.empty()) replace_environment(scene, options.environment);
   // glTF files hardly ever bring lights along, and are shown by whatever the viewer has; in the other formats
   // a scene without any is meant to be dark, or a mistake that should show.
-  if (gltf) light_if_dark(scene);
+  if (gltf) light_if_dark(scene, options);
   return scene;
 }
 

@@ -51,8 +51,9 @@ MeshData check_mesh(MeshData mesh, const SourceLocation& where);
 // The image (latitude-longitude, +y up) in place of every environment that the scene has. InputError if there
 // is no such file.
 void replace_environment(SceneDesc& scene, const std::string& filename);
-// A scene without any emitter gets an environment of radiance 1, and a warning.
-void light_if_dark(SceneDesc& scene);
+// A scene without any emitter gets an environment of radiance 1, and a warning; an InputError if that is
+// strict.
+void light_if_dark(SceneDesc& scene, const ReadOptions& options = {});
 
 // Human-readable listing, for `lumirank info` and debugging.
 std::string describe(const SceneDesc& scene);

@@ -5,13 +5,13 @@
 #include <array>
 #include <cstring>
 
+#include "support/same_pictures.h"
 #include "support/scene_file.h"
-#include "support/statistics.h"
 
 namespace lumirank::test {
 namespace {
 
-constexpr int kWidth = 48, kHeight = 36, kBlock = 12;
+constexpr int kWidth = 48, kHeight = 36;
 
 using Point = std::array<float, 3>;
 struct Quad {
@@ -165,38 +165,16 @@ std::vector<float> picture(const std::string& file, std::uint64_t seed) {
   return reference(Scene::load(file, strict), settings, how).picture.planes.at(0).rgb;
 }
 
-// Block by block the mean difference of two independent pictures is 0 within its noise; all blocks of all
-// pairs together fail by chance once in a thousand runs, and the seeds are fixed. 10⁻⁴ is left to numbers
-// with six decimals.
-void expect_same(const std::vector<float>& a, const std::vector<float>& b, const char* what) {
-  constexpr int kTests = 3 * (kWidth / kBlock) * (kHeight / kBlock) * 3;
-  ASSERT_EQ(a.size(), b.size());
-  for (int by = 0; by < kHeight; by += kBlock)
-    for (int bx = 0; bx < kWidth; bx += kBlock)
-      for (int c = 0; c < 3; ++c) {
-        std::vector<double> differences;
-        double level = 0;
-        for (int y = by; y < by + kBlock; ++y)
-          for (int x = bx; x < bx + kBlock; ++x) {
-            const auto i = static_cast<std::size_t>(3 * (y * kWidth + x) + c);
-            differences.push_back(static_cast<double>(a[i]) - b[i]);
-            level += a[i] / static_cast<double>(kBlock * kBlock);
-          }
-        const auto m = mean_of(differences);
-        EXPECT_NEAR(m.mean, 0, normal_quantile(1e-3, kTests) * m.standard_error + 1e-4 * level)
-            << what << ", block " << bx << ", " << by << ", channel " << c;
-        // A lamp twice as bright, a colour or a place mixed up would be seen.
-        EXPECT_LT(normal_quantile(1e-3, kTests) * m.standard_error, 0.35 * level + 0.02) << what;
-      }
-}
-
 TEST(ThreeFormats, OneSceneGivesTheSamePicture) {
   const TemporaryFolder folder;
   const auto mitsuba = picture(mitsuba_file(folder), 1), pbrt = picture(pbrt_file(folder), 2),
              gltf = picture(gltf_file(folder), 3);
-  expect_same(mitsuba, pbrt, "mitsuba and pbrt");
-  expect_same(mitsuba, gltf, "mitsuba and glTF");
-  expect_same(pbrt, gltf, "pbrt and glTF");
+  // 10⁻⁴ is left to numbers with six decimals. A lamp twice as bright, a colour or a place mixed up would be
+  // seen.
+  const SamePictures how{.width = kWidth, .height = kHeight, .pairs = 3, .slack = 1e-4, .noise_below = 0.35};
+  expect_same_pictures(mitsuba, pbrt, how, "mitsuba and pbrt");
+  expect_same_pictures(mitsuba, gltf, how, "mitsuba and glTF");
+  expect_same_pictures(pbrt, gltf, how, "pbrt and glTF");
 }
 
 }  // namespace

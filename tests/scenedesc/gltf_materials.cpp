@@ -1,6 +1,8 @@
 // glTF materials, textures, lights and cameras, and what becomes of every extension.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "gltf_maker.h"
@@ -348,6 +350,24 @@ TEST(GltfCameras, TheDefaultOneFramesTheScene) {
   }
 }
 
+// Notes are no warnings: one-sided materials, baked occlusion and a missing camera pass --strict, what is
+// replaced does not.
+TEST(ReadScene, StrictLetsNotesPass) {
+  ReadOptions strict;
+  strict.strict = true;
+  GltfMaker m = square();
+  m.root["materials"] = {
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}, {"occlusionTexture", {{"index", 0}}}}};
+  m.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const SceneDesc scene = parse(m, strict);
+  EXPECT_EQ(std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                          [](const Warning& w) { return w.harmless; }),
+            3);
+  EXPECT_EQ(scene.warnings.size(), 3u);
+  m.root["materials"][0]["extensions"] = {{"KHR_materials_unlit", GltfMaker::json::object()}};
+  EXPECT_THROW(parse(m, strict), InputError);
+}
+
 TEST(ReadScene, EnvironmentsAndScenesInTheDark) {
   SceneDesc scene = parse(square());
   light_if_dark(scene);
@@ -356,6 +376,11 @@ TEST(ReadScene, EnvironmentsAndScenesInTheDark) {
   EXPECT_NE(warning_about(scene, "no light"), nullptr);
   light_if_dark(scene);
   EXPECT_EQ(scene.emitters.size(), 1u);
+  SceneDesc dark = parse(square());
+  ReadOptions strict;
+  strict.strict = true;
+  EXPECT_THROW(light_if_dark(dark, strict), InputError);
+  light_if_dark(scene, strict);
   EXPECT_THROW(replace_environment(scene, "/nowhere/sky.exr"), InputError);
   const std::string any_file = std::string(LUMIRANK_TEST_DATA) + "/bad/blank.xml";
   replace_environment(scene, any_file);

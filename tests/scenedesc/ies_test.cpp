@@ -169,7 +169,7 @@ const BadFile kBadFiles[] = {
     {"no_tilt.ies", 3, "TILT="},
     {"picture.ies", 2, "TILT="},
     {"tilt_of_nothing.ies", 2, "TILT="},
-    {"tilt_missing_file.ies", 0, "cannot be read"},
+    {"tilt_missing_file.ies", 0, "does not exist"},
     {"tilt_geometry.ies", 3, "geometry"},
     {"tilt_negative.ies", 6, "tilt factor"},
     {"truncated.ies", 8, "candela value 3 of 3"},

@@ -102,7 +102,7 @@ void add_default_camera(SceneDesc& scene, const Element& root) {
   sensor.near_clip = static_cast<float>(distance) * 1e-3f;
   sensor.far_clip = 1e30f;
   scene.sensors.push_back(std::move(sensor));
-  scene.warnings.push_back({root.where(), "a scene without a camera", "one that frames all of it", true});
+  add_note(scene, root.where(), "the scene has no camera and gets one that frames all of it");
 }
 
 }  // namespace lumirank::scenedesc::gltf

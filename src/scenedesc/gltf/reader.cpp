@@ -54,11 +54,7 @@ Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const 
 }
 
 void Reader::warn(const Element& at, const std::string& what, const std::string& used_instead) {
-  if (options_.strict)
-    throw InputError(at.where(), "Lumirank does not have " + what + " (" + at.path() + ")",
-                     used_instead.empty() ? "without --strict it is left out"
-                                          : "without --strict this is used: " + used_instead);
-  scene_.warnings.push_back({at.where(), what + " (" + at.path() + ")", used_instead});
+  add_warning(scene_, options_, at.where(), what + " (" + at.path() + ")", used_instead);
 }
 
 void Reader::warn_once(const Element& at, const std::string& what, const std::string& used_instead) {
@@ -66,8 +62,7 @@ void Reader::warn_once(const Element& at, const std::string& what, const std::st
 }
 
 void Reader::note(const Element& at, const std::string& what) {
-  if (warned_.insert(what).second)
-    scene_.warnings.push_back({at.where(), what + " (" + at.path() + ")", "", true});
+  if (warned_.insert(what).second) add_note(scene_, at.where(), what + " (" + at.path() + ")");
 }
 
 std::size_t Reader::index_of(const Element& index, std::size_t count, const char* what) const {

@@ -3,7 +3,8 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
+
+#include "scenedesc/files.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {
@@ -104,33 +105,16 @@ Resource resolve_uri(const Element& uri) {
   return {false, {}, fs::absolute(folder / name).lexically_normal().string()};
 }
 
-namespace {
-
-// What is wrong with the file, or "" and its bytes.
-std::string read_whole(const std::string& filename, std::string& bytes) {
-  std::error_code error;
-  const fs::file_status status = fs::status(filename, error);
-  if (!fs::exists(status)) return "does not exist";
-  if (!fs::is_regular_file(status)) return "is not a file";
-  bytes.resize(static_cast<std::size_t>(fs::file_size(filename, error)));
-  std::ifstream in(filename, std::ios::binary);
-  if (error || !in || !in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    return "cannot be read";
-  return {};
-}
-
-}  // namespace
-
 std::string read_resource(const std::string& filename, const Element& user) {
   std::string bytes;
-  const std::string problem = read_whole(filename, bytes);
+  const std::string problem = try_read_file(filename, bytes);
   if (!problem.empty()) user.fail("names " + filename + ", which " + problem, "check the name");
   return bytes;
 }
 
 std::string read_scene_file(const std::string& filename) {
   std::string bytes;
-  const std::string problem = read_whole(filename, bytes);
+  const std::string problem = try_read_file(filename, bytes);
   if (!problem.empty()) throw InputError({filename, 0}, "the scene file " + problem, "check the name");
   return bytes;
 }

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "scenedesc/files.h"
 #include "scenedesc/ies/ies.h"
 #include "scenedesc/ies/number_stream.h"
 
@@ -127,15 +126,6 @@ void read_photometry(NumberStream& in, IesData& out) {
   }
 }
 
-std::string bytes_of(const std::string& filename) {
-  std::ifstream in(filename, std::ios::binary);
-  std::ostringstream bytes;
-  if (in) bytes << in.rdbuf();
-  if (!in || in.bad())
-    throw InputError(SourceLocation{filename, 0}, "the file cannot be read", "check its name");
-  return bytes.str();
-}
-
 }  // namespace
 
 IesData parse_ies(const std::string& text, const std::string& filename) {
@@ -173,10 +163,10 @@ void parse_tilt(const std::string& text, const std::string& filename, IesData& o
 }
 
 IesData read_ies(const std::string& filename) {
-  IesData out = parse_ies(bytes_of(filename), filename);
+  IesData out = parse_ies(read_file(filename, {filename, 0}), filename);
   if (!out.tilt_file.empty()) {
     const auto file = std::filesystem::path(filename).parent_path() / out.tilt_file;
-    parse_tilt(bytes_of(file.string()), file.string(), out);
+    parse_tilt(read_file(file.string(), {file.string(), 0}), file.string(), out);
   }
   return out;
 }

@@ -1,39 +1,13 @@
 // Opens mesh files and applies what the scene says about them.
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
-#include <system_error>
-
 #include "base/error.h"
+#include "scenedesc/files.h"
 #include "scenedesc/meshes/mesh_parts.h"
 #include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
-namespace {
-
-std::string read_bytes(const std::string& filename) {
-  std::error_code status;
-  if (!std::filesystem::exists(filename, status))
-    throw InputError({filename, 0}, "there is no such file",
-                     "check the name; it is relative to the scene's folder");
-  if (!std::filesystem::is_regular_file(filename, status))
-    throw InputError({filename, 0}, "this is not a file", "name a mesh file");
-  struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(filename.c_str(), "rb"));
-  if (!file) throw InputError({filename, 0}, "the file cannot be opened", "check its permissions");
-  std::string bytes(static_cast<std::size_t>(std::filesystem::file_size(filename)), '\0');
-  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
-  if (std::ferror(file.get())) throw InputError({filename, 0}, "the file cannot be read", "check the disk");
-  return bytes;
-}
-
-}  // namespace
 
 MeshData read_mesh(const MeshFileDesc& file) {
-  const std::string bytes = read_bytes(file.filename);
+  const std::string bytes = read_file(file.filename, {file.filename, 0});
   bool flat = false;  // the file itself asks for face normals
   MeshData mesh;
   switch (file.format) {

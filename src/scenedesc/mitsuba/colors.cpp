@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "base/spectrum.h"
+#include "scenedesc/files.h"
 #include "scenedesc/mitsuba/values.h"
 
 namespace lumirank::scenedesc::mitsuba {

@@ -1,13 +1,8 @@
 #include "scenedesc/mitsuba/element.h"
 
 #include <cctype>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace lumirank::scenedesc::mitsuba {
-
-namespace fs = std::filesystem;
 
 const std::string* Element::find(const std::string& name) const {
   for (const auto& [key, value] : attributes)
@@ -24,28 +19,6 @@ std::string Dialect::text() const {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
-std::string read_file(const std::string& filename, const SourceLocation& where) {
-  constexpr std::uintmax_t kLargest = 256u << 20;
-  std::error_code error;
-  const fs::path path(filename);
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw InputError(where, "file not found: " + filename, "check the name");
-  if (fs::is_directory(status)) throw InputError(where, filename + " is a folder", "name a file in it");
-  if (!fs::is_regular_file(status))
-    throw InputError(where, filename + " is not a file", "name a file that can be read");
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) throw InputError(where, "cannot read " + filename + " (" + error.message() + ")");
-  if (size > kLargest)
-    throw InputError(where, filename + " is larger than 256 MiB",
-                     "put geometry into mesh files beside the scene");
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (!in) throw InputError(where, "cannot open " + filename, "check its permissions");
-  if (in.peek() != std::ifstream::traits_type::eof()) bytes << in.rdbuf();
-  if (in.bad() || bytes.fail()) throw InputError(where, "cannot read " + filename);
-  return std::move(bytes).str();
-}
-
 std::string snake_case(const std::string& name) {
   std::string out;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -59,14 +32,6 @@ std::string snake_case(const std::string& name) {
     }
   }
   return out;
-}
-
-std::string resolve_path(const std::string& name, const std::string& file) {
-  fs::path path(name);
-  if (path.is_relative()) path = fs::path(file).parent_path() / path;
-  std::error_code error;
-  const fs::path full = fs::absolute(path, error);
-  return (error ? path : full).lexically_normal().string();
 }
 
 }  // namespace lumirank::scenedesc::mitsuba

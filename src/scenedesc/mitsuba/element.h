@@ -39,13 +39,7 @@ struct Document {
 Document load_document(const std::string& text, const std::string& filename,
                        const std::map<std::string, std::string>& defines);
 
-// The whole file, or an InputError at `where` (missing, a folder, too large).
-std::string read_file(const std::string& filename, const SourceLocation& where);
-
 // "toWorld" → "to_world", "intIOR" → "int_ior"; names in snake case stay as they are.
 std::string snake_case(const std::string& name);
-
-// `name` taken from the folder of `file`, unless it is absolute; normalised.
-std::string resolve_path(const std::string& name, const std::string& file);
 
 }  // namespace lumirank::scenedesc::mitsuba

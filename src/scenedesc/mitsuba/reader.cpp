@@ -2,7 +2,9 @@
 
 #include <filesystem>
 
+#include "scenedesc/files.h"
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -13,11 +15,7 @@ Reader::Reader(const Document& document, const std::string& filename, const Read
 }
 
 void Reader::warn(const SourceLocation& where, const std::string& what, const std::string& used_instead) {
-  if (options_.strict)
-    throw InputError(where, "Lumirank does not have " + what,
-                     used_instead.empty() ? "without --strict it is left out"
-                                          : "without --strict this is used: " + used_instead);
-  scene_.warnings.push_back({where, what, used_instead});
+  add_warning(scene_, options_, where, what, used_instead);
 }
 
 OpenGuard::OpenGuard(Reader& reader, const Element& element) : reader_(reader), element_(element) {
@@ -153,7 +151,7 @@ SceneDesc parse_mitsuba(const std::string& text, const std::string& filename, co
 }
 
 SceneDesc read_mitsuba(const std::string& filename, const ReadOptions& options) {
-  return parse_mitsuba(mitsuba::read_file(filename, SourceLocation{}), filename, options);
+  return parse_mitsuba(read_file(filename, SourceLocation{}, kLargestText), filename, options);
 }
 
 }  // namespace lumirank::scenedesc

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scenedesc/mitsuba/element.h"
+#include "scenedesc/files.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -29,11 +30,7 @@ Reader::Reader(const std::string& filename, const ReadOptions& options)
 }
 
 void Reader::warn(const SourceLocation& where, const std::string& what, const std::string& used_instead) {
-  if (options_.strict)
-    throw InputError(where, "Lumirank does not have " + what,
-                     used_instead.empty() ? "without --strict it is left out"
-                                          : "without --strict this is used: " + used_instead);
-  scene_.warnings.push_back({where, what, used_instead});
+  add_warning(scene_, options_, where, what, used_instead);
 }
 
 void Reader::warn_once(const SourceLocation& where, const std::string& what,
@@ -43,7 +40,7 @@ void Reader::warn_once(const SourceLocation& where, const std::string& what,
 
 std::string Reader::resolve(const std::string& name, const Place& where) const {
   for (const std::string& file : {main_file_, where.file ? *where.file : main_file_}) {
-    const std::string path = mitsuba::resolve_path(name, file);
+    const std::string path = resolve_path(name, file);
     if (std::error_code error; !name.empty() && std::filesystem::exists(path, error)) return path;
   }
   return {};
@@ -52,15 +49,14 @@ std::string Reader::resolve(const std::string& name, const Place& where) const {
 std::string Reader::existing_file(const std::string& name, const Place& where, const std::string& kind) {
   const std::string path = resolve(name, where);
   if (path.empty())
-    throw InputError(where, kind + " not found: " + mitsuba::resolve_path(name, main_file_),
-                     "check the name");
+    throw InputError(where, kind + " not found: " + resolve_path(name, main_file_), "check the name");
   if (std::error_code error; std::filesystem::is_directory(path, error))
     throw InputError(where, kind + " " + path + " is a folder", "name a file in it");
   return path;
 }
 
 std::string Reader::file_text(const std::string& path, const Place& where) const {
-  return mitsuba::read_file(path, where);
+  return read_file(path, where, kLargestText);
 }
 
 int Reader::add_bsdf(const std::string& id, const Place& where, decltype(BsdfDesc::kind) kind) {
@@ -264,7 +260,7 @@ void Reader::finish() {
 }
 
 SceneDesc Reader::read(std::string text) {
-  open_files_.push_back(mitsuba::resolve_path(main_file_, ""));
+  open_files_.push_back(resolve_path(main_file_, ""));
   run(sources_.emplace_back(File{main_file_, std::move(text)}));
   finish();
   return std::move(scene_);
@@ -279,7 +275,7 @@ SceneDesc parse_pbrt(const std::string& text, const std::string& filename, const
 }
 
 SceneDesc read_pbrt(const std::string& filename, const ReadOptions& options) {
-  return parse_pbrt(mitsuba::read_file(filename, SourceLocation{}), filename, options);
+  return parse_pbrt(read_file(filename, SourceLocation{}, kLargestText), filename, options);
 }
 
 }  // namespace lumirank::scenedesc

@@ -1,0 +1,25 @@
+// Whole files, for the readers of all formats.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/error.h"
+
+namespace lumirank::scenedesc {
+
+// `name` taken from the folder of `file`, unless it is absolute; normalised.
+std::string resolve_path(const std::string& name, const std::string& file);
+
+// The bytes of the file, and "" or what is wrong with it: "does not exist", say.
+std::string try_read_file(const std::string& filename, std::string& bytes);
+
+// The bytes of the file, or an InputError at `where`: missing, a folder, unreadable, larger than `most`
+// bytes.
+std::string read_file(const std::string& filename, const SourceLocation& where,
+                      std::uintmax_t most = UINTMAX_MAX);
+
+// A scene file as text, which has at most this size; geometry belongs into mesh files beside it.
+inline constexpr std::uintmax_t kLargestText = 256u << 20;
+
+}  // namespace lumirank::scenedesc
