@@ -220,6 +220,7 @@ std::string kind(const EmitterDesc& e) {
                  [](const ProfileLightDesc& x) {
                    return std::string(x.kind == ProfileLightDesc::Kind::ies ? "ies " : "goniometric ") +
                           x.filename + ", intensity × " + show(x.intensity) +
+                          (x.power ? ", power " + num(*x.power) : "") +
                           (x.tilt_angle != 0 ? ", tilted by " + num(x.tilt_angle) + "°" : "") +
                           show(x.to_world);
                  },

@@ -322,6 +322,9 @@ struct ProfileLightDesc {
   // image: W/sr where the picture is 1.
   Rgb intensity{1};
   std::string filename;
+  // image, on top of `intensity`: the picture is scaled so that at an intensity of 1 the light emits this
+  // (the integral of its values over the sphere).
+  std::optional<float> power = std::nullopt;
   float tilt_angle = 0;  // ies: degrees away from the position in which it was measured, for its TILT factors
 };
 struct DirectionalLightDesc {

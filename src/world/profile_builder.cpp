@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "film/image_io.h"
 #include "scenedesc/ies/ies.h"
@@ -95,6 +96,15 @@ em::AngularProfile from_picture(const sd::ProfileLightDesc& light, const SourceL
   if (mended > 0)
     notes.warn(where, std::to_string(mended) + " values of " + light.filename + " are negative or not finite",
                "0 in their place");
+  if (light.power) {
+    // All texels have the same solid angle.
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    if (!(mean > 0))
+      throw InputError(where, "a light of a stated power has the black picture " + light.filename,
+                       "give another picture, or no power");
+    for (float& v : values) v *= static_cast<float>(*light.power / (4 * kPi * mean));
+  }
   return profile_from_octahedral(image.width, values);
 }
 

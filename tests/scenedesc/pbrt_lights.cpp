@@ -54,6 +54,17 @@ TEST(PbrtLight, PowerOfPointsAndSpots) {
   EXPECT_EQ(spot.beam_width, 50);
 }
 
+// Of all that reach the picture's scale only "scale" and the film's ratio stay beside the power.
+TEST(PbrtLight, PowerOfGoniometricLights) {
+  std::ofstream(testing::TempDir() + "lamp.exr") << "only its name matters here";
+  const auto lamp = light<ProfileLightDesc>(
+      "\"goniometric\" \"string filename\" \"lamp.exr\" \"rgb I\" [ 3 2 1 ] \"float scale\" 2 \"float "
+      "power\" 100");
+  expect_near(lamp.intensity, Rgb(6, 4, 2), 1e-6f);
+  EXPECT_EQ(lamp.power.value_or(0), 100);
+  EXPECT_FALSE(light<ProfileLightDesc>("\"goniometric\" \"string filename\" \"lamp.exr\"").power);
+}
+
 TEST(PbrtLight, PlacesAndDirections) {
   const SceneDesc scene = pbrt_world(
       "Translate 0 0 1 Scale 2 2 2\nLightSource \"point\" \"point3 from\" [ 1 2 3 ]\n"
@@ -108,6 +119,16 @@ TEST(PbrtAreaLight, PowerIsThatOfEachTriangle) {
   expect_near(one.shapes.at(0).emitter->radiance.value, Rgb(20 / kPi), 1e-4f);
   const SceneDesc moved = pbrt_world("Scale 2 1 1 AreaLightSource \"diffuse\" \"float power\" 60\n" + kQuad);
   expect_near(moved.shapes.at(0).emitter->radiance.value, Rgb(10 / kPi), 1e-4f);
+  // A light of its own, after its transform like every triangle; quadrics count before it (Triangle::Area and
+  // Disk::Area in pbrt-v4's shapes.h).
+  const SceneDesc single = pbrt_world(
+      "Scale 2 2 2 AreaLightSource \"diffuse\" \"float power\" 60\n"
+      "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  2 0 0  0 3 0 ]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0  2 0 0  0 3 0  2 3 0 ]\nShape \"disk\"\n");
+  expect_near(single.shapes.at(0).emitter->radiance.value, Rgb(60 / (kPi * 12)), 1e-4f);
+  expect_near(single.shapes.at(1).emitter->radiance.value, Rgb(60 / (kPi * 24)), 1e-4f);
+  expect_near(single.shapes.at(2).emitter->radiance.value, Rgb(60 / (kPi * kPi)),
+              4e-3f);  // 128 segments: 0.04 %
   const SceneDesc sphere =
       pbrt_world("AreaLightSource \"diffuse\" \"float power\" 60 Shape \"sphere\" \"float radius\" 2\n");
   expect_near(sphere.shapes.at(0).emitter->radiance.value, Rgb(60 / (kPi * 16 * kPi)), 1e-5f);

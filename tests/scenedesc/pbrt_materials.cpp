@@ -141,11 +141,18 @@ TEST(PbrtMaterial, InterfaceIsNothing) {
     EXPECT_NO_THROW(inner<NullBsdfDesc>(pbrt_material(type))) << type;
 }
 
-TEST(PbrtMaterial, DiffuseTransmissionReflectsAndWarns) {
-  const SceneDesc scene =
-      pbrt_material("\"diffusetransmission\" \"rgb reflectance\" [ .4 .4 .4 ] \"float scale\" 0.5");
-  EXPECT_EQ(inner<DiffuseDesc>(scene).reflectance.value, Rgb(0.2f));
-  EXPECT_EQ(scene.warnings.size(), 1u);
+TEST(PbrtMaterial, DiffuseTransmission) {
+  const SceneDesc scene = pbrt_material(
+      "\"diffusetransmission\" \"rgb reflectance\" [ .4 .4 .4 ] \"rgb transmittance\" [ .6 .5 .4 ] \"float "
+      "scale\" "
+      "0.5");
+  const auto& sheet = inner<DiffuseTransmitterDesc>(scene);
+  EXPECT_EQ(sheet.reflectance.value, Rgb(0.2f));
+  EXPECT_EQ(sheet.transmittance.value, Rgb(0.3f, 0.25f, 0.2f));
+  EXPECT_TRUE(scene.warnings.empty());
+  const SceneDesc usual = pbrt_material("\"diffusetransmission\"");
+  EXPECT_EQ(inner<DiffuseTransmitterDesc>(usual).reflectance.value, Rgb(0.25f));
+  EXPECT_EQ(inner<DiffuseTransmitterDesc>(usual).transmittance.value, Rgb(0.25f));
 }
 
 TEST(PbrtMaterial, NormalMapsAndDisplacement) {

@@ -29,6 +29,42 @@ Mean irradiance(const World& w, int emitter, Vec3f point, Vec3f normal, std::uin
   return mean;
 }
 
+// pbrt-v4 (GoniometricLight::Create): a light of "power" Φ has the intensity Φ · value / (4π · mean of the
+// values).
+TEST(GoniometricLight, PowerScalesThePicture) {
+  const std::string path = testing::TempDir() + "lumirank_lamp.pfm";
+  film::Image image(32, 32, Rgb(1, 2, 3));
+  for (int k = 0; k < 512; ++k) image.pixels[static_cast<std::size_t>(k)] = Rgb(6);
+  film::write_image(path, {image, {}});
+  auto desc = empty_scene();
+  sd::ProfileLightDesc lamp;
+  lamp.kind = sd::ProfileLightDesc::Kind::image;
+  lamp.filename = path;
+  lamp.intensity = Rgb(0.5f);
+  add_shape(desc, sd::CubeDesc{}, Transform::translate(9, 9, 9));
+  desc.emitters.emplace_back().kind = lamp;
+  lamp.power = 100;
+  desc.emitters.emplace_back().kind = lamp;
+  const World w = build(desc);
+  const auto at = [&](int emitter, Vec3f p) {
+    return w.sample_direct(emitter, p, 0.5f, {0.5f, 0.5f}).radiance.g;
+  };
+  // Half of the map is 2, half 6: the mean is 4, far from the seam the values are those of the picture.
+  double least = 1e9, most = 0;
+  for (const float y : {-1.0f, 1.0f}) {
+    const Vec3f p{0.1f, y, 0.2f};
+    const double ratio = at(1, p) / at(0, p);
+    EXPECT_NEAR(ratio / (100 / (4 * kPiD * 4)), 1, 1e-5);
+    const double intensity = at(0, p) * dot(p, p);
+    least = std::min(least, intensity), most = std::max(most, intensity);
+  }
+  EXPECT_NEAR(least, 1, 1e-5);
+  EXPECT_NEAR(most, 3, 1e-5);
+  image = film::Image(32, 32);
+  film::write_image(path, {image, {}});
+  EXPECT_THROW(build(desc), InputError);
+}
+
 TEST(AreaLight, PowerUnderTransforms) {
   // A rectangle of 4 by ½ turned and mirrored: A = 2, Φ = π·A·L.
   auto desc = empty_scene();

@@ -16,14 +16,18 @@ float area_of(const MeshData& mesh, std::size_t triangle, const Transform& to_wo
   return 0.5f * length(cross(corner(1) - a, corner(2) - a));
 }
 
+// pbrt takes the areas of quadrics as they are before their transform, and is one light of each.
+bool is_quadric(const std::string& title) {
+  return title.find("\"disk\"") != std::string::npos || title.find("\"cylinder\"") != std::string::npos ||
+         title.find("\"sphere\"") != std::string::npos;
+}
+
 // How many lights pbrt makes of the shape: "power" is that of each.
-std::size_t light_count(Params& p, const std::string& title, std::size_t triangles) {
-  if (title.find("\"bilinearmesh\"") != std::string::npos)
+std::size_t light_count(Params& p, std::size_t triangles) {
+  if (is_quadric(p.title())) return 1;
+  if (p.title().find("\"bilinearmesh\"") != std::string::npos)
     return std::max<std::size_t>(1, p.numbers("indices", ParamType::integer).size() / 4);
-  const bool quadric = title.find("\"disk\"") != std::string::npos ||
-                       title.find("\"cylinder\"") != std::string::npos ||
-                       title.find("\"sphere\"") != std::string::npos;
-  return quadric ? 1 : triangles;
+  return triangles;
 }
 
 // Radiance over "L" that makes each of pbrt's lights emit `power`, if they are equally large.
@@ -32,8 +36,8 @@ float power_factor(Reader& reader, Params& p, const ShapeDesc& shape, const Area
   if (const auto* sphere = std::get_if<SphereDesc>(&shape.kind))  // of the untransformed one, as in pbrt
     return light.power / (sides * kPi * 4 * kPi * sphere->radius * sphere->radius);
   const MeshData& mesh = *std::get<InlineMeshDesc>(shape.kind).mesh;
-  const std::size_t lights = light_count(p, p.title(), mesh.triangle_count());
-  const Transform to_world = lights == 1 ? Transform{} : shape.to_world;
+  const std::size_t lights = light_count(p, mesh.triangle_count());
+  const Transform to_world = is_quadric(p.title()) ? Transform{} : shape.to_world;
   double sum = 0;
   float least = kInfinity, most = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {

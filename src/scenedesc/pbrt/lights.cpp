@@ -68,8 +68,7 @@ ProfileLightDesc goniometric(Reader& reader, Params& p, const Transform& to_worl
   out.to_world = to_world * swap;
   out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "picture");
   out.intensity = spectrum(p, "I") * scale_of(p);
-  if (p.number("power", -1) > 0)
-    reader.warn(p.where_of("power"), "the power of a light with a picture", "\"scale\" alone");
+  if (const float power = p.number("power", -1); power > 0) out.power = power;
   return out;
 }
 

@@ -175,14 +175,13 @@ class MaterialMaker {
     const ColorInput reflectance = color("reflectance", 0.25f);
     const ColorInput transmittance = color("transmittance", 0.25f);
     const float scale = p_.number("scale", 1);
-    if (transmittance.texture != kNone || !is_black(transmittance.value))
-      reader_.warn(p_.where(), "diffuse transmission", "its reflection alone");
-    ColorInput out = reflectance;
-    if (out.texture == kNone)
-      out.value = clamp_below(out.value * scale, 1);
-    else if (scale != 1)
-      out.texture = reader_.add_texture("", p_.where(), ScaleTextureDesc{reflectance, Rgb(scale)});
-    return two_sided(DiffuseDesc{out});
+    if (!(scale >= 0)) p_.fail("scale", "is negative", "give 0 or more");
+    const auto scaled = [&](const ColorInput& input) -> ColorInput {
+      if (input.texture == kNone) return {clamp_below(input.value * scale, 1), kNone};
+      if (scale == 1) return input;
+      return {Rgb(0), reader_.add_texture("", p_.where(), ScaleTextureDesc{input, Rgb(scale)})};
+    };
+    return detailed(add(DiffuseTransmitterDesc{scaled(reflectance), scaled(transmittance)}));
   }
 
   int mix() {
