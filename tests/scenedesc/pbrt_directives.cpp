@@ -155,9 +155,13 @@ TEST(PbrtWarnings, WhatThereIsNot) {
         "Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ] \"integer indices\" [ 0 1 2 ]\n",
         "LightSource \"infinite\" \"point3 portal\" [ 0 0 0  1 0 0  1 1 0  0 1 0 ]\n"})
     EXPECT_EQ(only_warning(pbrt_world(world)).where.line, 3) << world;
-  EXPECT_EQ(only_warning(pbrt_world("", "Option \"bool forcediffuse\" true")).where.line, 1);
-  EXPECT_TRUE(
-      pbrt_world("", "Option \"string rendercoordsys\" \"world\" Accelerator \"bvh\"").warnings.empty());
+  // A name and a value (parse() in pbrt-v4's parser.cpp).
+  EXPECT_EQ(only_warning(pbrt_world("", "Option \"forcediffuse\" true")).where.line, 1);
+  only_warning(pbrt_world("", "Option \"mse-reference-image\" \"a.exr\""));
+  only_warning(pbrt_world("", "Option \"no such option\" 3"));
+  EXPECT_TRUE(pbrt_world("", "Option \"disablepixeljitter\" false Option \"Seed\" 3").warnings.empty());
+  EXPECT_THROW(pbrt_world("", "Option \"seed\""), InputError);
+  EXPECT_TRUE(pbrt_world("", "Option \"rendercoordsys\" \"world\" Accelerator \"bvh\"").warnings.empty());
 }
 
 SensorDesc sensor(const std::string& head) {

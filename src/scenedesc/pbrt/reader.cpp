@@ -1,6 +1,7 @@
 #include "scenedesc/pbrt/reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "scenedesc/files.h"
@@ -19,6 +20,14 @@ const char* const kOptions[] = {
     "disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale",
     "forcediffuse",       "msereferenceimage",       "msereferenceout",         "pixelstats",
     "wavefront"};
+
+// pbrt takes option names in any case, with hyphens and underscores or without.
+std::string plain_option(const std::string& name) {
+  std::string out;
+  for (const char c : name)
+    if (c != '-' && c != '_') out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
 
 }  // namespace
 
@@ -188,14 +197,19 @@ bool Reader::option_directive(Tokens& tokens, const Token& word) {
     const std::string type = take_text(tokens, word, "type");
     take_params(tokens, word, type, nullptr);
   } else if (name == "Option") {
-    Params p = take_params(tokens, word, "", nullptr);
-    p.ignore({"rendercoordsys", "seed"});
-    for (const char* option : kOptions)
-      if (p.has(option)) {
-        p.ignore({option});
-        warn(p.where_of(option), std::string("the option \"") + option + "\"", "");
-      }
-    p.finish();
+    // A name and one value, not a list of parameters.
+    const std::string option = take_text(tokens, word, "name");
+    const Token value = tokens.take();
+    const bool directive = value.kind == Token::Kind::word && value.value[0] >= 'A' && value.value[0] <= 'Z';
+    if (directive || (value.kind != Token::Kind::word && value.kind != Token::Kind::text))
+      throw InputError(where, "the option " + in_quotes(option) + " has no value",
+                       "write Option \"seed\" 3, say");
+    const std::string plain = plain_option(option);
+    if (std::find(std::begin(kOptions), std::end(kOptions), plain) != std::end(kOptions)) {
+      if (value.value != "false") warn(where, "the option " + in_quotes(option), "");
+    } else if (plain != "rendercoordsys" && plain != "seed") {  // where pbrt computes, and with which numbers
+      warn(where, "an option of the name " + in_quotes(option), "");
+    }
   } else if (name == "ColorSpace") {
     const std::string text = take_text(tokens, word, "name");
     const auto space = color_space(text);
