@@ -37,6 +37,12 @@ struct RenderSettings {
   std::string backend = "cpu";
   std::string direct =
       "auto";  // matrix, traced, auto: traced where the receiver is glossier than a measured roughness
+  // Local compensation: paths per receiver for the light that virtual lights would blur or lose; 0: none. It
+  // takes all light of lobes with a roughness below local_sharp and, where lights are spherical, what comes
+  // from closer than local_near of their radii; columns then have none of it.
+  int local_paths = 0;
+  double local_sharp = 0.3;
+  double local_near = 4;
   std::string rest = "skip";  // skip, trace
   int compensate = 0;  // paths per pixel that give back what clamping took from indirect light; 0: none
   std::string visibility = "exact";

@@ -25,6 +25,8 @@ enum class Stage : std::uint32_t {
   benchmark,
   test,
   spheres,
+  traced_sharp,
+  traced_near,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

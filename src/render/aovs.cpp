@@ -15,14 +15,13 @@ void add_plane(Picture& picture, const std::string& name, const film::Image& ima
 
 // The part of the estimate made of the columns that `keep` chooses: light is linear, and so is the estimate.
 film::Image part_image(const Setup& setup, const methods::Estimate& estimate,
-                       const std::function<bool(matrix::Index)>& keep, bool with_traced, const Sinks& sinks) {
+                       const std::function<bool(matrix::Index)>& keep, FilmParts parts, const Sinks& sinks) {
   std::vector<matrix::ScaledColumn> columns;
   for (const auto& c : estimate.combination)
     if (keep(c.column)) columns.push_back(c);
   std::vector<Rgb> sums(setup.receivers.size());
   setup.matrix->accumulate(columns, sums, sinks);
-  return develop(setup,
-                 sample_values(setup, sums, {.emission = false, .matrix = true, .traced = with_traced}));
+  return develop(setup, sample_values(setup, sums, parts));
 }
 
 template <typename T, typename F>
@@ -42,6 +41,8 @@ std::map<std::uint16_t, std::string> matching_groups(const world::World& world, 
   return groups;
 }
 
+constexpr FilmParts kMatrixOnly{.emission = false, .traced_direct = false, .traced_indirect = false};
+
 void add_lights(Picture& picture, const Setup& setup, const std::string& which,
                 const methods::Estimate& estimate, const Sinks& sinks) {
   for (const auto& [group, name] : matching_groups(*setup.world, which)) {
@@ -49,7 +50,7 @@ void add_lights(Picture& picture, const Setup& setup, const std::string& which,
     const auto from_it = [&](matrix::Index j) {
       return setup.world->emitters()[setup.lights.emitter[j]].group == wanted;
     };
-    add_plane(picture, "light:" + name, part_image(setup, estimate, from_it, false, sinks));
+    add_plane(picture, "light:" + name, part_image(setup, estimate, from_it, kMatrixOnly, sinks));
   }
 }
 
@@ -68,11 +69,13 @@ void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const
   if (aov == "direct") {
     add_plane(picture, aov,
               part_image(
-                  setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] == 0; }, true, sinks));
+                  setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] == 0; },
+                  {.emission = false, .traced_indirect = false}, sinks));
   } else if (aov == "indirect") {
     add_plane(picture, aov,
               part_image(
-                  setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] > 0; }, false, sinks));
+                  setup, estimate, [&](matrix::Index j) { return setup.lights.depth[j] > 0; },
+                  {.emission = false, .traced_direct = false}, sinks));
   } else if (aov.starts_with("light:")) {
     add_lights(picture, setup, aov.substr(6), estimate, sinks);
   } else if (aov == "emission") {
@@ -95,7 +98,9 @@ void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const
 }  // namespace
 
 FilmParts wanted_parts(const RenderSettings& settings) {
-  return {.emission = settings.only == "all", .matrix = true, .traced = settings.only != "indirect"};
+  return {.emission = settings.only == "all",
+          .traced_direct = settings.only != "indirect",
+          .traced_indirect = settings.only != "direct"};
 }
 
 int passes_over_columns(const RenderSettings& settings) {
@@ -115,6 +120,8 @@ void check_aovs(const world::World& world, const RenderSettings& settings) {
     if (!aov.starts_with("light:")) continue;
     if (traced_roughness(settings) > 0)
       throw InputError("'" + aov + "' needs all light in the matrix", "leave out --direct traced");
+    if (settings.local_paths > 0)
+      throw InputError("'" + aov + "' needs all light in the matrix", "leave out --local-paths");
     const std::string which = aov.substr(6);
     if (!matching_groups(world, which).empty()) continue;
     std::string known;

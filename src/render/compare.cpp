@@ -204,7 +204,8 @@ class Comparison {
     CompareRun result;
     result.seconds = timer.seconds();
     result.setup_seconds = setup_.seconds["receivers"] + setup_.seconds["traced_direct"] +
-                           setup_.seconds["lights"] + setup_.seconds["matrix"];
+                           setup_.seconds["traced_indirect"] + setup_.seconds["lights"] +
+                           setup_.seconds["matrix"];
     result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
     result.settings = method_settings;
     result.settings["lights"] = std::to_string(setup_.lights.size());

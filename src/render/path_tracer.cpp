@@ -1,6 +1,5 @@
 #include "render/path_tracer.h"
 
-#include "render/sample_stream.h"
 #include "scatter/closure.h"
 
 namespace lumirank::rendering {
@@ -21,10 +20,11 @@ struct PathTracer::Walk {
   bool counts;                  // whether light found now belongs to the wanted paths
   bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
   float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
-  emitters::LitPoint from{};  // that vertex
-  float travelled = 0;        // since the last vertex
-  float receiver_term = 0;    // π f_x·cosθx of the step away from the receiver
-  float eta_scale = 1;        // undoes refraction's scaling for Russian roulette
+  emitters::LitPoint from{};                    // that vertex
+  float travelled = 0;                          // since the last vertex
+  float receiver_term = 0;                      // π f_x·cosθx of the step away from the receiver
+  const transport::LightReach* near = nullptr;  // what may come next after the receiver, see Departure
+  float eta_scale = 1;                          // undoes refraction's scaling for Russian roulette
   Radiance sum{};
 
   void add(Rgb value) {
@@ -42,6 +42,30 @@ Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t
             .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
             .ray = ray,
             .counts = settings_.paths != Paths::rest};
+  finish(walk);
+  return walk.sum;
+}
+
+Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, std::uint64_t key) const {
+  const scatter::BsdfSample& next = departure.next;
+  Walk walk{.random = random,
+            .key = key,
+            .ray = {world::World::offset_origin(departure.position, departure.ng, next.wi), next.wi},
+            .throughput = next.weight,
+            .segments = departure.depth + 1,
+            .smooth_vertices = 1,
+            .after_receiver = true,
+            .counts = true,
+            .specular = false,
+            .bsdf_pdf = next.pdf,
+            .from = departure.from,
+            .near = departure.near,
+            .eta_scale = next.eta * next.eta};
+  finish(walk);
+  return walk.sum.indirect;
+}
+
+void PathTracer::finish(Walk& walk) const {
   // A bound on straight passes, so that coincident null surfaces cannot hold a path for ever.
   constexpr int kMaxSteps = 4096;
   for (int step = 0; step < kMaxSteps; ++step) {
@@ -56,7 +80,6 @@ Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t
     Closure closure = world_.materials().closure(hit->material, hit->point, -walk.ray.direction);
     if (!scatter(walk, *hit, closure)) break;
   }
-  return walk.sum;
 }
 
 // What shines at the end of the current segment, weighted against light sampling (balance heuristic).
@@ -119,10 +142,13 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   if (first_after_receiver && settings_.paths != Paths::all) {
     // Columns carry this vertex's smooth lobes, the rest its specular ones; both pass straight through.
     const bool keep_specular = settings_.paths == Paths::rest;
+    const Vec3f place = hit.point.position;
+    const bool counts =
+        !walk.near || length_squared(place - walk.from.position) < square(walk.near->at(place));
     int kept = 0;
     for (int k = 0; k < closure.count; ++k) {
       const LobeKind kind = closure.lobes[k].kind;
-      if (kind == LobeKind::delta_pass || scatter::is_delta(kind) == keep_specular)
+      if (kind == LobeKind::delta_pass || (counts && scatter::is_delta(kind) == keep_specular))
         closure.lobes[kept++] = closure.lobes[k];
     }
     closure.count = kept;

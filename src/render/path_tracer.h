@@ -8,6 +8,8 @@
 
 #include "base/rgb.h"
 #include "render/light_sampler.h"
+#include "render/sample_stream.h"
+#include "transport/light_reach.h"
 #include "world/camera.h"
 #include "world/world.h"
 
@@ -48,8 +50,22 @@ class PathTracer {
   // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth.
   Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
 
+  // A non-specular vertex, and the direction in which a path leaves it.
+  struct Departure {
+    Vec3f position, ng;
+    emitters::LitPoint from;
+    scatter::BsdfSample next;
+    int depth;  // segments from the eye to the vertex
+    // Unless nullptr, light counts only from places that have the vertex within their reach.
+    const transport::LightReach* near = nullptr;
+  };
+  // The indirect light that leaves the vertex, one random path with the sample's weight in it; `random` has
+  // chosen the direction. `key` decides cut-outs.
+  Rgb indirect_after(const Departure& departure, SampleStream random, std::uint64_t key) const;
+
  private:
   struct Walk;
+  void finish(Walk& walk) const;
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
                      double u_light, float connection) const;

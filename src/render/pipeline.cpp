@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/timer.h"
 #include "render/traced_direct.h"
+#include "render/traced_indirect.h"
 #include "transport/sphere_lights.h"
 
 namespace lumirank::rendering {
@@ -78,14 +79,50 @@ film::Filter make_filter(const scenedesc::FilterDesc& desc) {
   return filter;
 }
 
+namespace {
+double local_sharp(const RenderSettings& settings) {
+  return settings.local_paths > 0 ? settings.local_sharp : 0;
+}
+double local_near(const RenderSettings& settings) {
+  return settings.local_paths > 0 && settings.light_type == "sphere" ? settings.local_near : 0;
+}
+}  // namespace
+
 double traced_roughness(const RenderSettings& settings) {
   if (settings.only == "indirect" || settings.direct == "matrix") return 0;
   if (settings.direct == "traced") return 2;  // roughness never exceeds 1
   // Traced light does not know its emitter.
   for (const auto& aov : settings.aovs)
     if (aov.starts_with("light:")) return 0;
-  return 0.15;
+  return std::max(0.15, local_sharp(settings));
 }
+
+namespace {
+bool some_traced(const transport::Receivers& receivers, float below) {
+  for (std::size_t i = 0; i < receivers.size(); ++i)
+    if (is_traced(receivers, i, below)) return true;
+  return false;
+}
+
+void trace_sharp_lobes(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
+  setup.traced_indirect.clear();
+  const auto below = static_cast<float>(local_sharp(settings));
+  if (!some_traced(setup.receivers, below)) return;
+  const Timer timer;
+  if (settings.only != "direct") {
+    TracedIndirectSettings ts;
+    ts.seed = settings.seed;
+    ts.below = below;
+    ts.paths = settings.local_paths;
+    ts.max_depth = setup.view.max_depth;
+    setup.traced_indirect = trace_indirect(*setup.world, setup.receivers, ts, sinks);
+  }
+  // Direct light of these lobes is traced by now or not wanted, so columns have nothing to add to them.
+  setup.receivers = transport::broad_receivers(std::move(setup.receivers), below);
+  setup.seconds["traced_indirect"] = timer.seconds();
+  if (sinks.cancelled()) throw Cancelled();
+}
+}  // namespace
 
 void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
   const Timer timer;
@@ -113,13 +150,13 @@ void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& s
     ts.seed = settings.seed;
     ts.below = static_cast<float>(setup.traced_below);
     ts.max_depth = setup.view.max_depth;
-    bool any = false;
-    for (std::size_t i = 0; i < setup.receivers.size() && !any; ++i)
-      any = is_traced(setup.receivers, i, ts.below);
-    if (any) setup.traced_direct = trace_direct(*setup.world, setup.receivers, ts, sinks);
+    if (some_traced(setup.receivers, ts.below))
+      setup.traced_direct =
+          per_sample(setup.receivers, trace_direct(*setup.world, setup.receivers, ts, sinks));
     setup.seconds["traced_direct"] = traced_timer.seconds();
     if (sinks.cancelled()) throw Cancelled();
   }
+  trace_sharp_lobes(setup, settings, sinks);
 }
 
 namespace {
@@ -166,6 +203,7 @@ transport::SceneMatrixSettings matrix_settings(const Setup& setup, const RenderS
   ms.spheres.strategies =
       settings.sphere_strategies == "cone" ? Rules::Strategies::cone : Rules::Strategies::all;
   ms.spheres.samples = settings.sphere_samples == "cone" ? Rules::Samples::cone : Rules::Samples::overlap;
+  ms.spheres.beyond = static_cast<float>(local_near(settings));
   ms.max_depth = setup.view.max_depth;
   ms.traced_direct_below = static_cast<float>(setup.traced_below);
   for (const auto& aov : settings.aovs)
@@ -198,6 +236,20 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
                            : 0;
   setup.seconds["lights"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
+  setup.traced_near.clear();
+  if (local_near(settings) > 0 && settings.only != "direct") {
+    const Timer near_timer;
+    const transport::LightReach reach(setup.lights, *setup.world, static_cast<float>(setup.radius_scale),
+                                      static_cast<float>(local_near(settings)));
+    TracedIndirectSettings ts;
+    ts.seed = settings.seed;
+    ts.paths = settings.local_paths;
+    ts.max_depth = setup.view.max_depth;
+    ts.near = &reach;
+    setup.traced_near = trace_indirect(*setup.world, setup.receivers, ts, sinks);
+    setup.seconds["traced_near"] = near_timer.seconds();
+    if (sinks.cancelled()) throw Cancelled();
+  }
 
   const Timer matrix_timer;
   setup.matrix = std::make_unique<transport::SceneMatrix>(*setup.world, setup.receivers, setup.lights,
@@ -218,12 +270,14 @@ std::vector<Rgb> sample_values(const Setup& setup, std::span<const Rgb> sums, Fi
   const transport::Receivers& receivers = setup.receivers;
   std::vector<Rgb> values(receivers.samples());
   if (parts.emission) values = receivers.emission;
-  for (std::size_t i = 0; i < receivers.size(); ++i) {
-    Rgb radiance{0};
-    if (parts.matrix) radiance += sums[i];
-    if (parts.traced && !setup.traced_direct.empty()) radiance += setup.traced_direct[i];
-    values[receivers.sample[i]] += receivers.weight[i] * radiance;
-  }
+  if (parts.matrix)
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+      values[receivers.sample[i]] += receivers.weight[i] * sums[i];
+  const auto add = [&](const std::vector<Rgb>& traced) {
+    for (std::size_t k = 0; k < traced.size(); ++k) values[k] += traced[k];
+  };
+  if (parts.traced_direct) add(setup.traced_direct);
+  if (parts.traced_indirect) add(setup.traced_indirect), add(setup.traced_near);
   return values;
 }
 

@@ -37,10 +37,13 @@ struct Setup {
   transport::Receivers receivers;
   transport::VirtualLights lights;
   std::unique_ptr<transport::SceneMatrix> matrix;
-  // Direct light of the receivers that are traced instead of going through the matrix; empty if there are
-  // none.
+  // Direct light that is traced instead of going through the matrix, one per film sample; empty if none is.
   std::vector<Rgb> traced_direct;
   double traced_below = 0;  // roughness under which receivers are traced
+  // Indirect light of sharp lobes, one per film sample; such lobes have left the receivers then.
+  std::vector<Rgb> traced_indirect;
+  // Indirect light from close by, one per film sample (RenderSettings::local_near).
+  std::vector<Rgb> traced_near;
   double radius_scale = 0;  // of spherical lights; 0: points
   Clamped held;             // what the columns hold, where the rest is to be traced; bound 0: it is not
   std::map<std::string, double> seconds;  // per phase
@@ -60,7 +63,7 @@ std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& 
 
 // The picture for given row sums: chain weights, directly traced light, emission, reconstruction filter.
 struct FilmParts {
-  bool emission = true, matrix = true, traced = true;
+  bool emission = true, matrix = true, traced_direct = true, traced_indirect = true;
 };
 std::vector<Rgb> sample_values(const Setup& setup, std::span<const Rgb> sums, FilmParts parts);
 film::Image develop(const Setup& setup, std::span<const Rgb> values);

@@ -217,6 +217,16 @@ const std::vector<Row>& table() {
                         "direct light at receivers: by columns, traced with multiple importance sampling, or "
                         "traced in sharp lobes (roughness below 0.15) and by columns in the others"},
                        &S::direct, {"auto", "matrix", "traced"}));
+    t.push_back(number<int>({"local-paths", "", "0", "0 … 1048576", "paths per receiver",
+                             "trace the light that virtual lights blur, in sharp lobes and from close by, "
+                             "instead of gathering it from columns (unbiased, noisy); 0: do not"},
+                            &S::local_paths, 0, 1 << 20));
+    t.push_back(number<double>({"local-sharp", "", "0.3", "0 … 1", "roughness",
+                                "with local-paths: lobes sharper than this are traced"},
+                               &S::local_sharp, 0, 1));
+    t.push_back(number<double>({"local-near", "", "4", "0 … 1000", "radii",
+                                "with local-paths, of spherical lights: places nearer than this are traced"},
+                               &S::local_near, 0, 1000));
     t.push_back(choice({"rest", "", "skip", "", "",
                         "paths that columns cannot carry: leave out, or add by path tracing (noisy)"},
                        &S::rest, {"skip", "trace"}));
@@ -319,6 +329,14 @@ void validate(const RenderSettings& settings) {
   }
   if (!settings.choices.empty() && settings.time <= 0)
     throw InputError("choices of a timed run need its time budget", "set 'time', or clear the choices");
+  if (settings.local_paths > 0) {
+    if (settings.direct == "matrix" && settings.local_sharp > 0)
+      throw InputError("'local-paths' trace the direct light of sharp lobes too",
+                       "leave out 'direct matrix', or set 'local-sharp' to 0");
+    if (settings.compensate > 0)
+      throw InputError("'compensate' gives back light that 'local-paths' have traced",
+                       "leave out one of them");
+  }
   if (settings.compensate > 0) {
     const auto refuse = [](const char* what, const char* remedy) {
       throw InputError(std::string("'compensate' ") + what, remedy);

@@ -132,6 +132,12 @@ bool Closure::is_lambertian() const {
   return smooth == 1;
 }
 
+Rgb Closure::diffuse_color() const {
+  for (int k = 0; k < count; ++k)
+    if (lobes[k].kind == LobeKind::diffuse) return lobes[k].color;
+  return {};
+}
+
 float lobe_roughness(const Lobe& lobe) {
   // Refraction into the open widens what lies under a coat.
   const float wider = lobe.coat ? lobe.coat.bend : 1.0f;

@@ -103,6 +103,7 @@ struct Closure {
   bool has_delta() const;
   // The only smooth lobe is `diffuse` (delta lobes may stand beside it).
   bool is_lambertian() const;
+  Rgb diffuse_color() const;  // of the diffuse lobe of a lambertian closure: its reflectance
   // Least roughness alpha of a smooth glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0
   // if none is smooth.
   float roughness() const;

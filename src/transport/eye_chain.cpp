@@ -42,8 +42,7 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
   v.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
   v.closure = Receivers::kLambertian;
   if (closure.is_lambertian()) {
-    for (int k = 0; k < closure.count; ++k)
-      if (closure.lobes[k].kind == LobeKind::diffuse) v.albedo = closure.lobes[k].color;
+    v.albedo = closure.diffuse_color();
   } else {
     v.closure = pool.add(closure, v.normal);
   }

@@ -34,8 +34,7 @@ LightRecord surface_light(const Vec3f& position, const Closure& closure, Vec3f i
   light.normal = closure.frame.n * side;
   light.ng = closure.ng * side;
   if (closure.is_lambertian()) {
-    for (int k = 0; k < closure.count; ++k)
-      if (closure.lobes[k].kind == LobeKind::diffuse) light.albedo = closure.lobes[k].color;
+    light.albedo = closure.diffuse_color();
   } else {
     light.closure = pool.add(closure, light.normal);
   }

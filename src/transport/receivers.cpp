@@ -243,4 +243,34 @@ Receivers white_receivers(const Receivers& seen) {
   return out;
 }
 
+Receivers broad_receivers(Receivers all, float limit) {
+  Receivers out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::uint32_t closure = all.closure[i];
+    Rgb albedo = all.albedo[i];
+    if (closure != Receivers::kLambertian) {
+      const scatter::Closure broad = scatter::broad_part(all.closure_at(i), limit);
+      if (broad.count == 0) continue;
+      closure = Receivers::kLambertian;
+      if (broad.is_lambertian())
+        albedo = broad.diffuse_color();
+      else
+        closure = out.closures.add(broad, all.normal[i]);
+    }
+    out.position.push_back(all.position[i]);
+    out.normal.push_back(all.normal[i]), out.ng.push_back(all.ng[i]);
+    out.wo.push_back(all.wo[i]);
+    out.weight.push_back(all.weight[i]), out.albedo.push_back(albedo);
+    out.sample.push_back(all.sample[i]), out.depth.push_back(all.depth[i]);
+    out.closure.push_back(closure);
+  }
+  out.closures.shrink();
+  out.film = std::move(all.film), out.emission = std::move(all.emission);
+  out.first_albedo = std::move(all.first_albedo);
+  out.first_normal = std::move(all.first_normal), out.first_ng = std::move(all.first_ng);
+  out.first_position = std::move(all.first_position), out.first_distance = std::move(all.first_distance);
+  out.width = all.width, out.height = all.height;
+  return out;
+}
+
 }  // namespace lumirank::transport

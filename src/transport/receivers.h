@@ -66,6 +66,10 @@ struct Receivers {
 // Weights are 1, depths 1; film samples stay those of `seen`, which has its first hits.
 Receivers white_receivers(const Receivers& seen);
 
+// What is left to columns where lobes with a roughness below `limit` take their light elsewhere: receivers
+// without those lobes, and only where one is left. Film samples stay those of `all`.
+Receivers broad_receivers(Receivers all, float limit);
+
 Receivers trace_receivers(const world::World& world, const world::Camera& camera,
                           const ReceiverSettings& settings, const Sinks& sinks = {});
 

@@ -11,7 +11,6 @@
 namespace lumirank::transport {
 namespace {
 
-constexpr int kNeighbour = 10;
 // From errors against path tracing of five glossy scenes with 1,000 to 64,000 lights: best at 1.3 for
 // 1,000, 2.6 for 8,000, 4 for 30,000, 5 for 64,000.
 constexpr double kLightsAtOne = 470;
@@ -42,6 +41,11 @@ float automatic_radius_scale(std::size_t surface_lights) {
   return static_cast<float>(std::max(1.0, std::cbrt(static_cast<double>(surface_lights) / kLightsAtOne)));
 }
 
+float sphere_radius(float neighbour_distance_squared, float scale, float extent) {
+  // Lights may coincide where particles are few; a sphere without extent would be a point with its spikes.
+  return std::clamp(scale * std::sqrt(neighbour_distance_squared), 1e-5f * extent, extent);
+}
+
 float make_spherical(VirtualLights& lights, const world::World& world, const SphereSettings& settings,
                      const Sinks& sinks) {
   std::vector<std::size_t> which;
@@ -50,18 +54,15 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
     if (lights.kind[j] == LightKind::surface) which.push_back(j), points.push_back(lights.position[j]);
   lights.radius.assign(lights.size(), 0);
   lights.hidden.assign(lights.size(), 0);
-  const std::vector<float> distance2 = neighbour_distance_squared(points, kNeighbour);
+  const std::vector<float> distance2 = neighbour_distance_squared(points, kSphereNeighbour);
   const float scale =
       settings.radius_scale > 0 ? settings.radius_scale : automatic_radius_scale(which.size());
   const float largest = world.bounds().radius();
-  // Lights may coincide where particles are few; a sphere without extent would be a point with its spikes.
-  const float least = 1e-5f * largest;
   parallel_for(which.size(), 1024, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t j = which[k];
-      const float distance = which.size() > 1 ? std::sqrt(distance2[k]) : largest;
-      lights.radius[j] = std::clamp(scale * distance, least, largest);
+      lights.radius[j] = which.size() > 1 ? sphere_radius(distance2[k], scale, largest) : largest;
       Rng rng(0, Stage::spheres, j);
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);
     }

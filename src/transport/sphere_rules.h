@@ -21,6 +21,8 @@ struct SphereRules {
   // overlap: samples by how many lobes' widths the cone has where they overlap; cone: by the cone alone, 100
   // for 2π.
   enum class Samples : std::uint8_t { overlap, cone } samples = Samples::overlap;
+  // In radii: receivers closer to the centre get nothing, because their light is traced (LightReach).
+  float beyond = 0;
 };
 
 inline constexpr float kDiscReach = 4;

@@ -345,6 +345,50 @@ TEST(Receivers, RefusesBadSettings) {
   EXPECT_THROW(trace_receivers(world, from_above(4, 4), settings), InputError);
 }
 
+// Without its sharp lobe, plastic is matt and metal is no receiver at all; film samples stay.
+TEST(Receivers, TheBroadPartHasNoSharpLobes) {
+  SceneMaker scene;
+  scenedesc::PlasticDesc plastic;
+  plastic.alpha.value = 0.1f;
+  scenedesc::ConductorDesc metal;
+  metal.alpha_u.value = metal.alpha_v.value = 0.1f;
+  scene.rectangle({-2, 0, 0}, {1, 0, 0}, {0, 10, 0}, scene.bsdf(plastic));
+  scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 10, 0}, scene.bsdf(metal));
+  scene.rectangle({2, 0, 0}, {1, 0, 0}, {0, 10, 0}, scene.diffuse({0.2f, 0.4f, 0.6f}));
+  const auto world = scene.build();
+  const auto all = trace_receivers(world, from_above(32, 8), settings_of(4));
+  const auto broad = broad_receivers(all, 0.15f);
+  EXPECT_EQ(broad.samples(), all.samples());
+  std::size_t k = 0, metals = 0, plastics = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const float x = all.position[i].x;
+    if (x > -1 && x < 1) {
+      ++metals;
+      continue;
+    }
+    ASSERT_LT(k, broad.size());
+    EXPECT_EQ(broad.position[k], all.position[i]);
+    EXPECT_EQ(broad.wo[k], all.wo[i]);
+    EXPECT_EQ(broad.sample[k], all.sample[i]);
+    if (x < -1) {
+      ++plastics;
+      const scatter::Closure whole = all.closure_at(i), part = broad.closure_at(k);
+      const Vec3f wi = normalize(Vec3f{0.3f, 0.2f, 1});
+      EXPECT_LT(max_component(scatter::eval(scatter::broad_part(whole, 0.15f), all.wo[i], wi) -
+                              scatter::eval(part, broad.wo[k], wi)),
+                1e-6f);
+      EXPECT_GE(part.roughness(), 0.15f);
+    } else {
+      EXPECT_EQ(broad.albedo[k], all.albedo[i]);
+    }
+    ++k;
+  }
+  EXPECT_EQ(k, broad.size());
+  EXPECT_GT(metals, 0u);
+  EXPECT_GT(plastics, 0u);
+  EXPECT_EQ(broad_receivers(all, 0.05f).size(), all.size());
+}
+
 TEST(Receivers, WithoutFirstHitsThereAreNone) {
   auto settings = settings_of(4);
   settings.first_hits = false;

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/warp.h"
 #include "matrix_fixture.h"
+#include "transport/light_reach.h"
 #include "transport/sphere_integral.h"
 #include "transport/sphere_lights.h"
 
@@ -154,6 +155,29 @@ INSTANTIATE_TEST_SUITE_P(
              (rules.param.samples == SphereRules::Samples::overlap ? "ByOverlap" : "ByCone");
     });
 
+// Whatever the ends, an entry is what it was, or nothing where the receiver is too close.
+TEST_P(SphericalPairs, NothingArrivesFromWithinTheReachThatIsTraced) {
+  SphereRules rules = GetParam();
+  const SceneMatrix whole = make(rules);
+  rules.beyond = 2;
+  const SceneMatrix far = make(rules);
+  std::vector<Rgb> a(kRows), b(kRows);
+  std::size_t left_out = 0, kept = 0;
+  for (Index j = 0; j < kColumns; ++j) {
+    whole.column(j, a, Part::unoccluded), far.column(j, b, Part::unoccluded);
+    for (std::size_t i = 0; i < kRows; ++i) {
+      const float reach = 2 * ends_->lights.radius[j];
+      const float d = length(ends_->lights.position[j] - ends_->receivers.position[i]);
+      if (std::abs(d - reach) < 1e-5f) continue;
+      if (is_black(a[i])) continue;
+      EXPECT_EQ(b[i], d < reach ? Rgb(0) : a[i]) << i << ", " << j;
+      ++(d < reach ? left_out : kept);
+    }
+  }
+  EXPECT_GT(left_out, 100u);
+  EXPECT_GT(kept, 100u);
+}
+
 struct Facing {
   world::World world = build_world(empty_space());
   RandomEnds ends;
@@ -275,6 +299,25 @@ TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
     add_light(corner, LightKind::surface, {-0.9999f, 0.05f * static_cast<float>(k), -1}, {0, 0, 1}, Rgb(1));
   make_spherical(corner, world, {1});
   EXPECT_NEAR(corner.hidden[6], 0.5f, 0.01f);
+}
+
+TEST(SphericalLights, AReachIsSoManyRadii) {
+  scenedesc::SceneDesc desc;
+  add_shape(desc, scenedesc::CubeDesc{}, Transform{});
+  const world::World world = build_world(desc);
+  VirtualLights lights;
+  for (int a = -5; a <= 5; ++a)
+    for (int b = -5; b <= 5; ++b)
+      add_light(lights, LightKind::surface, {0.1f * static_cast<float>(a), 0.1f * static_cast<float>(b), -1},
+                {0, 0, 1}, Rgb(1));
+  add_light(lights, LightKind::omni, {0, 0, 0.1f}, {}, Rgb(1));  // has no radius
+  make_spherical(lights, world, {2});
+  const LightReach reach(lights, world, 2, 3);
+  // Seen from a grid's point, itself among them: one at 0, four at 1, four at √2, the tenth at 2.
+  EXPECT_NEAR(reach.at({0, 0, -1}), 3 * 2 * 0.2f, 1e-5);
+  // From the middle of a cell: four at √½, eight at √2.5.
+  EXPECT_NEAR(reach.at({0.05f, 0.05f, -1}), 3 * 2 * 0.1f * std::sqrt(2.5f), 1e-5);
+  EXPECT_EQ(LightReach(VirtualLights(), world, 2, 3).at({0, 0, 0}), 0);
 }
 
 // Radii fall with the sixth root of the number of lights: the tenth neighbour's distance with the square

@@ -1,0 +1,173 @@
+// Local compensation: what columns leave to traced paths, and what those bring, add up to the path tracer's
+// picture.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "lumirank/error.h"
+#include "lumirank/lumirank.h"
+#include "support/scene_file.h"
+#include "support/statistics.h"
+
+namespace lumirank {
+namespace {
+
+using test::mean_of;
+using test::student_quantile;
+
+constexpr double kAlpha = 1e-3;  // false alarms of each test
+constexpr int kSeeds = 32;
+
+std::string wall(const std::string& transform, const std::string& bsdf) {
+  return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform +
+         "</transform><bsdf type=\"twosided\">" + bsdf + "</bsdf></shape>";
+}
+
+const std::string kMatt = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.6, 0.5, 0.4\"/></bsdf>";
+const std::string kShining =
+    "<bsdf type=\"ward\"><rgb name=\"diffuse_reflectance\" value=\"0.3, 0.3, 0.2\"/><rgb "
+    "name=\"specular_reflectance\" value=\"0.4, 0.4, 0.5\"/><float name=\"alpha_u\" value=\"0.1\"/><float "
+    "name=\"alpha_v\" value=\"0.4\"/></bsdf>";
+const std::string kSpot =
+    "<emitter type=\"spot\"><transform name=\"to_world\"><lookat origin=\"0.5, 1.2, 0.8\" target=\"-0.1, "
+    "0.3, "
+    "-0.5\" up=\"0, 1, 0.2\"/></transform><rgb name=\"intensity\" value=\"5, 6, 7\"/><float "
+    "name=\"cutoff_angle\" value=\"35\"/></emitter>";
+
+// Where a lit wall meets a floor. The camera's window shows the edge, or the floor in front of it.
+Scene corner(const std::string& floor, const std::string& target) {
+  return test::load_text(test::point_camera("0.4,0.5,1.2", target, 8, 14) +
+                         wall("<rotate x=\"1\" angle=\"-90\"/>", floor) +
+                         wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", kMatt) + kSpot);
+}
+
+RenderSettings brute_force(const std::string& light_type) {
+  RenderSettings settings;
+  settings.method = "brute-force";
+  settings.max_depth = 5;
+  settings.lights = 800;
+  settings.light_type = light_type;
+  settings.clamp = 0;
+  return settings;
+}
+
+std::array<double, 3> mean_colour(const Picture& picture) {
+  std::array<double, 3> sum{};
+  const auto& rgb = picture.planes[0].rgb;
+  for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
+  for (double& s : sum) s /= static_cast<double>(rgb.size() / 3);
+  return sum;
+}
+
+// Means over seeds of the renderer with `settings` and of the path tracer agree, and would not if a `teeth`
+// of the light were missing.
+void expect_whole(const Scene& scene, RenderSettings settings, double teeth) {
+  ReferenceSettings how;
+  how.paths = "columns";
+  how.spp = 512;
+  std::vector<double> whole[3], paths[3];
+  for (std::uint64_t k = 0; k < kSeeds; ++k) {
+    settings.seed = 100 + k;
+    const auto a = mean_colour(render(scene, settings).picture);
+    const auto b = mean_colour(reference(scene, settings, how).picture);
+    for (std::size_t c = 0; c < 3; ++c) whole[c].push_back(a[c]), paths[c].push_back(b[c]);
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto w = mean_of(whole[c]), p = mean_of(paths[c]);
+    const double error =
+        student_quantile(kAlpha, 3, kSeeds - 1) * std::hypot(w.standard_error, p.standard_error);
+    EXPECT_NEAR(w.mean, p.mean, error) << "channel " << c;
+    EXPECT_LT(error, teeth * p.mean) << "channel " << c;
+  }
+}
+
+// The floor shows the wall in its gloss; far from the edge, so that unclamped points have finite variance.
+TEST(LocalCompensation, SharpLobesTakeAllTheirLightFromPaths) {
+  const Scene scene = corner(kShining, "0.2,0,0.35");
+  RenderSettings settings = brute_force("point");
+  settings.local_paths = 16;
+  for (const char* only : {"all", "indirect", "direct"}) {
+    SCOPED_TRACE(only);
+    settings.only = only;
+    expect_whole(scene, settings, 0.06);
+  }
+}
+
+// Spheres of a hundredth of the usual size are nearly points: without compensation the edge would have
+// infinite variance, with it nothing is closer than ten times the distance of the tenth neighbour.
+TEST(LocalCompensation, PathsAndColumnsShareTheLightByDistance) {
+  const Scene scene = corner(kMatt, "0,0.1,-0.45");
+  RenderSettings settings = brute_force("sphere");
+  settings.only = "indirect";
+  settings.radius_scale = 0.01;
+  settings.local_paths = 64;
+  for (const double near : {50.0, 200.0}) {
+    SCOPED_TRACE(near);
+    settings.local_near = near;
+    expect_whole(scene, settings, 0.05);
+  }
+}
+
+TEST(LocalCompensation, ColumnsHaveNothingWherePathsHaveAll) {
+  const Scene scene = corner(kShining, "0,0.1,-0.45");
+  RenderSettings settings = brute_force("sphere");
+  settings.only = "indirect";
+  settings.radius_scale = 1;
+  settings.local_paths = 16;
+  settings.local_near = 1000;
+  RenderSettings others = settings;
+  others.lights = 300;
+  const auto a = render(scene, settings).picture.planes[0].rgb,
+             b = render(scene, others).picture.planes[0].rgb;
+  // Reaches are larger than the scene with either number of lights: the same paths, and nothing else.
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])), 0);
+  expect_whole(scene, settings, 0.1);
+}
+
+TEST(LocalCompensation, SameBitsForAnyNumberOfThreadsAndLayersAddUp) {
+  const Scene scene = corner(kShining, "0,0.1,-0.45");
+  RenderSettings settings = brute_force("sphere");
+  settings.method = "auto";
+  settings.local_paths = 8;
+  settings.aovs = {"direct", "indirect", "emission"};
+  settings.threads = 1;
+  const Picture one = render(scene, settings).picture;
+  for (const int threads : {2, 4}) {
+    settings.threads = threads;
+    const Picture many = render(scene, settings).picture;
+    for (std::size_t p = 0; p < one.planes.size(); ++p)
+      EXPECT_EQ(std::memcmp(one.planes[p].rgb.data(), many.planes[p].rgb.data(),
+                            one.planes[p].rgb.size() * sizeof(one.planes[p].rgb[0])),
+                0)
+          << one.planes[p].name << ", " << threads << " threads";
+  }
+  ASSERT_EQ(one.planes.size(), 4u);
+  for (std::size_t k = 0; k < one.planes[0].rgb.size(); ++k) {
+    const float sum = one.planes[1].rgb[k] + one.planes[2].rgb[k] + one.planes[3].rgb[k];
+    EXPECT_NEAR(sum, one.planes[0].rgb[k], 1e-4f * (1 + sum)) << k;
+  }
+}
+
+TEST(LocalCompensation, IsRefusedWhereItCannotBeWhole) {
+  const Scene scene = corner(kShining, "0,0.1,-0.45");
+  const auto message = [&](auto&& change) {
+    RenderSettings settings = brute_force("point");
+    settings.local_paths = 1;
+    change(settings);
+    try {
+      render(scene, settings);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message([](RenderSettings& s) { s.direct = "matrix"; }).find("local-paths"), std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.clamp = 0.1, s.compensate = 4; }).find("leave out one"),
+            std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.aovs = {"light:*"}; }).find("--local-paths"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace lumirank
