@@ -214,8 +214,10 @@ std::string kind(const EmitterDesc& e) {
                    return "point at " + show(x.position) + ", intensity " + show(x.intensity);
                  },
                  [](const SpotLightDesc& x) {
-                   return "spot, intensity " + show(x.intensity) + ", cutoff " + num(x.cutoff_angle) +
-                          "°, beam " + num(x.beam_width) + "°" + show(x.to_world);
+                   const char* edges[] = {"", ", smooth edge", ", squared edge"};
+                   return "spot" + std::string(edges[static_cast<int>(x.edge)]) + ", intensity " +
+                          show(x.intensity) + ", cutoff " + num(x.cutoff_angle) + "°, beam " +
+                          num(x.beam_width) + "°" + show(x.to_world);
                  },
                  [](const ProfileLightDesc& x) {
                    return std::string(x.kind == ProfileLightDesc::Kind::ies ? "ies " : "goniometric ") +

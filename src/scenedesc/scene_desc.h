@@ -303,6 +303,13 @@ struct SpotLightDesc {  // at the origin of to_world, along its +z
   Rgb intensity{1};
   float cutoff_angle = 20;              // degrees: no light beyond
   float beam_width = 20 * 3.0f / 4.0f;  // degrees: full intensity within
+  // Between the two, of the share s of the way from the cut-off (0) to the beam (1).
+  enum class Edge {
+    angle,          // s of the angle (Mitsuba)
+    smooth_cosine,  // 3s² - 2s³, s of the angle's cosine (pbrt)
+    squared_cosine  // s², s of the angle's cosine (glTF)
+  };
+  Edge edge = Edge::angle;
 };
 // A point light whose intensity depends on the direction as a file says; the file is opened by the world.
 struct ProfileLightDesc {

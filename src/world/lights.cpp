@@ -93,6 +93,29 @@ em::SpotEmitter make_spot(const sd::SpotLightDesc& d, const SourceLocation& wher
   return spot;
 }
 
+// A spot light whose edge is not linear in the angle, as a table of 64 steps over the edge: within 2·10⁻⁴ of
+// the axial intensity (a share's second derivative is at most 6).
+em::ProfileEmitter with_edge(const em::SpotEmitter& spot, sd::SpotLightDesc::Edge edge) {
+  constexpr int kSteps = 256;
+  std::vector<float> theta, values;
+  if (spot.beam > 0) theta.push_back(0), values.push_back(1);
+  for (int k = 0; k <= kSteps; ++k) {
+    const float t = static_cast<float>(k) / kSteps;
+    theta.push_back(k == kSteps ? spot.cutoff : spot.beam + t * (spot.cutoff - spot.beam));
+    const float share = std::clamp(
+        (std::cos(theta.back()) - spot.cos_cutoff) / (spot.cos_beam - spot.cos_cutoff), 0.0f, 1.0f);
+    values.push_back(edge == sd::SpotLightDesc::Edge::squared_cosine ? share * share
+                                                                     : share * share * (3 - 2 * share));
+  }
+  std::vector<float> both;
+  for (const float v : values) both.insert(both.end(), {v, v});
+  em::ProfileEmitter out;
+  out.position = spot.position, out.frame = spot.frame, out.scale = spot.intensity;
+  out.profile =
+      std::make_shared<em::AngularProfile>(std::move(theta), std::vector<float>{0, 2 * kPi}, std::move(both));
+  return out;
+}
+
 }  // namespace
 
 int add_lights(const sd::SceneDesc& desc, EmitterNames& names, Notes& notes, std::vector<em::Emitter>& out) {
@@ -110,7 +133,11 @@ int add_lights(const sd::SceneDesc& desc, EmitterNames& names, Notes& notes, std
       push(em::PointEmitter{point->position, point->intensity}, e);
     } else if (const auto* spot = std::get_if<sd::SpotLightDesc>(&e.kind)) {
       check_color(spot->intensity, "the intensity", e.where);
-      push(make_spot(*spot, e.where), e);
+      const em::SpotEmitter made = make_spot(*spot, e.where);
+      if (spot->edge == sd::SpotLightDesc::Edge::angle || !(made.cos_beam > made.cos_cutoff))
+        push(made, e);
+      else
+        push(with_edge(made, spot->edge), e);
     } else if (const auto* profile = std::get_if<sd::ProfileLightDesc>(&e.kind)) {
       check_color(profile->intensity, "the intensity", e.where);
       push(make_profile_light(*profile, e.where, desc.lumens_per_unit, notes), e);

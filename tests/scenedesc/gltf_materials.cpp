@@ -287,6 +287,7 @@ TEST(GltfLights, PointSpotAndDirectional) {
   const auto& spot = std::get<SpotLightDesc>(scene.emitters[1].kind);
   EXPECT_NEAR(spot.cutoff_angle, 0.5 * 180 / M_PI, 1e-4);
   EXPECT_NEAR(spot.beam_width, 0.1 * 180 / M_PI, 1e-4);
+  EXPECT_EQ(spot.edge, SpotLightDesc::Edge::squared_cosine);
   EXPECT_NEAR(spot.to_world.vector({0, 0, 1}).y, 1, 1e-6f);
   const auto& sun = std::get<DirectionalLightDesc>(scene.emitters[2].kind);
   EXPECT_NEAR(sun.direction.y, 1, 1e-6f);

@@ -237,6 +237,11 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
     scene.textures.emplace_back().kind = ThresholdTextureDesc{{Rgb(0), 0}};
     scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 1}};
   });
+  expect("edge of a spot", [](SceneDesc& scene) {
+    SpotLightDesc light;
+    light.edge = SpotLightDesc::Edge::smooth_cosine;
+    scene.emitters.emplace_back().kind = light;
+  });
   expect("IES", [](SceneDesc& scene) {
     ProfileLightDesc light;
     light.filename = std::string(LUMIRANK_TEST_DATA) + "/ies/even.ies";

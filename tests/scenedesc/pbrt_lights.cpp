@@ -52,6 +52,7 @@ TEST(PbrtLight, PowerOfPointsAndSpots) {
   expect_near(spot.intensity, Rgb(100 / sr), 1e-4f);
   EXPECT_EQ(spot.cutoff_angle, 60);
   EXPECT_EQ(spot.beam_width, 50);
+  EXPECT_EQ(spot.edge, SpotLightDesc::Edge::smooth_cosine);
 }
 
 // Of all that reach the picture's scale only "scale" and the film's ratio stay beside the power.

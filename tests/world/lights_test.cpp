@@ -29,6 +29,37 @@ Mean irradiance(const World& w, int emitter, Vec3f point, Vec3f normal, std::uin
   return mean;
 }
 
+TEST(SpotLight, EdgesOfTheFormats) {
+  using Edge = sd::SpotLightDesc::Edge;
+  auto desc = empty_scene();
+  add_shape(desc, sd::CubeDesc{}, Transform::translate(9, 9, 9));
+  for (const Edge edge : {Edge::angle, Edge::smooth_cosine, Edge::squared_cosine})
+    for (const float beam : {0.0f, 20.0f, 50.0f}) {  // the last: no edge at all
+      sd::SpotLightDesc spot;
+      spot.intensity = Rgb(4), spot.cutoff_angle = 50, spot.beam_width = beam, spot.edge = edge;
+      desc.emitters.emplace_back().kind = spot;
+    }
+  const World w = build(desc);
+  const double end = std::cos(50 * kPiD / 180);
+  for (int k = 0; k < 9; ++k) {
+    const double beam = k % 3 == 0 ? 0 : (k % 3 == 1 ? 20 : 50), start = std::cos(beam * kPiD / 180);
+    for (int degrees = 1; degrees < 60; degrees += 2) {
+      const double angle = degrees * kPiD / 180;
+      const double part = degrees <= beam ? 1 : std::clamp((std::cos(angle) - end) / (start - end), 0.0, 1.0);
+      double share = k < 3 ? std::clamp((50 - degrees) / (50 - beam), 0.0, 1.0)
+                           : (k < 6 ? part * part * (3 - 2 * part) : part * part);
+      if (beam == 50) share = degrees < 50 ? 1 : 0;
+      const Vec3f p{static_cast<float>(2 * std::sin(angle)), 0, static_cast<float>(2 * std::cos(angle))};
+      EXPECT_NEAR(w.sample_direct(k, p, 0.5f, {0.5f, 0.5f}).radiance.g, share, 1e-4)  // 4 / 2²
+          << "light " << k << " at " << degrees << " degrees";
+    }
+  }
+  // pbrt: 2π ((1 - cos beam) + (cos beam - cos cut-off) / 2) times the intensity.
+  const double start = std::cos(20 * kPiD / 180);
+  EXPECT_NEAR(emitters::power(w.emitters()[4], 1).g / (4 * 2 * kPiD * (1 - start + (start - end) / 2)), 1,
+              2e-4);
+}
+
 // pbrt-v4 (GoniometricLight::Create): a light of "power" Φ has the intensity Φ · value / (4π · mean of the
 // values).
 TEST(GoniometricLight, PowerScalesThePicture) {

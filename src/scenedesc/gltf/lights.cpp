@@ -40,8 +40,7 @@ void Reader::build_light(const Node& node, const Element& light_index) {
     spot.intensity = color;
     spot.cutoff_angle = outer * kDegrees;
     spot.beam_width = inner * kDegrees;
-    warn_once(light, "a spot light's fall-off by the square of the cosine's share",
-              "a fall-off in proportion to the angle");
+    spot.edge = SpotLightDesc::Edge::squared_cosine;
     emitter.kind = spot;
   } else if (type.text() != "point") {
     type.fail("is \"" + type.text() + "\"", "point, spot and directional are known");

@@ -52,6 +52,8 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
     xml_.place("point", "position", point->position);
     xml_.color("intensity", point->intensity);
   } else if (const auto* spot = std::get_if<SpotLightDesc>(&e.kind)) {
+    if (spot->edge != SpotLightDesc::Edge::angle && spot->beam_width < spot->cutoff_angle)
+      warn(e.where, "the smooth edge of a spot light", "an edge that falls off with the angle");
     open("spot");
     xml_.color("intensity", spot->intensity);
     xml_.number("cutoff_angle", spot->cutoff_angle), xml_.number("beam_width", spot->beam_width);

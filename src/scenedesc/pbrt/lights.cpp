@@ -39,7 +39,7 @@ PointLightDesc point(Params& p, const Transform& to_world) {
   return out;
 }
 
-SpotLightDesc spot(Reader& reader, Params& p, const Transform& to_world) {
+SpotLightDesc spot(Params& p, const Transform& to_world) {
   SpotLightDesc out;
   const Vec3f from = p.point3("from", {0, 0, 0}), to = end_of(p, from);
   const Vec3f position = to_world.point(from), axis = to_world.vector(to - from);
@@ -53,9 +53,7 @@ SpotLightDesc spot(Reader& reader, Params& p, const Transform& to_world) {
   const float end = std::cos(cone * (kPi / 180)), start = std::cos((cone - delta) * (kPi / 180));
   out.intensity =
       spectrum(p, "I") * (scale_of(p) * power_scale(p, 2 * kPi * ((1 - start) + (start - end) / 2)));
-  if (delta > 0)
-    reader.warn_once(p.where(), "the smooth edge of pbrt's spot lights",
-                     "an edge that falls off with the angle");
+  out.edge = SpotLightDesc::Edge::smooth_cosine;
   return out;
 }
 
@@ -116,7 +114,7 @@ void Reader::read_light(Params& p, const std::string& type) {
   if (type == "point") {
     out.kind = point(p, to_world);
   } else if (type == "spot") {
-    out.kind = spot(*this, p, to_world);
+    out.kind = spot(p, to_world);
   } else if (type == "distant") {
     out.kind = distant(p, to_world);
   } else if (type == "infinite") {
