@@ -7,6 +7,7 @@
 #include "base/timer.h"
 #include "render/traced_direct.h"
 #include "render/traced_indirect.h"
+#include "scenedesc/film_size.h"
 #include "transport/sphere_lights.h"
 
 namespace lumirank::rendering {
@@ -32,7 +33,7 @@ View make_view(const scenedesc::SceneDesc& desc, const RenderSettings& settings)
   view.sensor = find_sensor(desc, settings.camera);
   auto& film = view.sensor.film;
   if (settings.width > 0) {
-    film.width = settings.width, film.height = settings.height;
+    scenedesc::set_film_size(view.sensor, settings.width, settings.height);
     film.crop_width = 0;  // the scene's own window belongs to its own size
   }
   view.max_depth = settings.max_depth != 0 ? settings.max_depth : desc.max_depth;

@@ -390,13 +390,16 @@ struct FilmDesc {
   FilterDesc filter;
 };
 enum class SensorKind { perspective, thinlens, orthographic };
+// all: the whole picture, whatever its proportions.
+enum class FieldAxis { x, y, smaller, larger, diagonal, all };
 struct SensorDesc {
   std::string id;
   SourceLocation where;
   SensorKind kind = SensorKind::perspective;
-  Transform to_world;         // camera looks along +z, +y up, +x left
-  float fov_x = 39.6f;        // degrees, across the width of the image (readers convert other axes)
-  float aperture_radius = 0;  // thinlens
+  Transform to_world;                  // camera looks along +z, +y up, +x left
+  float fov_x = 39.6f;                 // degrees, across the width of the image (readers convert other axes)
+  FieldAxis kept_axis = FieldAxis::x;  // along which the field stays if the film gets other proportions
+  float aperture_radius = 0;           // thinlens
   float focus_distance = 1;
   float near_clip = 1e-2f, far_clip = 1e4f;
   Vec2f principal_point_offset;  // in fractions of the film

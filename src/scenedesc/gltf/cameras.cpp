@@ -45,6 +45,7 @@ void Reader::build_camera(const Node& node, const Element& camera_index) {
     const double angle = yfov.real();
     if (!(angle > 0 && angle < kPiD))
       yfov.fail("is not between 0 and pi", "it is the vertical angle in radians");
+    sensor.kept_axis = FieldAxis::y;
     const double aspect = lens.real("aspectRatio", 4.0f / 3, 0.001f, 1000);
     set_film(sensor, aspect);
     sensor.fov_x = static_cast<float>(2 * std::atan(std::tan(angle / 2) * aspect) * 180 / kPiD);
@@ -58,6 +59,7 @@ void Reader::build_camera(const Node& node, const Element& camera_index) {
     if (!(x > 0 && y > 0)) lens.fail("shows no area", "xmag and ymag must not be 0");
     if (!(x / y < 1000 && y / x < 1000)) lens.fail("is a slit", "make xmag and ymag more alike");
     set_film(sensor, x / y);
+    sensor.kept_axis = FieldAxis::all;
     sensor.to_world = sensor.to_world * Transform::scale(x, x, 1);
     sensor.near_clip = lens.at("znear").real();
     if (!(sensor.near_clip >= 0)) lens.at("znear").fail("is negative", "give 0 or more");
@@ -84,6 +86,7 @@ void add_default_camera(SceneDesc& scene, const Element& root) {
   constexpr double kHalfHeight = 20 * kPiD / 180;
   SensorDesc sensor;
   sensor.id = "default";
+  sensor.kept_axis = FieldAxis::all;
   sensor.where = root.where();
   set_film(sensor, 4.0 / 3);
   const double tan_y = std::tan(kHalfHeight), tan_x = tan_y * 4 / 3;

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <tuple>
 
+#include "scenedesc/film_size.h"
 #include "scenedesc/mitsuba/plugin.h"
 
 namespace lumirank::scenedesc::mitsuba {
@@ -85,25 +87,20 @@ FilmDesc film(Reader& reader, const Element* element) {
   return out;
 }
 
-// Across the width, in degrees.
-float horizontal_fov(float fov, const std::string& axis, const FilmDesc& film, const Plugin& p) {
-  const double aspect = static_cast<double>(film.width) / film.height, half = std::tan(fov * M_PI / 360);
-  std::string a = axis;
-  if (a == "smaller") a = aspect > 1 ? "y" : "x";
-  if (a == "larger") a = aspect > 1 ? "x" : "y";
-  double tangent = half;
-  if (a == "y")
-    tangent = half * aspect;
-  else if (a == "diagonal")
-    tangent = half / std::sqrt(1 + 1 / (aspect * aspect));
-  else if (a != "x")
-    throw InputError(p.where_of("fov_axis"), "\"fov_axis\" of " + p.title() + " is \"" + axis + "\"",
-                     "x, y, diagonal, smaller and larger are known");
-  if (a == "x") return fov;
-  return static_cast<float>(std::atan(tangent) * 360 / M_PI);
+FieldAxis field_axis(const Plugin& p, const std::string& name) {
+  constexpr std::pair<const char*, FieldAxis> kAxes[] = {{"x", FieldAxis::x},
+                                                         {"y", FieldAxis::y},
+                                                         {"diagonal", FieldAxis::diagonal},
+                                                         {"smaller", FieldAxis::smaller},
+                                                         {"larger", FieldAxis::larger}};
+  for (const auto& [known, axis] : kAxes)
+    if (name == known) return axis;
+  throw InputError(p.where_of("fov_axis"), "\"fov_axis\" of " + p.title() + " is \"" + name + "\"",
+                   "x, y, diagonal, smaller and larger are known");
 }
 
-float field_of_view(Plugin& p, const FilmDesc& film) {
+// Across the width, in degrees, and which axis it belongs to.
+std::pair<float, FieldAxis> field_of_view(Plugin& p, const FilmDesc& film) {
   const auto fov = p.number("fov");
   const std::string axis = p.text("fov_axis").value_or("x");
   if (fov) {
@@ -113,7 +110,8 @@ float field_of_view(Plugin& p, const FilmDesc& film) {
     if (!(*fov > 0 && *fov < 180))
       throw InputError(p.where_of("fov"), "\"fov\" of " + p.title() + " is not between 0 and 180",
                        "give it in degrees");
-    return horizontal_fov(*fov, axis, film, p);
+    const FieldAxis kept = field_axis(p, axis);
+    return {horizontal_fov(*fov, kept, film.width, film.height), kept};
   }
   // The focal length of a 35 mm camera, whose picture is 36 × 24 mm: the diagonals are made the same.
   float millimetres = 50;
@@ -130,9 +128,8 @@ float field_of_view(Plugin& p, const FilmDesc& film) {
   if (!(millimetres > 0))
     throw InputError(p.where_of("focal_length"), "\"focal_length\" of " + p.title() + " is not positive",
                      "50mm, say");
-  return horizontal_fov(
-      static_cast<float>(2 * std::atan(std::hypot(36.0, 24.0) / (2 * millimetres)) * 180 / M_PI), "diagonal",
-      film, p);
+  const double across = 2 * std::atan(std::hypot(36.0, 24.0) / (2 * millimetres)) * 180 / M_PI;
+  return {horizontal_fov(across, FieldAxis::diagonal, film.width, film.height), FieldAxis::diagonal};
 }
 
 int sample_count(Reader& reader, const Element* element) {
@@ -179,7 +176,7 @@ void Reader::build_sensor(const Element& element) {
   if (out.kind == SensorKind::orthographic) {
     p.ignore({"fov", "fov_axis", "focal_length"});
   } else {
-    out.fov_x = field_of_view(p, out.film);
+    std::tie(out.fov_x, out.kept_axis) = field_of_view(p, out.film);
     out.principal_point_offset = {p.number("principal_point_offset_x", 0),
                                   p.number("principal_point_offset_y", 0)};
   }

@@ -180,6 +180,7 @@ void Reader::finish_camera() {
   out.where = camera_.where;
   out.film = film_;
   out.samples_per_pixel = samples_;
+  if (!camera_.aspect && camera_.window.empty()) out.kept_axis = FieldAxis::smaller;
   out.near_clip = 0;
   out.far_clip = 1e30f;
   // The film shows x0 to x1 and y0 to y1 of a plane where the shorter side of the frame runs from -1 to 1.
