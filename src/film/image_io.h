@@ -16,8 +16,9 @@ struct DisplayOptions {
 // By extension: .exr (all layers, 32-bit float), .pfm (colour only), .png (8-bit sRGB after exposure and tone
 // map). Throws InputError for an unknown extension or an unwritable path.
 void write_image(const std::string& filename, const LayeredImage& image, const DisplayOptions& display = {});
-// An OpenEXR file in memory, of 16-bit floats.
-std::string encode_exr(const Image& image);
+// An OpenEXR file in memory, of floats of 16 or 32 bits.
+enum class Precision { half, single };
+std::string encode_exr(const Image& image, Precision precision);
 // Throws before any work is done if write_image could not write there.
 void check_writable(const std::string& filename);
 

@@ -91,9 +91,9 @@ void write_png(const std::string& filename, const Image& image, const DisplayOpt
 
 }  // namespace
 
-std::string encode_exr(const Image& image) {
+std::string encode_exr(const Image& image, Precision precision) {
   Interleaved exr = as_exr({image, {}});
-  exr.spec.set_format(OIIO::TypeDesc::HALF);
+  if (precision == Precision::half) exr.spec.set_format(OIIO::TypeDesc::HALF);
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const auto output = OIIO::ImageOutput::create("openexr", &memory);

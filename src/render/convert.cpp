@@ -4,9 +4,10 @@
 #include "base/error.h"
 #include "film/atomic_file.h"
 #include "lumirank/convert.h"
-#include "render/paint_texture.h"
+#include "render/paint.h"
 #include "render/pipeline.h"
 #include "scenedesc/mitsuba_writer/mitsuba_writer.h"
+#include "world/profile_builder.h"
 
 namespace lumirank {
 
@@ -16,8 +17,18 @@ std::vector<std::string> convert(const Scene& scene, const std::string& filename
     throw InputError({filename, 0}, "a scene is written as Mitsuba XML only",
                      "give a name that ends in .xml");
   const auto& desc = scene.impl().desc;
-  const scenedesc::WrittenScene written = scenedesc::write_mitsuba(
-      desc, filename, [&](int texture) { return rendering::paint_texture(desc, texture); });
+  // What is wrong with pictures is said when the scene is built.
+  std::vector<scenedesc::Warning> ignored;
+  world::Notes notes(ignored, false);
+  scenedesc::Painter painter;
+  painter.texture = [&](int texture) { return rendering::paint_texture(desc, texture); };
+  painter.environment = [&] { return rendering::paint_environment(desc, notes); };
+  painter.mean = [&](const scenedesc::EmitterDesc& light) {
+    const auto& profile = std::get<scenedesc::ProfileLightDesc>(light.kind);
+    const auto made = world::make_profile_light(profile, light.where, desc.lumens_per_unit, notes);
+    return made.profile->integral() / (4 * kPi);
+  };
+  const scenedesc::WrittenScene written = scenedesc::write_mitsuba(desc, filename, painter);
   std::vector<std::string> names;
   for (const auto& file : written.files)
     names.push_back((fs::path(filename).parent_path() / file.name).string());

@@ -77,6 +77,43 @@ Shape "bilinearmesh" "point3 P" [ 0 -2 3  2 -2 3  0 2 3  2 2 3 ]
   EXPECT_GT(most, 0);
 }
 
+// An equal-area map, a constant and a goniometric light of pbrt: one map of latitudes and longitudes with the
+// same numbers as in the built world, and a point light. Direct light from all columns, so the same bits.
+TEST(Convert, PaintsEnvironments) {
+  const test::TemporaryFolder folder;
+  film::LayeredImage sky;
+  sky.color = film::Image(8, 8, Rgb(0.5f, 1, 2));
+  sky.color.at(3, 4) = Rgb(70000, 3, 1);  // more than 16 bits hold
+  film::write_image(folder / "sky.exr", sky);
+  film::write_image(folder / "lamp.exr", {film::Image(4, 4, Rgb(3)), {}});
+  std::ofstream(folder / "scene.pbrt") << R"(
+Camera "perspective" "float fov" 100
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+PixelFilter "box"
+WorldBegin
+Rotate 30 1 2 3
+LightSource "infinite" "string filename" "sky.exr" "float scale" 2
+LightSource "infinite" "rgb L" [ 1 2 3 ]
+LightSource "goniometric" "string filename" "lamp.exr" "rgb I" [ 1 2 4 ]
+Identity
+Shape "bilinearmesh" "point3 P" [ -2 -2 3  2 -2 3  -2 2 3  2 2 3 ]
+)";
+  const Scene scene = Scene::load(folder / "scene.pbrt");
+  std::vector<std::string> warnings;
+  Sinks sinks;
+  sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(convert(scene, folder / "out.xml", sinks).size(), 3u);  // the scene, a mesh, a map
+  ASSERT_EQ(warnings.size(), 2u) << warnings.back();
+  EXPECT_NE(warnings[1].find("goniometric"), std::string::npos) << warnings[1];
+  RenderSettings settings;
+  settings.spp = 1, settings.method = "brute-force", settings.max_depth = 2, settings.lights = 500;
+  const auto a = render(scene, settings).picture.planes[0].rgb;
+  const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
+  ASSERT_EQ(a.size(), b.size());
+  // The frame of the map is made of rounded axes, which move look-ups by some 10⁻⁷ of the map.
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-4 * std::abs(a[k])) << k;
+}
+
 TEST(Convert, DoesNotOverwriteWhatItReads) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "room.xml";

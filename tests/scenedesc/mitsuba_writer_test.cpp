@@ -300,13 +300,15 @@ TEST(MitsubaWriter, TexturesThatCanBePaintedAre) {
   scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 2}};
   scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 3}};
   std::vector<int> wanted;
-  const WrittenScene out = write_mitsuba(scene, folder / "out.xml", [&](int texture) {
+  Painter painter;
+  painter.texture = [&](int texture) {
     wanted.push_back(texture);
     BitmapTextureDesc made;
     made.bytes = std::make_shared<const std::string>("\x76\x2f\x31\x01 number " + std::to_string(texture));
     made.to_uv.m[0] = 3;
     return texture < 2 ? std::optional(made) : std::nullopt;
-  });
+  };
+  const WrittenScene out = write_mitsuba(scene, folder / "out.xml", painter);
   EXPECT_EQ(std::multiset<int>(wanted.begin(), wanted.end()), (std::multiset<int>{0, 1, 3}));
   ASSERT_EQ(out.warnings.size(), 1u);
   EXPECT_NE(out.warnings[0].what.find("scaled"), std::string::npos);

@@ -39,6 +39,31 @@ float own_radius(const FilterDesc& f) {
 
 }  // namespace
 
+bool MitsubaWriter::is_map(const EmitterDesc& e) {
+  return std::holds_alternative<ConstantEnvironmentDesc>(e.kind) ||
+         std::holds_alternative<EnvironmentMapDesc>(e.kind);
+}
+
+// Mitsuba has latitudes and longitudes only, and one environment.
+bool MitsubaWriter::environment() {
+  int maps = 0, skies = 0;
+  bool other = false;
+  for (const EmitterDesc& e : scene_.emitters) {
+    maps += is_map(e);
+    if (const auto* map = std::get_if<EnvironmentMapDesc>(&e.kind))
+      other = other || map->projection != EnvironmentProjection::latitude_longitude;
+    if (!std::holds_alternative<SunSkyDesc>(e.kind)) continue;
+    if (skies++ > 0 || maps > 0) warn(e.where, "a sky besides another environment", "both, which it refuses");
+  }
+  if (!painter_.environment || !(other || maps > 1)) return false;
+  const Painter::Environment made = painter_.environment();
+  xml_.open("emitter", {{"type", "envmap"}});
+  xml_.string("filename", add_file("environment", ".exr", made.exr));
+  xml_.transform("to_world", made.to_world);
+  xml_.close();
+  return true;
+}
+
 void MitsubaWriter::emitter(const EmitterDesc& e) {
   const std::string id = e.id.empty() ? "" : unique_id(e.id, "");
   const auto open = [&](const char* type) {
@@ -59,13 +84,20 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
     xml_.number("cutoff_angle", spot->cutoff_angle), xml_.number("beam_width", spot->beam_width);
     xml_.transform("to_world", spot->to_world);
   } else if (const auto* profile = std::get_if<ProfileLightDesc>(&e.kind)) {
-    if (profile->kind == ProfileLightDesc::Kind::image) return warn(e.where, "a goniometric light", "");
-    warn(e.where, "an IES profile", "a point light of the same power");
-    IesData data = read_ies(profile->filename);
-    const double mean = mean_of(to_polar(data, profile->filename)) * data.tilt_factor(profile->tilt_angle);
+    const bool picture = profile->kind == ProfileLightDesc::Kind::image;
+    if (picture && !painter_.mean) return warn(e.where, "a goniometric light", "");
+    warn(e.where, picture ? "a goniometric light" : "an IES profile", "a point light of the same power");
+    double mean = 0;
+    if (picture) {
+      mean = painter_.mean(e);
+    } else {
+      IesData data = read_ies(profile->filename);
+      mean = mean_of(to_polar(data, profile->filename)) * data.tilt_factor(profile->tilt_angle) /
+             scene_.lumens_per_unit;
+    }
     open("point");
     xml_.place("point", "position", profile->to_world.point({0, 0, 0}));
-    xml_.color("intensity", profile->intensity * static_cast<float>(mean / scene_.lumens_per_unit));
+    xml_.color("intensity", profile->intensity * static_cast<float>(mean));
   } else if (const auto* sun = std::get_if<DirectionalLightDesc>(&e.kind)) {
     open("directional");
     xml_.place("vector", "direction", sun->direction);

@@ -35,9 +35,9 @@ MitsubaWriter::Input MitsubaWriter::resolve(const ColorInput& input) {
 }
 
 bool MitsubaWriter::painted(int index) {
-  if (!paint_) return false;
+  if (!painter_.texture) return false;
   const auto [it, fresh] = painted_.try_emplace(index);
-  if (fresh) it->second = paint_(index);
+  if (fresh) it->second = painter_.texture(index);
   return it->second.has_value();
 }
 

@@ -4,8 +4,8 @@
 
 namespace lumirank::scenedesc {
 
-MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename, const PaintTexture& paint)
-    : scene_(scene), filename_(filename), paint_(paint) {
+MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename, const Painter& painter)
+    : scene_(scene), filename_(filename), painter_(painter) {
   // Names that the scene states are kept before any is made up.
   const auto name_all = [&](const auto& list, const char* what, std::vector<std::string>& ids) {
     ids.assign(list.size(), {});
@@ -27,7 +27,9 @@ WrittenScene MitsubaWriter::write() {
   if (scene_.lumens_per_unit != kLumensPerUnit)
     warn({scene_.source_file, 0}, "photometric units", "the numbers as they are, which stand for W/nm there");
   for (const SensorDesc& s : scene_.sensors) sensor(s);
-  for (const EmitterDesc& e : scene_.emitters) emitter(e);
+  const bool surrounded = environment();
+  for (const EmitterDesc& e : scene_.emitters)
+    if (!(surrounded && is_map(e))) emitter(e);
   // Only textures that something reads are written, before what reads them.
   const std::string head = xml_.take();
   for (std::size_t k = 0; k < scene_.bsdfs.size(); ++k) bsdf(static_cast<int>(k));
@@ -69,8 +71,8 @@ std::string MitsubaWriter::add_file(const std::string& what, const std::string& 
   return name;
 }
 
-WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename, const PaintTexture& paint) {
-  return MitsubaWriter(scene, filename, paint).write();
+WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename, const Painter& painter) {
+  return MitsubaWriter(scene, filename, painter).write();
 }
 
 std::vector<std::string> files_of(const SceneDesc& scene) {

@@ -14,7 +14,7 @@ namespace lumirank::scenedesc {
 
 class MitsubaWriter {
  public:
-  MitsubaWriter(const SceneDesc& scene, const std::string& filename, const PaintTexture& paint);
+  MitsubaWriter(const SceneDesc& scene, const std::string& filename, const Painter& painter);
   WrittenScene write();
 
  private:
@@ -67,6 +67,9 @@ class MitsubaWriter {
   void open_shape(const char* type, const std::string& id);
 
   // lights.cpp
+  static bool is_map(const EmitterDesc& emitter);
+  // Writes the one map that stands for all that surrounds the scene; false if they are written as they are.
+  bool environment();
   void emitter(const EmitterDesc& emitter);
   void sky(const SunSkyDesc& d, const EmitterDesc& from, const std::string& id);
   void sensor(const SensorDesc& sensor);
@@ -78,7 +81,7 @@ class MitsubaWriter {
   WrittenScene out_;
   std::vector<std::string> texture_ids_, bsdf_ids_, shape_ids_;
   std::set<std::string> taken_, warned_;
-  const PaintTexture& paint_;
+  const Painter& painter_;
   std::map<int, std::optional<BitmapTextureDesc>> painted_;
   std::vector<int> asked_;                     // textures that something reads
   std::set<int> written_;                      // of these

@@ -1,9 +1,10 @@
-#include "render/paint_texture.h"
+#include "render/paint.h"
 
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "film/image_io.h"
+#include "world/environment_builder.h"
 #include "world/texture_builder.h"
 
 namespace lumirank::rendering {
@@ -65,10 +66,30 @@ std::optional<sd::BitmapTextureDesc> paint_texture(const sd::SceneDesc& scene, i
   });
 
   sd::BitmapTextureDesc out = first;
-  out.bytes = std::make_shared<const std::string>(film::encode_exr(image));
+  out.bytes = std::make_shared<const std::string>(film::encode_exr(image, film::Precision::half));
   out.filename = desc.id;
   out.raw = std::all_of(pictures.begin(), pictures.end(), [](const auto* p) { return p->raw; });
   out.channel = sd::TextureChannel::rgb;
+  return out;
+}
+
+sd::Painter::Environment paint_environment(const sd::SceneDesc& scene, world::Notes& notes) {
+  world::EnvironmentBuilder builder(notes);
+  for (const sd::EmitterDesc& e : scene.emitters) {
+    if (const auto* constant = std::get_if<sd::ConstantEnvironmentDesc>(&e.kind))
+      builder.add_constant(constant->radiance, e);
+    if (const auto* map = std::get_if<sd::EnvironmentMapDesc>(&e.kind)) builder.add_map(*map, e);
+  }
+  emitters::EnvironmentEmitter all = builder.build();
+  film::Image image(all.width, all.height);
+  image.pixels = std::move(all.radiance);
+  sd::Painter::Environment out;
+  out.exr = film::encode_exr(image, film::Precision::single);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const auto k = static_cast<int>(row);
+    out.to_world.m[4 * row] = all.to_world.s[k], out.to_world.m[4 * row + 1] = all.to_world.t[k];
+    out.to_world.m[4 * row + 2] = all.to_world.n[k];
+  }
   return out;
 }
 

@@ -1,9 +1,10 @@
-// Textures that are computed from pictures, as one picture: for formats that only have pictures.
+// Pictures of what the scene computes, for formats that only have pictures.
 #pragma once
 
 #include <optional>
 
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/mitsuba_writer/mitsuba_writer.h"
+#include "world/notes.h"
 
 namespace lumirank::rendering {
 
@@ -13,5 +14,9 @@ namespace lumirank::rendering {
 // centres it is the filtered product where the texture is the product of what is filtered. InputError for a
 // picture that cannot be read.
 std::optional<scenedesc::BitmapTextureDesc> paint_texture(const scenedesc::SceneDesc& scene, int texture);
+
+// All maps and constants that surround the scene, added up: OpenEXR of 32-bit floats, as the built world has
+// them.
+scenedesc::Painter::Environment paint_environment(const scenedesc::SceneDesc& scene, world::Notes& notes);
 
 }  // namespace lumirank::rendering
