@@ -83,7 +83,10 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
       &receivers.wo,       false,      settings.traced_direct_below};
   context.column_scatter = {&lights.closures, &column_forms, &lights.closure, &lights.normal, &lights.ng,
                             &lights.incoming, true};
-  context.row_scatter.cones = context.column_scatter.cones = context.has_spheres;
+  if (context.has_spheres) {
+    row_cones = lobe_cones(receivers.closures), column_cones = lobe_cones(lights.closures);
+    context.row_scatter.cones = &row_cones, context.column_scatter.cones = &column_cones;
+  }
   context.lights = &lights;
   context.rays = &world.rays();
   context.pair_seed = mix64(settings.seed);

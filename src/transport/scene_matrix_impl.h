@@ -19,6 +19,7 @@ struct SceneMatrix::Impl {
   const VirtualLights& lights;
   SceneMatrixSettings settings;
   ScatterForms row_forms, column_forms;
+  std::vector<LobeCone> row_cones, column_cones;  // where lights are spherical
   RowStore rows;
   ColumnStore columns;
   PairContext context;

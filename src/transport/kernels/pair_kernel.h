@@ -32,6 +32,15 @@ struct PairResult {
   std::uint32_t clamped;
 };
 
+// Notes E and which lanes have any. Libraries may leave some threads flushing denormal numbers to zero and
+// others not; here all do, well above them.
+inline void note_values(PairResult& out, const Lane3& e, LaneMask alive) {
+  const Lane zero{}, least = splat(1e-35f);
+  out.e = {select(alive & (e.x > least), e.x, zero), select(alive & (e.y > least), e.y, zero),
+           select(alive & (e.z > least), e.z, zero)};
+  out.alive = bits(alive & (max_component(out.e) > zero));
+}
+
 // 1 within the beam, 0 beyond the cutoff, linear in the angle between.
 inline float spot_fall_off(const SpotShape& spot, float cosine) {
   if (cosine >= spot.cos_beam) return 1;
@@ -153,14 +162,7 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
     }
   }
 
-  // Libraries may leave some threads flushing denormal numbers to zero and others not; here all do, well
-  // above them.
-  const Lane3 e = (f * power) * g;
-  const Lane least = splat(1e-35f);
-  out.e = {select(alive & (e.x > least), e.x, zero), select(alive & (e.y > least), e.y, zero),
-           select(alive & (e.z > least), e.z, zero)};
-  alive &= max_component(out.e) > zero;
-  out.alive = bits(alive);
+  note_values(out, (f * power) * g, alive);
   return out;
 }
 

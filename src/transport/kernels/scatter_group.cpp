@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "transport/kernels/lobe_lanes.h"
 #include "transport/kernels/tile_plan.h"
@@ -23,28 +22,11 @@ void read(CoatLanes& lanes, int lane, const scatter::Coat& coat) {
   lanes.critical[lane] = std::sqrt(std::max(0.0f, 1 - 1 / (coat.bend * coat.bend)));
 }
 
-// A reflected lobe of roughness α fills about 4πα² and ends about 3α from its axis; what is rougher than this
-// counts as broad. A lobe that refracts has no axis here, so it may be anywhere.
-constexpr float kBroad = 0.5f, kReach = 3;
-
-void put_cone(LobeCones& cones, int lane, std::span<const scatter::Lobe> lobes, Vec3f wo, Vec3f n) {
-  float sharpest = kBroad * kBroad, reach = 0;
-  bool anywhere = false;
-  for (const scatter::Lobe& lobe : lobes) {
-    const float least = scatter::lobe_roughness(lobe);
-    if (least >= kBroad) continue;
-    const bool two_widths =
-        lobe.kind == scatter::LobeKind::microfacet_reflect || lobe.kind == scatter::LobeKind::ward;
-    const float wider = lobe.coat ? lobe.coat.bend : 1.0f;  // refraction into the open
-    const float most = two_widths ? wider * std::max(lobe.alpha_u, lobe.alpha_v) : least;
-    sharpest = std::min(sharpest, least * most);
-    reach = std::max(reach, std::min(kPi, kReach * most));
-    anywhere = anywhere || scatter::shines_through(lobe.kind);
-  }
-  if (anywhere) reach = kPi;
+void put(LobeCones& cones, int lane, const LobeCone& cone, Vec3f wo, Vec3f n) {
   put(cones.axis, lane, n * (2 * dot(n, wo)) - wo);
-  cones.per_solid_angle[lane] = reach > 0 ? 1 / (4 * kPi * sharpest) : 0;
-  cones.cos_reach[lane] = std::cos(reach), cones.sin_reach[lane] = std::sin(reach);
+  cones.per_solid_angle[lane] = cone.per_solid_angle;
+  cones.cos_reach[lane] = cone.cos_reach, cones.sin_reach[lane] = cone.sin_reach;
+  cones.alpha_u[lane] = cone.alpha_u, cones.alpha_v[lane] = cone.alpha_v;
 }
 
 // Reads the plain parameters of one closure into a lane.
@@ -64,9 +46,10 @@ void read(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats, int lane, con
     put(group.s, lane, frame.s);
     put(group.t, lane, frame.t);
   }
-  const auto shared = side.pool->lobes(side.pool->recipe(closure));
+  const std::uint32_t recipe = side.pool->recipe(closure);
+  const auto shared = side.pool->lobes(recipe);
   const auto colors = side.pool->colors(closure);
-  if (side.cones) put_cone(group.cones, lane, shared, wo, n * turn);
+  if (side.cones) put(group.cones, lane, (*side.cones)[recipe], wo, n * turn);
   for (std::size_t k = 0; k < shared.size(); ++k) {
     const scatter::Lobe& lobe = shared[k];
     put(lobes[k].color, lane, colors[k]);
@@ -114,8 +97,8 @@ void ScatterArena::keep(ScatterGroup& group, int lane, const ScatterSide& side, 
   const scatter::Closure& whole = closures_.emplace_back(side.get(item));
   group.closure[lane] = group.broad[lane] = &whole;
   if (side.cones)
-    put_cone(group.cones, lane, {whole.lobes, static_cast<std::size_t>(whole.count)}, (*side.wo)[item],
-             whole.frame.n);
+    put(group.cones, lane, (*side.cones)[side.pool->recipe((*side.closure)[item])], (*side.wo)[item],
+        whole.frame.n);
   if (whole.roughness() >= side.traced_below) return;
   group.broad[lane] = &closures_.emplace_back(scatter::broad_part(whole, side.traced_below));
   group.some_traced = true;

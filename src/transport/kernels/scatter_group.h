@@ -10,6 +10,7 @@
 #include "scatter/closure.h"
 #include "transport/closure_pool.h"
 #include "transport/kernels/lanes.h"
+#include "transport/kernels/lobe_cones.h"
 #include "transport/kernels/scatter_forms.h"
 
 namespace lumirank::transport {
@@ -23,7 +24,7 @@ struct ScatterSide {
   bool adjoint;  // light flows from wo, as at a virtual light
   // Lobes with less roughness do not answer direct light (SceneMatrixSettings::traced_direct_below).
   float traced_below = 0;
-  bool cones = false;  // groups know their sharpest lobe: spherical lights
+  const std::vector<LobeCone>* cones = nullptr;  // by recipe, where lights are spherical
 
   scatter::Closure get(std::uint32_t item) const {
     return pool->get((*closure)[item], (*normal)[item], (*ng)[item]);
@@ -49,13 +50,6 @@ struct CoatLanes {
   Lane trapped, width, critical;
   Lane3 wo;    // refracted into the coat
   Lane cos_o;  // its cosine
-};
-
-// The sharpest lobe of each lane's closure, as a cone about its mirror direction.
-struct LobeCones {
-  Lane3 axis;
-  Lane per_solid_angle;       // 1/Ω of the lobe; 0: broad
-  Lane cos_reach, sin_reach;  // of the angle beyond which the lobe is all but black
 };
 
 // All directions on the side of wo: n, ng and t are turned so that n·wo > 0.

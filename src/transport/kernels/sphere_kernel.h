@@ -1,148 +1,16 @@
 // E of 16 pairs of a receiver and a spherical light (SphereRules). Most integrals are taken in lanes: in
-// closed form between lambertian ends, else by few directions in the cone. A pair where a lobe is much
-// narrower than the cone goes to sphere_integral() by itself.
+// closed form between lambertian ends, else by few directions. Pairs whose BSDFs themselves have to be
+// sampled go to sphere_integral() one by one.
 #pragma once
 
-#include "transport/kernels/lane_math.h"
-#include "transport/kernels/pair_kernel.h"
-#include "transport/receivers.h"
+#include "transport/kernels/sphere_samples.h"
 #include "transport/sphere_integral.h"
-#include "transport/sphere_rules.h"
 
 namespace lumirank::transport {
 
-// What all spherical pairs of a matrix share.
-struct SphereBackground {
-  SphereRules rules;
-  const Receivers* receivers;
-  const VirtualLights* lights;
-  std::uint64_t seed;
-};
-
-struct SphereGeometry {
-  LaneMask alive;
-  Lane3 w;
-  Lane d2;
-  LaneMask inside;
-  LaneMask disc;  // I is the disc
-};
-
-template <std::uint16_t row_kind, ColumnKind column_kind>
-inline SphereGeometry sphere_geometry(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
-  SphereGeometry at;
-  at.alive = (c.depth >= r.depth_min) & (c.depth <= r.depth_max);
-  at.w = c.p - r.p;
-  at.d2 = dot(at.w, at.w);
-  at.alive &= at.d2 > splat(1e-30f);
-  const Lane reach = c.radius * splat(extras.spheres->rules.beyond);
-  at.alive &= at.d2 >= reach * reach;
-  // The centre must be seen past both surfaces, and some of the cone past the shading normals' horizons.
-  if (row_kind == kRowLambertian || !extras.row_transmits)
-    at.alive &= (dot(r.ng, at.w) > Lane{}) & (dot(r.n, at.w) > -c.radius);
-  if (column_kind == kColumnSphere || !extras.column_transmits)
-    at.alive &= (dot(c.ng, at.w) < Lane{}) & (dot(c.n, at.w) < c.radius);
-  const Lane r2 = c.radius * c.radius;
-  at.inside = at.d2 <= r2;
-  at.disc = at.d2 < r2 * splat(kDiscReach * kDiscReach);
-  if (extras.spheres->rules.indicator == SphereRules::Indicator::cosine) at.disc = LaneMask{};
-  return at;
-}
-
-// Where the receiver's surface hides part of the disc that the light knows to be hidden: by how much less
-// area the light's energy lies on. The circle's part below a chord at height t radii, from the receiver's
-// plane.
-inline Lane shown_share(const RowGroup& r, const ColumnGroup& c, const SphereGeometry& at) {
-  const Lane across = dot(r.ng, c.ng);
-  const Lane tilt = sqrt(max(splat(1) - across * across, splat(1e-8f)));
-  const Lane t = max(min(dot(r.ng, at.w) / (tilt * c.radius), splat(1)), splat(-1));
-  const Lane below = splat(0.5f) - (arc_sine(t) + t * sqrt(max(splat(1) - t * t, Lane{}))) * splat(kInvPi);
-  return select(at.disc, splat(1) - min(below, c.hidden), splat(1));
-}
-
-// Directions uniform in the cones of 16 pairs.
-struct ConeSampler {
-  Lane3 axis, s, t;
-  Lane below;  // 1 - cosine of the half angle
-
-  ConeSampler(const Lane3& axis_, Lane below_) : axis(axis_), below(below_) {
-    // Any frame, as Frame::from_normal.
-    const Lane one = splat(1);
-    const Lane sign = select(axis.z < Lane{}, -one, one);
-    const Lane a = -one / (sign + axis.z), b = axis.x * axis.y * a;
-    s = {one + sign * axis.x * axis.x * a, sign * b, -(sign * axis.x)};
-    t = {b, sign + axis.y * axis.y * a, -axis.y};
-  }
-  Lane3 direction(Lane u, Lane v) const {
-    const Lane low = u * below;
-    const Lane radius = sqrt(max(low * (splat(2) - low), Lane{}));
-    Lane sine, cosine;
-    sin_cos_turns(v, sine, cosine);
-    return axis * (splat(1) - low) + s * (radius * cosine) + t * (radius * sine);
-  }
-};
-
-// ∫ cosθx cosθy dl over a cone that lies above both horizons.
-inline Lane cosines_over_cone(const RowGroup& r, const ColumnGroup& c, const Lane3& axis, Lane cosine,
-                              Lane below) {
-  // ∫ l lᵀ dl = a·1 + b·axis axisᵀ.
-  const Lane whole = splat(2 * kPi) * below;
-  const Lane along = splat(2 * kPi / 3) * below * (splat(1) + cosine + cosine * cosine);
-  const Lane a = splat(0.5f) * (whole - along), b = splat(1.5f) * along - splat(0.5f) * whole;
-  return -(a * dot(r.n, c.ng) + b * (dot(r.n, axis) * dot(c.ng, axis)));
-}
-
-// How many widths of its lobe the cone has, where they overlap.
-inline Lane lobe_widths(const LobeCones& lobe, const Lane3& axis, Lane cosine, Lane solid_angle) {
-  const Lane sine = sqrt(max(splat(1) - cosine * cosine, Lane{}));
-  const Lane cos_both = cosine * lobe.cos_reach - sine * lobe.sin_reach;
-  const Lane sin_both = sine * lobe.cos_reach + cosine * lobe.sin_reach;
-  const LaneMask near = (dot(axis, lobe.axis) > cos_both) | (sin_both < Lane{});
-  return select(near, solid_angle * lobe.per_solid_angle, Lane{});
-}
-
 // Where the cone's own size decides, a hemisphere gets kSamplesOfDisc; a lobe's width kSamplesPerWidth.
-// Beyond kMostWidths, the lobe itself is sampled.
+// Beyond kMostWidths, lobes are followed.
 inline constexpr float kSamplesOfDisc = 32, kLeastOfDisc = 4, kSamplesPerWidth = 2, kMostWidths = 4;
-
-// f and e: ∫ f_x cosθx f_y I dl by uniform directions, `count` of them per lane.
-template <std::uint16_t row_kind, ColumnKind column_kind>
-inline Lane3 integrate_in_lanes(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras,
-                                const SphereGeometry& at, const ConeSampler& cone, Lane count) {
-  const Lane zero{};
-  LaneBits key, other;
-  for (int k = 0; k < kLanes; ++k)
-    key[k] = extras.row_keys[k] * 0x9e3779b9u ^ static_cast<std::uint32_t>(extras.spheres->seed),
-    other[k] = extras.column_items[k];
-  key = mix(mix(key) ^ other);
-  const Lane u0 = unit_lane(key), v0 = unit_lane(mix(key ^ 0x68bc21ebu));
-  const Lane inv = splat(1) / max(count, splat(1));
-  const Lane height = dot(c.ng, at.w), r2 = c.radius * c.radius;
-  const LaneMask discs = at.disc;
-  Lane3 sum{zero, zero, zero};
-  for (int k = 0;; ++k) {
-    const Lane number = splat(static_cast<float>(k));
-    const LaneMask more = number < count;
-    if (bits(more) == 0) break;
-    Lane v = v0 + splat(static_cast<float>(k) * 0.618033989f);
-    v = v - floor(v);
-    const Lane3 l = cone.direction((number + u0) * inv, v);
-    const Lane slope = dot(c.ng, l);
-    LaneMask lit = more & (slope * height > zero);
-    const Lane3 off = l * (height / select(lit, slope, splat(1))) - at.w;
-    lit &= ~discs | (dot(off, off) < r2);
-    const Lane cos_x = dot(r.n, l);
-    if constexpr (row_kind == kRowLambertian) lit &= (cos_x > zero) & (dot(r.ng, l) > zero);
-    if constexpr (column_kind == kColumnSphere) lit &= dot(c.n, l) < zero;
-    if (bits(lit) == 0) continue;
-    const Lane weight = select(lit, abs(cos_x) * select(discs, splat(1), abs(slope)), zero);
-    Lane3 f{splat(1), splat(1), splat(1)};
-    if constexpr (row_kind == kRowScatter) f = eval_f(*extras.row, l, LaneMask{});
-    if constexpr (column_kind == kColumnScatterSphere)
-      f = f * eval_f(*extras.column, l * splat(-1), LaneMask{});
-    sum = sum + select(lit, f * weight, Lane3{zero, zero, zero});
-  }
-  return sum * (splat(2 * kPi) * cone.below * inv);
-}
 
 // v / f; 0 where both are.
 inline Rgb without(Rgb v, Rgb f) {
@@ -200,11 +68,23 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
     if (all) apart = alive & (widths > splat(kMostWidths));
   }
   count = select(count > zero, floor(max(min(count, splat(kSamplesInHemisphere)), one) + splat(0.5f)), zero);
+  SphereCounts counts{count, zero, zero, {}};
+  if (bits(apart) != 0 && !by_cone && (!scattering_row || follows_lobes(*extras.row)) &&
+      (!scattering_column || follows_lobes(*extras.column))) {
+    // A narrow lobe is met by one sample of its own; where two meet, each is noise to the other's.
+    const LaneMask row_lobe = apart & (row_widths > one), column_lobe = apart & (column_widths > one);
+    const Lane each = select(row_lobe & column_lobe, splat(3), one);
+    counts.mixed = apart;
+    counts.row = select(row_lobe, each, zero), counts.column = select(column_lobe, each, zero);
+    counts.cone = select(apart, max(min(floor(splat(kSamplesOfDisc) * below), splat(8)), one), count);
+    apart = LaneMask{};
+  }
   const std::uint32_t lanes = bits(alive & ~apart & (count > zero));
   if (lanes != 0) {
     const LaneMask here = mask_from_bits(lanes);
-    const Lane3 sampled = integrate_in_lanes<row_kind, column_kind>(
-        r, c, extras, at, ConeSampler(axis, below), select(here, count, zero));
+    counts.cone = select(here, counts.cone, zero);
+    const Lane3 sampled =
+        integrate_in_lanes<row_kind, column_kind>(r, c, extras, at, ConeSampler(axis, below), cosine, counts);
     value = select(here, sampled, value);
   }
   for (std::uint32_t b = bits(apart); b != 0; b &= b - 1) {
@@ -255,11 +135,7 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
       out.excess = bound / splat(extras.clamp) - one;
     }
   }
-  const Lane least = splat(1e-35f);
-  out.e = {select(alive & (e.x > least), e.x, zero), select(alive & (e.y > least), e.y, zero),
-           select(alive & (e.z > least), e.z, zero)};
-  alive &= max_component(out.e) > zero;
-  out.alive = bits(alive);
+  note_values(out, e, alive);
   return out;
 }
 
