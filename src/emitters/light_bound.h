@@ -26,10 +26,10 @@ LightBound join(const LightBound& a, const LightBound& b);
 float emission_measure(const LightBound& bound);
 
 // The point to be lit. A direction matters as far as it makes an angle below 90° with `normal` (or with
-// -normal, if `both_sides`).
+// -normal, if `both_sides`). A zero normal: all directions matter alike.
 struct LitPoint {
   Vec3f position;
-  Vec3f normal{0, 0, 1};  // unit
+  Vec3f normal{0, 0, 1};  // unit, or zero
   bool both_sides = false;
 };
 

@@ -64,8 +64,9 @@ void LightExtents::importance(const LitPoint& at, float out[kCount]) const {
   const Lane emitted = inside ? one : less(less(angle(leaving), spread_), size).cosine + kSlack;
   const Lane facing = (at.normal.x * x + at.normal.y * y + at.normal.z * z) * inv;
   const Lane facing_back = at.both_sides ? -facing : facing;
-  const Lane received =
+  Lane received =
       inside ? one : less(angle(facing > facing_back ? facing : facing_back), size).cosine + kSlack;
+  if (at.normal == Vec3f{}) received = one;
 
   const Lane value = intensity_ * emitted * received * inv2;
   const Lane result = emitted > least_cosine_ ? (received > 0 ? value : zero) : zero;

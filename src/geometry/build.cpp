@@ -28,6 +28,17 @@ void validate(const TriangleMesh& mesh, std::size_t k) {
       throw InternalError(name + ": index " + std::to_string(i) + " of " + std::to_string(n) + " vertices");
   for (const std::size_t size : {mesh.normals.size(), mesh.uvs.size(), mesh.colors.size()})
     if (size != 0 && size != n) throw InternalError(name + ": a vertex attribute has the wrong length");
+  if (!mesh.fibres.empty() && !mesh.indices.empty())
+    throw InternalError(name + ": both triangles and fibres");
+  if (mesh.fibres.parameter.size() != mesh.fibres.points.size())
+    throw InternalError(name + ": the fibres' parameters have the wrong length");
+  for (const std::uint32_t i : mesh.fibres.segments)
+    if (i + std::size_t{1} >= mesh.fibres.points.size())
+      throw InternalError(name + ": a segment without an end");
+}
+
+[[noreturn]] void out_of_memory() {
+  throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
 }
 
 bool is_affine(const Transform& t) {
@@ -60,20 +71,18 @@ embree::Scene RayScene::Impl::new_scene() {
 void RayScene::Impl::commit(RTCScene scene) {
   rtcCommitScene(scene);
   const RTCError code = rtcGetDeviceError(device.get());
-  if (code == RTC_ERROR_OUT_OF_MEMORY)
-    throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
+  if (code == RTC_ERROR_OUT_OF_MEMORY) out_of_memory();
   if (code != RTC_ERROR_NONE || !first_error.empty()) throw InternalError("Embree: " + first_error);
 }
 
 // With `baked`, a copy of the vertices in world space; otherwise the mesh's own arrays.
-embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Transform* baked,
-                                              Blocking blocking_kind) {
+embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Transform* baked) {
   embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   const std::size_t n = mesh.positions.size();
   if (baked) {
     auto* out = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
                                                             RTC_FORMAT_FLOAT3, sizeof(Vec3f), n));
-    if (!out) throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
+    if (!out) out_of_memory();
     for (std::size_t k = 0; k < n; ++k) out[k] = baked->point(mesh.positions[k]);
   } else {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -81,6 +90,31 @@ embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Tr
   }
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
                              0, 3 * sizeof(std::uint32_t), mesh.triangle_count());
+  return geometry;
+}
+
+embree::Geometry RayScene::Impl::fibres_of(const Fibres& fibres, const Transform* baked) {
+  embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE));
+  const std::size_t n = fibres.points.size();
+  if (baked) {
+    auto* out = static_cast<Fibres::Point*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Fibres::Point), n));
+    if (!out) out_of_memory();
+    Fibres moved = fibres;
+    moved.transform(*baked);
+    std::copy(moved.points.begin(), moved.points.end(), out);
+  } else {
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                               fibres.points.data(), 0, sizeof(Fibres::Point), n);
+  }
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                             fibres.segments.data(), 0, sizeof(std::uint32_t), fibres.segments.size());
+  return geometry;
+}
+
+embree::Geometry RayScene::Impl::geometry_of(const TriangleMesh& mesh, const Transform* baked,
+                                             Blocking blocking_kind) {
+  embree::Geometry geometry = mesh.fibres.empty() ? triangles_of(mesh, baked) : fibres_of(mesh.fibres, baked);
   if (blocking_kind == Blocking::cutout)
     rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_cutout);
   else if (blocking_kind == Blocking::smooth)
@@ -91,14 +125,14 @@ embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Tr
 
 embree::Scene RayScene::Impl::build_part(std::uint32_t mesh, Blocking blocking_kind) {
   embree::Scene part = new_scene();
-  rtcAttachGeometry(part.get(), triangles_of(meshes[mesh], nullptr, blocking_kind).get());
+  rtcAttachGeometry(part.get(), geometry_of(meshes[mesh], nullptr, blocking_kind).get());
   commit(part.get());
   return part;
 }
 
 void RayScene::Impl::build(std::size_t flatten_limit) {
   std::vector<std::size_t> copies(meshes.size());
-  std::size_t triangles = 0;
+  std::size_t primitives = 0;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     validate(meshes[k], k);
     // Embree reads 16 bytes at the last vertex.
@@ -111,25 +145,25 @@ void RayScene::Impl::build(std::size_t flatten_limit) {
       throw InputError("the transform of placement " + std::to_string(k) + " is not affine or not finite",
                        "use translations, rotations, scales and shears only");
     ++copies[p.mesh];
-    triangles += meshes[p.mesh].triangle_count();
+    primitives += meshes[p.mesh].primitive_count();
   }
-  if (triangles == 0) throw InputError("the scene has no triangle", "add a shape");
+  if (primitives == 0) throw InputError("the scene has no triangle", "add a shape");
 
   open_device();
   std::map<std::pair<std::uint32_t, Blocking>, RTCScene> part_of;
   for (std::size_t k = 0; k < placements.size(); ++k) {
     const Placement& p = placements[k];
     const TriangleMesh& mesh = meshes[p.mesh];
-    if (mesh.indices.empty()) continue;
+    if (mesh.empty()) continue;
     embree::Scene& top = p.blocking == Blocking::smooth ? smooth : blocking;
     if (!top) top = new_scene();
     const auto id = static_cast<unsigned>(k);
     const std::optional<Transform> inverse = p.to_world.inverse();
     // A transform that flattens the mesh cannot be undone on rays, so it must be applied to the vertices.
     if (p.to_world.is_identity() || !inverse || copies[p.mesh] == 1 ||
-        copies[p.mesh] * mesh.triangle_count() <= flatten_limit) {
+        copies[p.mesh] * mesh.primitive_count() <= flatten_limit) {
       const bool moved = !p.to_world.is_identity();
-      rtcAttachGeometryByID(top.get(), triangles_of(mesh, moved ? &p.to_world : nullptr, p.blocking).get(),
+      rtcAttachGeometryByID(top.get(), geometry_of(mesh, moved ? &p.to_world : nullptr, p.blocking).get(),
                             id);
       continue;
     }

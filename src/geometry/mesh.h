@@ -1,4 +1,4 @@
-// Triangle meshes ready for tracing.
+// Meshes ready for tracing.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include "base/bounds.h"
 #include "base/rgb.h"
 #include "base/vec.h"
+#include "geometry/fibres.h"
 
 namespace lumirank::geometry {
 
@@ -16,7 +17,10 @@ struct TriangleMesh {
   std::vector<Vec2f> uvs;      // empty or one per position
   std::vector<Rgb> colors;     // empty or one per position
   std::vector<std::uint32_t> indices;
+  Fibres fibres;  // if it has any, the mesh consists of them and has no triangles
 
+  bool empty() const { return indices.empty() && fibres.empty(); }
+  std::size_t primitive_count() const { return triangle_count() + fibres.segments.size(); }
   std::size_t triangle_count() const { return indices.size() / 3; }
   // Twice the area times the unit normal, by the order of the corners.
   Vec3f area_vector(std::size_t triangle) const;

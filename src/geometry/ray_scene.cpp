@@ -45,6 +45,23 @@ QueryContext context_for(const RayScene::Impl& scene) {
   return context;
 }
 
+// How far across a fibre a ray meets it, see Hit. Radii change with the placement as Fibres::transform()
+// says.
+float across(const Fibres& fibres, const Transform& to_world, const Hit& hit, const Ray& ray) {
+  const FibrePoint at = fibre_point(fibres, hit.triangle, hit.barycentric.x);
+  Vec3f axis = at.axis, along = at.along;
+  float radius = at.radius;
+  if (!to_world.is_identity()) {
+    axis = to_world.point(axis), along = to_world.vector(along);
+    radius *= static_cast<float>(std::cbrt(std::abs(to_world.determinant3())));
+  }
+  const Vec3f sideways = cross(along, -ray.direction);
+  const float len = length(sideways);
+  if (!(len > 0 && radius > 0)) return 0;
+  const float y = dot(ray.origin + ray.direction * hit.t - axis, sideways) / (len * radius);
+  return std::clamp(y, -1.0f, 1.0f);
+}
+
 // Shortens `best` to the closest hit in `scene` before it.
 void closest(RTCScene scene, RTCRayHit& best) {
   embree::Context context;
@@ -116,6 +133,8 @@ std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   hit.mesh = impl_->placements[hit.instance].mesh;
   hit.triangle = query.hit.primID;
   hit.barycentric = {query.hit.u, query.hit.v};
+  const Fibres& fibres = impl_->meshes[hit.mesh].fibres;
+  if (!fibres.empty()) hit.barycentric.y = across(fibres, impl_->placements[hit.instance].to_world, hit, ray);
   return hit;
 }
 

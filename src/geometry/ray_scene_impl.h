@@ -30,7 +30,9 @@ struct RayScene::Impl {
   void open_device();
   embree::Scene new_scene();
   void commit(RTCScene scene);
-  embree::Geometry triangles_of(const TriangleMesh& mesh, const Transform* baked, Blocking blocking_kind);
+  embree::Geometry triangles_of(const TriangleMesh& mesh, const Transform* baked);
+  embree::Geometry fibres_of(const Fibres& fibres, const Transform* baked);
+  embree::Geometry geometry_of(const TriangleMesh& mesh, const Transform* baked, Blocking blocking_kind);
   embree::Scene build_part(std::uint32_t mesh, Blocking blocking_kind);
 };
 

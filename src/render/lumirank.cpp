@@ -138,6 +138,7 @@ nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
   const auto& info = world.info();
   json["triangles"] = info.triangles;
   json["triangles.unique"] = info.unique_triangles;
+  json["fibre_segments"] = info.segments;
   json["meshes"] = info.meshes;
   json["instances"] = info.instances;
   json["textures"] = info.textures;

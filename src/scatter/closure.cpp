@@ -9,22 +9,36 @@ namespace {
 // Cosines below this are grazing: nothing is evaluated there.
 constexpr float kGrazing = 1e-6f;
 
-// wo in the local frame, mirrored so that z > 0.
+// wo in the local frame, mirrored so that z > 0 (not on a fibre).
 struct Incident {
   Vec3f wo;
   float side;  // of wo: +1 outside, -1 inside
   bool valid;  // shading and geometric normal agree about the side
+  bool fibre;
 };
 
 Incident incident(const Closure& c, Vec3f wo) {
   Vec3f local = c.frame.to_local(wo);
+  if (c.is_fibre()) return {local, 1, fibre_sine(local) > kGrazing, true};
   const float side = local.z > 0 ? 1.0f : -1.0f;
   local.z *= side;
-  return {local, side, local.z > kGrazing && dot(wo, c.ng) * side > 0};
+  return {local, side, local.z > kGrazing && dot(wo, c.ng) * side > 0, false};
 }
 
 // Does wi (world) lie on the side which its shading cosine says? `local_z` unmirrored.
 bool sides_agree(const Closure& c, Vec3f wi, float local_z) { return dot(wi, c.ng) * local_z > 0; }
+
+// wi in the local frame, mirrored as wo is; false where nothing arrives.
+bool arriving(const Closure& c, const Incident& in, Vec3f wi, Vec3f& local) {
+  local = c.frame.to_local(wi);
+  if (in.fibre) return fibre_sine(local) > kGrazing;
+  if (!(std::abs(local.z) > kGrazing) || !sides_agree(c, wi, local.z)) return false;
+  local.z *= in.side;
+  return true;
+}
+
+// The lobes of a surface look to one side each.
+bool meets(LobeKind kind, const Incident& in, Vec3f wi) { return in.fibre || transmits(kind) == (wi.z < 0); }
 
 bool wanted(LobeKind kind, Lobes which) {
   return which == Lobes::all || (which == Lobes::delta) == is_delta(kind);
@@ -80,7 +94,7 @@ Rgb value_of_all(const Closure& c, const Incident& in, Vec3f wi) {
   Rgb sum(0);
   for (int k = 0; k < c.count; ++k) {
     const Lobe& lobe = c.lobes[k];
-    if (is_delta(lobe.kind) || transmits(lobe.kind) != (wi.z < 0)) continue;
+    if (is_delta(lobe.kind) || !meets(lobe.kind, in, wi)) continue;
     sum += lobe_value(view_from(lobe, in.side > 0), in.wo, wi);
   }
   return sum;
@@ -89,14 +103,14 @@ float density_of_all(const Closure& c, const Incident& in, Vec3f wi, const Selec
   float sum = 0;
   for (int k = 0; k < c.count; ++k) {
     const Lobe& lobe = c.lobes[k];
-    if (is_delta(lobe.kind) || !(s.weight[k] > 0) || transmits(lobe.kind) != (wi.z < 0)) continue;
+    if (is_delta(lobe.kind) || !(s.weight[k] > 0) || !meets(lobe.kind, in, wi)) continue;
     sum += s.weight[k] * lobe_pdf(view_from(lobe, in.side > 0), in.wo, wi);
   }
   return sum / s.total;
 }
 
 float crossed_eta(const Closure& c, const Incident& in, Vec3f wi) {
-  if (wi.z > 0) return 1;
+  if (wi.z > 0 || in.fibre) return 1;
   for (int k = 0; k < c.count; ++k)
     if (c.lobes[k].kind == LobeKind::microfacet_transmit) return view_from(c.lobes[k], in.side > 0).eta;
   return 1;
@@ -121,6 +135,18 @@ bool Closure::has_delta() const {
     if (is_delta(lobes[k].kind)) return true;
   return false;
 }
+
+bool Closure::is_fibre() const {
+  for (int k = 0; k < count; ++k)
+    if (is_hair(lobes[k].kind)) return true;
+  return false;
+}
+
+float Closure::cosine(Vec3f w) const {
+  return is_fibre() ? fibre_sine(frame.to_local(w)) : std::abs(dot(w, frame.n));
+}
+
+bool Closure::sides_agree(Vec3f w) const { return is_fibre() || dot(w, frame.n) * dot(w, ng) > 0; }
 
 bool Closure::is_lambertian() const {
   int smooth = 0;
@@ -150,6 +176,7 @@ float lobe_roughness(const Lobe& lobe) {
     case LobeKind::clearcoat:
       return std::min(1.0f, wider * lobe.alpha_u);
     case LobeKind::phong:
+    case LobeKind::hair_specular:
       return std::min(1.0f, wider * std::sqrt(2 / (lobe.alpha_u + 2)));
     default:
       return is_delta(lobe.kind) ? 0.0f : 1.0f;
@@ -180,24 +207,20 @@ Closure broad_part(const Closure& closure, float limit) { return part(closure, l
 Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint) {
   if (adjoint) std::swap(wo, wi);
   const Incident in = incident(closure, wo);
-  if (!in.valid) return Rgb(0);
-  Vec3f local = closure.frame.to_local(wi);
-  if (!(std::abs(local.z) > kGrazing) || !sides_agree(closure, wi, local.z)) return Rgb(0);
-  local.z *= in.side;
+  Vec3f local;
+  if (!in.valid || !arriving(closure, in, wi, local)) return Rgb(0);
   return value_of_all(closure, in, local);
 }
 
 Rgb eval(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint) {
-  return eval_f(closure, wo, wi, adjoint) * std::abs(dot(wi, closure.frame.n));
+  return eval_f(closure, wo, wi, adjoint) * closure.cosine(wi);
 }
 
 float pdf(const Closure& closure, Vec3f wo, Vec3f wi, Lobes which) {
   if (which == Lobes::delta) return 0;
   const Incident in = incident(closure, wo);
-  if (!in.valid) return 0;
-  Vec3f local = closure.frame.to_local(wi);
-  if (!(std::abs(local.z) > kGrazing) || !sides_agree(closure, wi, local.z)) return 0;
-  local.z *= in.side;
+  Vec3f local;
+  if (!in.valid || !arriving(closure, in, wi, local)) return 0;
   const Selection s = select(closure, in, wo, which);
   return s.total > 0 ? density_of_all(closure, in, local, s) : 0.0f;
 }
@@ -231,14 +254,15 @@ std::optional<BsdfSample> sample(const Closure& closure, Vec3f wo, float u1, Vec
   }
   Vec3f local;
   if (!lobe_sample(view_from(lobe, in.side > 0), in.wo, u2, local)) return std::nullopt;
-  if (!(std::abs(local.z) > kGrazing)) return std::nullopt;
+  const float cosine = in.fibre ? fibre_sine(local) : std::abs(local.z);
+  if (!(cosine > kGrazing)) return std::nullopt;
   out.wi = closure.frame.to_world({local.x, local.y, local.z * in.side});
-  if (!sides_agree(closure, out.wi, local.z * in.side)) return std::nullopt;
+  if (!in.fibre && !sides_agree(closure, out.wi, local.z * in.side)) return std::nullopt;
   out.pdf = density_of_all(closure, in, local, s);
   if (!(out.pdf > 0) || !std::isfinite(out.pdf)) return std::nullopt;
-  out.transmitted = local.z < 0;
+  out.transmitted = local.z < 0 && !in.fibre;
   out.eta = crossed_eta(closure, in, local);
-  out.weight = value_of_all(closure, in, local) * (std::abs(local.z) / out.pdf);
+  out.weight = value_of_all(closure, in, local) * (cosine / out.pdf);
   // Radiance scales by the squared index when it crosses; the value above is that of radiance.
   if (adjoint) out.weight *= out.eta * out.eta;
   return out;
@@ -274,6 +298,7 @@ Rgb albedo(const Closure& closure, Vec3f wo) {
 }
 
 float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi) {
+  if (closure.is_fibre()) return 1;
   const float numerator = std::abs(dot(wo, closure.frame.n) * dot(wi, closure.ng));
   const float denominator = std::abs(dot(wo, closure.ng) * dot(wi, closure.frame.n));
   return denominator > 0 ? numerator / denominator : 0.0f;

@@ -41,6 +41,10 @@ enum class LobeKind : std::uint8_t {
   // Through thin sheets, to the other side and unbent; eta is that of the sheet from either side:
   diffuse_transmit,  // color/π
   thin_transmit,     // microfacet_reflect with wi mirrored to wo's side and 1 - F instead of F
+  // Of a fibre along frame.s, whatever the side; stands with no other smooth lobes. See hair.cpp and
+  // Closure::is_fibre():
+  hair_diffuse,   // color/π²
+  hair_specular,  // Kajiya and Kay's, normalised; alpha_u = exponent, alpha_v = hair_specular_scale()
   // Delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations() meet them:
   delta_reflect,   // color · F by `fresnel`; variant kThinSlab: 2F/(1 + F)
   delta_transmit,  // color · (1 - F), refracts by eta
@@ -48,6 +52,9 @@ enum class LobeKind : std::uint8_t {
                // F))
 };
 inline bool is_delta(LobeKind kind) { return kind >= LobeKind::delta_reflect; }
+inline bool is_hair(LobeKind kind) {
+  return kind == LobeKind::hair_diffuse || kind == LobeKind::hair_specular;
+}
 
 // Smooth lobes that send light to the other side.
 inline bool shines_through(LobeKind kind) {
@@ -93,7 +100,7 @@ float lobe_roughness(const Lobe& lobe);
 
 struct Closure {
   Frame frame;        // shading frame; frame.n on the outside (towards wo if two-sided)
-  Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n
+  Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n; zero on a fibre
   int count = 0;
   Lobe lobes[kMaxLobes];
 
@@ -101,6 +108,14 @@ struct Closure {
   bool empty() const { return count == 0; }
   bool has_smooth() const;  // any lobe that is not delta
   bool has_delta() const;
+  // A thin fibre along frame.s instead of a surface: it has no sides, light arrives and leaves all around,
+  // and wherever a surface has the cosine of the normal, a fibre has the sine of the angle to frame.s (its
+  // width as light sees it). frame.n is any normal.
+  bool is_fibre() const;
+  // |cos(w, n)|, or of a fibre the sine.
+  float cosine(Vec3f w) const;
+  // n and ng agree about the side of w; on a fibre always.
+  bool sides_agree(Vec3f w) const;
   // The only smooth lobe is `diffuse` (delta lobes may stand beside it).
   bool is_lambertian() const;
   Rgb diffuse_color() const;  // of the diffuse lobe of a lambertian closure: its reflectance
@@ -116,7 +131,7 @@ Closure broad_part(const Closure& closure, float limit);
 // Which half of the closure a caller wants.
 enum class Lobes : std::uint8_t { smooth, delta, all };
 
-// Σ f(wo, wi)·|cos(wi, n)| of the smooth lobes, per steradian. 0 where wi and wo lie on sides that disagree
+// Σ f(wo, wi)·cosine(wi) of the smooth lobes, per steradian. 0 where wi and wo lie on sides that disagree
 // between the shading and the geometric normal (no light leaks). Radiance flows from wi to wo; with
 // `adjoint`, from wo to wi, as at a virtual light (it matters to refraction only, where the two differ by
 // eta²).
@@ -129,7 +144,7 @@ float pdf(const Closure& closure, Vec3f wo, Vec3f wi, Lobes which);
 
 struct BsdfSample {
   Vec3f wi;
-  Rgb weight;     // f·|cos|/pdf, or the delta lobe's coefficient over its probability
+  Rgb weight;     // f·cosine/pdf, or the delta lobe's coefficient over its probability
   float pdf = 0;  // solid-angle density; for a delta lobe its discrete probability
   bool delta = false;
   bool transmitted = false;
@@ -159,7 +174,7 @@ Rgb albedo(const Closure& closure, Vec3f wo);
 
 // Factor by which a particle's throughput must be multiplied beside sample(…, adjoint)'s weight where the
 // shading normal is not the geometric one: |wo·ns||wi·ng| / (|wo·ng||wi·ns|) (Veach 1997, section 5.3). wo:
-// where the particle came from; wi: where it goes.
+// where the particle came from; wi: where it goes. 1 on a fibre.
 float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi);
 
 }  // namespace lumirank::scatter

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "scatter/interface.h"
+#include "scatter/lobe.h"
 #include "scatter/microfacet.h"
 
 namespace lumirank::scatter {
@@ -35,6 +36,7 @@ Closure ClosureBuilder::finish(const SurfacePoint& at) {
   if (frame_weight_ == 0) out_.frame = at.shading, out_.ng = at.ng;
   // Turned frames are left-handed until here.
   out_.frame.t = cross(out_.frame.n, out_.frame.s);
+  if (out_.is_fibre()) out_.ng = {};
   return out_;
 }
 
@@ -177,6 +179,17 @@ void ClosureBuilder::leaf(const DiffuseTransmitterMaterial& m, const SurfacePoin
   conserve(reflected, transmitted);
   push(lobe_of(LobeKind::diffuse, reflected), at, weight);
   push(lobe_of(LobeKind::diffuse_transmit, transmitted), at, weight);
+}
+
+void ClosureBuilder::leaf(const HairMaterial& m, const SurfacePoint& at, float weight) {
+  Rgb diffuse = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
+  Rgb specular = reflectance(set_.textures, m.specular_reflectance, at.uv);
+  conserve(diffuse, specular);
+  push(lobe_of(LobeKind::hair_diffuse, diffuse), at, weight);
+  Lobe lobe = lobe_of(LobeKind::hair_specular, specular);
+  lobe.alpha_u = std::clamp(number(set_.textures, m.exponent, at.uv), 0.0f, 1e5f);
+  lobe.alpha_v = hair_specular_scale(lobe.alpha_u);
+  push(lobe, at, weight);
 }
 
 void ClosureBuilder::leaf(const MaskMaterial& m, const SurfacePoint& at, float weight) {

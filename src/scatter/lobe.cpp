@@ -25,7 +25,8 @@ Rgb quadrature_albedo(LobeView view, Vec3f wo) {
     Vec3f wi;
     if (!lobe_sample(view, wo, u, wi)) continue;
     const float pdf = lobe_pdf(view, wo, wi);
-    if (pdf > 0) sum += lobe_value(view, wo, wi) * (std::abs(wi.z) / pdf);
+    const float cosine = is_hair(view.lobe.kind) ? fibre_sine(wi) : std::abs(wi.z);
+    if (pdf > 0) sum += lobe_value(view, wo, wi) * (cosine / pdf);
   }
   // As a share of energy: without the scaling of radiance.
   const float scale = view.lobe.kind == LobeKind::microfacet_transmit ? view.eta * view.eta : 1.0f;
@@ -84,6 +85,10 @@ Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
       return disney_diffuse_value(lobe, wo, wi);
     case LobeKind::clearcoat:
       return clearcoat_value(lobe, wo, wi);
+    case LobeKind::hair_diffuse:
+      return hair_diffuse_value(lobe);
+    case LobeKind::hair_specular:
+      return hair_specular_value(lobe, wo, wi);
     case LobeKind::delta_reflect:
     case LobeKind::delta_transmit:
     case LobeKind::delta_pass:
@@ -115,6 +120,10 @@ float bare_pdf(LobeView view, Vec3f wo, Vec3f wi) {
       return ward_pdf(lobe, wo, wi);
     case LobeKind::clearcoat:
       return clearcoat_pdf(lobe, wo, wi);
+    case LobeKind::hair_diffuse:
+      return 1 / (4 * kPi);
+    case LobeKind::hair_specular:
+      return hair_specular_pdf(lobe, wo, wi);
     case LobeKind::delta_reflect:
     case LobeKind::delta_transmit:
     case LobeKind::delta_pass:
@@ -148,6 +157,11 @@ bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
       return ward_sample(lobe, wo, u, wi);
     case LobeKind::clearcoat:
       return clearcoat_sample(lobe, wo, u, wi);
+    case LobeKind::hair_diffuse:
+      wi = warp_sphere(u);
+      return true;
+    case LobeKind::hair_specular:
+      return hair_specular_sample(lobe, wo, u, wi);
     case LobeKind::delta_reflect:
     case LobeKind::delta_transmit:
     case LobeKind::delta_pass:
@@ -158,7 +172,9 @@ bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 
 Rgb bare_albedo(LobeView view, Vec3f wo) {
   const Lobe& lobe = view.lobe;
-  if (lobe.kind == LobeKind::diffuse || lobe.kind == LobeKind::diffuse_transmit) return lobe.color;
+  if (lobe.kind == LobeKind::diffuse || lobe.kind == LobeKind::diffuse_transmit ||
+      lobe.kind == LobeKind::hair_diffuse)
+    return lobe.color;
   if (lobe.kind == LobeKind::interfaced_diffuse)
     return lobe.color * (interface_transmittance(lobe, wo.z) * lobe.alpha_v);
   if (is_delta(lobe.kind)) {

@@ -2,8 +2,8 @@
 //
 // A lobe acts alike on both sides of the surface (one-sidedness is the material's business): the callers
 // mirror directions so that wo.z > 0. Then wi.z > 0 for reflection and wi.z < 0 for transmission. `eta` is
-// the relative index as seen from wo's side. Values are f alone, without the cosine; densities are per solid
-// angle of wi.
+// the relative index as seen from wo's side. (Lobes of fibres know no sides, and nothing is mirrored.) Values
+// are f alone, without the cosine; densities are per solid angle of wi.
 #pragma once
 
 #include "scatter/closure.h"
@@ -81,5 +81,12 @@ Rgb disney_diffuse_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
 Rgb clearcoat_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
 float clearcoat_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
 bool clearcoat_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
+// Local x runs along the fibre; wo is not mirrored.
+Rgb hair_diffuse_value(const Lobe& lobe);
+Rgb hair_specular_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+float hair_specular_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
+bool hair_specular_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
+float hair_specular_scale(float exponent);  // what alpha_v must be
+float fibre_sine(Vec3f w);                  // of the angle between w and the fibre
 
 }  // namespace lumirank::scatter

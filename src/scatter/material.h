@@ -102,6 +102,10 @@ struct CoatingMaterial {
   FloatInput alpha_u, alpha_v;
   bool smooth = true;
 };
+struct HairMaterial {  // for fibres only: the point's shading.s runs along them
+  ColorInput diffuse_reflectance, specular_reflectance;
+  FloatInput exponent;
+};
 struct MaskMaterial {
   FloatInput opacity;
   int nested;
@@ -132,7 +136,7 @@ struct MixtureMaterial {
 using Material =
     std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
-                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, MaskMaterial,
+                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, HairMaterial, MaskMaterial,
                  TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
@@ -143,6 +147,9 @@ struct MaterialSet {
   // The closure at a point, for a known direction wo (which decides the side of two-sided and dielectric
   // BSDFs). A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
   Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
+
+  // A BSDF of fibres: all smooth lobes of its closures are hair lobes (Closure::is_fibre()).
+  bool is_hair(int material) const;
 
   // Whether shadow rays may pass straight through somewhere (null, thin dielectric, mask): such geometry gets
   // a filter.

@@ -97,7 +97,27 @@ struct OpacityVisitor {
   float operator()(const NormalMapMaterial& m) const { return set.opacity(m.nested, uv); }
 };
 
+struct HairVisitor {
+  const MaterialSet& set;
+
+  template <typename Leaf>
+  bool operator()(const Leaf&) const {
+    return false;
+  }
+  bool operator()(const HairMaterial&) const { return true; }
+  bool operator()(const MaskMaterial& m) const { return set.is_hair(m.nested); }
+  bool operator()(const MixtureMaterial& m) const {
+    for (const MixtureMaterial::Part& part : m.parts)
+      if (set.is_hair(part.nested)) return true;
+    return false;
+  }
+};
+
 }  // namespace
+
+bool MaterialSet::is_hair(int material) const {
+  return std::visit(HairVisitor{*this}, materials[static_cast<std::size_t>(material)]);
+}
 
 MaterialSet::Passage MaterialSet::passage(int material) const {
   return std::visit(PassageVisitor{*this}, materials[static_cast<std::size_t>(material)]);

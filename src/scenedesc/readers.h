@@ -55,6 +55,12 @@ void replace_environment(SceneDesc& scene, const std::string& filename);
 // strict.
 void light_if_dark(SceneDesc& scene, const ReadOptions& options = {});
 
+// The points of curves, from their file where they have one. Text: "x y z radius" in every line, or "x y z"
+// where file_radius is given; empty lines part the curves. With file_radius also the binary form of Mitsuba
+// 0.6. InputError also where a curve has fewer points than its basis needs.
+CurvesDesc read_curves(const CurvesDesc& curves);
+CurvesDesc parse_curves(const std::string& bytes, const CurvesDesc& curves);
+
 // Human-readable listing, for `lumirank info` and debugging.
 std::string describe(const SceneDesc& scene);
 

@@ -107,8 +107,7 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, s
     }
     const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
     // Where the two normals disagree about the side of wo, the smooth lobes are 0 (scatter::eval).
-    const bool sides_agree = dot(closure.frame.n, wo) * dot(closure.ng, wo) > 0;
-    if (light_may_follow && sides_agree && closure.has_smooth())
+    if (light_may_follow && closure.sides_agree(wo) && closure.has_smooth())
       add_receiver(*hit, closure, s, sample, out, pool);
     if (closure.has_delta()) continue_from(*hit, closure, s, rng);
   }

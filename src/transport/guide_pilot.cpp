@@ -34,7 +34,7 @@ class Relevance {
       if (!(d2 > 0)) continue;
       const Vec3f w = to_light / std::sqrt(d2);
       const float cosines =
-          std::max(0.0f, dot(receivers_.normal[i], w)) * std::max(0.0f, -dot(light.normal, w));
+          cosine(receivers_.normal[i], receivers_.ng[i], w) * cosine(light.normal, light.ng, -w);
       if (!(cosines > 0)) continue;
       const Vec3f from = world::World::offset_origin(receivers_.position[i], receivers_.ng[i], w);
       const Vec3f to = world::World::offset_origin(light.position, light.ng, -w);
@@ -45,6 +45,11 @@ class Relevance {
   }
 
  private:
+  // A fibre (without a geometric normal) is met from everywhere, and π/4 is the mean of its sine.
+  static float cosine(Vec3f n, Vec3f ng, Vec3f w) {
+    return ng == Vec3f{} ? kPi / 4 : std::max(0.0f, dot(n, w));
+  }
+
   const world::World& world_;
   const Receivers& receivers_;
   float nearest2_;

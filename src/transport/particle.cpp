@@ -22,6 +22,7 @@ constexpr float kDeepSurvival = 0.9f;
 // this part of Veach's correction (1997, section 5.3) belongs to the light, the rest to the direction in
 // which light leaves it.
 float incident_correction(const Closure& closure, Vec3f incoming) {
+  if (closure.is_fibre()) return 1;
   return std::abs(dot(incoming, closure.frame.n) / dot(incoming, closure.ng));
 }
 
@@ -78,10 +79,9 @@ void ParticleTracer::follow(const EmissionGuide::Start& from, Rng& rng, LightBat
     first = false;
     const Vec3f incoming = -ray.direction;
     const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
-    const bool sides_agree = dot(incoming, closure.frame.n) * dot(incoming, closure.ng) > 0;
     // Paths are those of the whole closure either way: what a light leaves out is only what it shines itself.
     const Closure shining = settings_.diffuse_only ? scatter::broad_part(closure, 1) : closure;
-    if (shining.has_smooth() && sides_agree) {
+    if (shining.has_smooth() && closure.sides_agree(incoming)) {
       LightRecord light = surface_light(hit->point.position, shining, incoming, batch.closures);
       light.power = flux * incident_correction(closure, incoming);
       light.emitter = static_cast<std::uint16_t>(start.emitter);

@@ -30,7 +30,9 @@ struct ReceiverSettings {
 // background).
 struct Receivers {
   std::vector<Vec3f> position;
-  std::vector<Vec3f> normal, ng;       // shading and geometric, in the hemisphere of wo where they agree
+  // Shading and geometric, in the hemisphere of wo where they agree. On a fibre ng is zero
+  // (Closure::is_fibre()).
+  std::vector<Vec3f> normal, ng;
   std::vector<Vec3f> wo;               // unit, back along the eye path
   std::vector<Rgb> weight;             // throughput of the specular chain
   std::vector<std::uint32_t> sample;   // film sample that it belongs to

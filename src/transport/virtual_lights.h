@@ -60,8 +60,9 @@ struct VirtualLights {
   std::vector<LightKind> kind;
   std::vector<Vec3f> position;  // directional: where its ray to the scene's centre enters the bounding sphere
   std::vector<Vec3f> normal;    // unit; zero for omni. Surface: shading normal on the side of `incoming`
-  std::vector<Vec3f> ng;   // geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds
-  std::vector<Rgb> power;  // by kind, see above
+  // Geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds; zero on a fibre.
+  std::vector<Vec3f> ng;
+  std::vector<Rgb> power;   // by kind, see above
   std::vector<float> area;  // a_j: the area that the light stands for (clamping); 0: never clamped
   // Spherical lights (sphere_lights.h), else empty. Radius of the sphere, 0 for lights that stay points; and
   // which part of the disc of that radius in the surface's tangent plane other surfaces hide from the light.

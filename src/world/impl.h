@@ -11,6 +11,7 @@ namespace lumirank::world {
 struct World::Impl {
   struct PlacementData {
     bool identity = true;
+    bool hair = false;  // fibres of hair: points lie on the axis and have no geometric normal
     bool flip = false;  // the outside is against the order of the corners in the mesh's own frame
     Transform to_world, inverse;
   };
@@ -26,8 +27,10 @@ struct World::Impl {
   WorldInfo info;
 
   // Everything at a point of a triangle; normals towards the outside.
-  SurfaceHit surface(const geometry::Hit& hit) const;
+  SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   scatter::SurfaceUv uv(const geometry::Hit& hit) const;
+  // The same for a segment of a fibre (fibre_surface.cpp); position, normals and tangents only.
+  scatter::SurfacePoint fibre_surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   Rgb emitted_at(int emitter, std::uint32_t triangle, Vec2f barycentric) const;
 };
 

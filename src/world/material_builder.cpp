@@ -37,14 +37,18 @@ void check_index(Rgb value, const SourceLocation& where) {
 }  // namespace
 
 MaterialBuilder::MaterialBuilder(const sd::SceneDesc& desc, TextureBuilder& textures, Notes& notes)
-    : desc_(desc), textures_(textures), notes_(notes), index_(desc.bsdfs.size(), kNotBuilt) {}
+    : desc_(desc),
+      textures_(textures),
+      notes_(notes),
+      index_(desc.bsdfs.size(), kNotBuilt),
+      index_on_fibres_(index_) {}
 
 int MaterialBuilder::add(sc::Material material) {
   materials_.push_back(std::move(material));
   return static_cast<int>(materials_.size()) - 1;
 }
 
-int MaterialBuilder::use(int bsdf, const SourceLocation& user) {
+int MaterialBuilder::use(int bsdf, const SourceLocation& user, Carrier carrier) {
   if (bsdf == sd::kNone) {
     if (default_ < 0) default_ = add(sc::DiffuseMaterial{sc::ColorInput{Rgb(0.5f), -1}});
     return default_;
@@ -53,18 +57,68 @@ int MaterialBuilder::use(int bsdf, const SourceLocation& user) {
     throw InputError(user, "a BSDF is referred to that the scene does not have", "define it");
   const auto slot = static_cast<std::size_t>(bsdf);
   const auto& b = desc_.bsdfs[slot];
-  if (index_[slot] >= 0) return index_[slot];
-  if (index_[slot] == kInProgress)
+  if (carrier == Carrier::fibres && !holds_hair(bsdf)) carrier = Carrier::surface;
+  std::vector<int>& index = carrier == Carrier::fibres ? index_on_fibres_ : index_;
+  if (index[slot] >= 0) return index[slot];
+  if (index[slot] == kInProgress)
     throw InputError(b.where, "the BSDF '" + b.id + "' is, through others, nested in itself",
                      "break the cycle");
-  index_[slot] = kInProgress;
+  index[slot] = kInProgress;
   int built = -1;
-  if (const auto* two = std::get_if<sd::TwoSidedDesc>(&b.kind)) built = instead_of_two_sided(*two, b.where);
+  if (carrier == Carrier::fibres) {
+    if (const int other = instead_around_hair(b); other != sd::kNone) built = use(other, b.where, carrier);
+  } else if (const auto* two = std::get_if<sd::TwoSidedDesc>(&b.kind)) {
+    built = instead_of_two_sided(*two, b.where);
+  }
   if (built < 0) {
-    sc::Material material = convert(b);
+    sc::Material material = convert(b, carrier);
     built = add(std::move(material));
   }
-  return index_[slot] = built;
+  return index[slot] = built;
+}
+
+bool MaterialBuilder::holds_hair(int bsdf, std::size_t depth) const {
+  // A loop of nested BSDFs is found, with its message, when they are built.
+  if (bsdf < 0 || static_cast<std::size_t>(bsdf) >= desc_.bsdfs.size() || depth > desc_.bsdfs.size())
+    return false;
+  const auto& kind = desc_.bsdfs[static_cast<std::size_t>(bsdf)].kind;
+  if (std::holds_alternative<sd::HairDesc>(kind)) return true;
+  if (const auto* m = std::get_if<sd::CoatingDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  if (const auto* m = std::get_if<sd::MaskDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  if (const auto* m = std::get_if<sd::TwoSidedDesc>(&kind)) return holds_hair(m->front, depth + 1);
+  if (const auto* m = std::get_if<sd::BumpMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  if (const auto* m = std::get_if<sd::NormalMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  if (const auto* m = std::get_if<sd::MixtureDesc>(&kind))
+    for (const auto& part : m->parts)
+      if (holds_hair(part.bsdf, depth + 1)) return true;
+  return false;
+}
+
+int MaterialBuilder::instead_around_hair(const sd::BsdfDesc& b) {
+  if (const auto* m = std::get_if<sd::TwoSidedDesc>(&b.kind)) return m->front;
+  const auto* bump = std::get_if<sd::BumpMapDesc>(&b.kind);
+  const auto* map = std::get_if<sd::NormalMapDesc>(&b.kind);
+  if (const auto* coat = std::get_if<sd::CoatingDesc>(&b.kind)) {
+    notes_.warn(b.where, "a coating over hair", "the hair without it");
+    return coat->nested;
+  }
+  if (bump || map) {
+    notes_.warn(b.where, "a bump or normal map around hair", "the hair without it");
+    return bump ? bump->nested : map->nested;
+  }
+  if (const auto* m = std::get_if<sd::MixtureDesc>(&b.kind)) {
+    int hair = sd::kNone;
+    bool mixed = false;
+    for (const auto& part : m->parts) {
+      const bool holds = holds_hair(part.bsdf);
+      if (holds && hair == sd::kNone) hair = part.bsdf;
+      mixed |= !holds;
+    }
+    if (!mixed) return sd::kNone;
+    notes_.warn(b.where, "a mixture of hair with a BSDF of surfaces", "the hair alone");
+    return hair;
+  }
+  return sd::kNone;
 }
 
 bool MaterialBuilder::transmits(int material) const {
@@ -93,6 +147,7 @@ bool MaterialBuilder::transmits(int material) const {
     bool operator()(const sc::PlasticMaterial&) const { return false; }
     bool operator()(const sc::PhongMaterial&) const { return false; }
     bool operator()(const sc::WardMaterial&) const { return false; }
+    bool operator()(const sc::HairMaterial&) const { return false; }
     bool operator()(const sc::TwoSidedMaterial&) const { return false; }
   };
   return std::visit(Ask{*this}, materials_[static_cast<std::size_t>(material)]);
@@ -127,16 +182,17 @@ int MaterialBuilder::instead_of_two_sided(const sd::TwoSidedDesc& d, const Sourc
   return front;
 }
 
-sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
+sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
   struct Convert {
     MaterialBuilder& self;
     const SourceLocation& where;
+    Carrier carrier;
 
     sc::ColorInput color(const sd::ColorInput& c) const { return self.textures_.color(c, where); }
     sc::FloatInput number(const sd::FloatInput& f) const { return self.textures_.number(f, where); }
     int nested(int bsdf) const {
       if (bsdf == sd::kNone) throw InputError(where, "a BSDF lacks the one nested in it", "nest a BSDF");
-      return self.use(bsdf, where);
+      return self.use(bsdf, where, carrier);
     }
     int texture(int t) const {
       if (t == sd::kNone) throw InputError(where, "a BSDF lacks its texture", "nest a texture");
@@ -207,6 +263,9 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
       return m;
     }
     sc::Material operator()(const sd::HairDesc& d) const {
+      if (carrier == Carrier::fibres)
+        return sc::HairMaterial{color(d.diffuse_reflectance), color(d.specular_reflectance),
+                                number(d.exponent)};
       self.notes_.warn(where, "a hair BSDF on a surface", "diffuse of its diffuse reflectance");
       return sc::DiffuseMaterial{color(d.diffuse_reflectance)};
     }
@@ -264,7 +323,7 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b) {
       return m;
     }
   };
-  return std::visit(Convert{*this, b.where}, b.kind);
+  return std::visit(Convert{*this, b.where, on}, b.kind);
 }
 
 }  // namespace lumirank::world

@@ -40,6 +40,32 @@ const std::string& mesh_name(const sd::ShapeDesc& shape) {
   return std::get<sd::MeshFileDesc>(shape.kind).filename;
 }
 
+geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesDesc& desc) {
+  const sd::CurvesDesc curves = sd::read_curves(desc);
+  using Basis = sd::CurvesDesc::Basis;
+  const std::size_t count = curves.first.empty() ? 0 : curves.first.size() - 1;
+  bool good = count > 0 && curves.radii.size() == curves.points.size() && curves.first[0] == 0 &&
+              curves.first.back() == curves.points.size();
+  for (std::size_t c = 0; good && c < count; ++c) {
+    const std::size_t n = curves.first[c + 1] - std::size_t{curves.first[c]};
+    good = curves.first[c + 1] <= curves.points.size() && curves.first[c] < curves.first[c + 1] &&
+           n >= (curves.basis == Basis::linear ? 2u : 4u) && (curves.basis != Basis::bezier || n % 3 == 1);
+  }
+  if (!good)
+    throw InputError(shape.where, "the curves have too few points, or lists that do not fit together",
+                     "linear curves need 2 points, b-splines 4, bezier curves 4, 7, 10, …");
+  for (std::size_t k = 0; k < curves.points.size(); ++k)
+    if (!is_finite(curves.points[k]) || !(curves.radii[k] >= 0) || !std::isfinite(curves.radii[k]))
+      throw InputError(shape.where, "a point or radius of the curves is not finite, or a radius negative",
+                       "mend it");
+  const auto basis = curves.basis == Basis::bspline  ? geometry::CurveBasis::bspline
+                     : curves.basis == Basis::bezier ? geometry::CurveBasis::bezier
+                                                     : geometry::CurveBasis::linear;
+  geometry::TriangleMesh mesh;
+  mesh.fibres = geometry::make_fibres(basis, curves.points, curves.radii, curves.first);
+  return mesh;
+}
+
 void check_numbers(const sd::ShapeDesc& shape, const std::vector<float>& numbers) {
   for (float v : numbers)
     if (!std::isfinite(v))
@@ -75,6 +101,10 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
   } else if (const auto* mesh = std::get_if<sd::InlineMeshDesc>(&shape.kind)) {
     if (!mesh->mesh) throw InternalError("MeshStore: an inline mesh without its data");
     held = mesh->mesh.get();
+  } else if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) {
+    name = curves->filename;
+    if (name.empty()) held = curves;
+    numbers = {static_cast<float>(curves->basis), curves->file_radius};
   } else if (const auto* sphere = std::get_if<sd::SphereDesc>(&shape.kind)) {
     numbers = {sphere->center.x, sphere->center.y, sphere->center.z, sphere->radius};
     shines = shape.emitter.has_value();
@@ -98,6 +128,7 @@ geometry::TriangleMesh MeshStore::make(Source& source) const {
     return convert(sd::read_mesh(*file), source.left_out, source.mended);
   if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind))
     return convert(*held->mesh, source.left_out, source.mended);
+  if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) return from_curves(shape, *curves);
   if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
   if (std::holds_alternative<sd::CubeDesc>(shape.kind)) return geometry::make_cube();
   if (std::holds_alternative<sd::DiskDesc>(shape.kind)) return geometry::make_disk();

@@ -27,6 +27,12 @@ const sd::ShapeDesc& shape_at(const sd::SceneDesc& desc, int index, const Source
   return desc.shapes[static_cast<std::size_t>(index)];
 }
 
+bool shines(const sd::ShapeDesc& shape, Notes& notes) {
+  if (!shape.emitter || !std::holds_alternative<sd::CurvesDesc>(shape.kind)) return shape.emitter.has_value();
+  notes.warn(shape.where, "an emitter on curves", "the curves without it");
+  return false;
+}
+
 void place_instance(const sd::SceneDesc& desc, const sd::ShapeDesc& instance, MeshStore& store, Notes& notes,
                     std::vector<Placed>& out) {
   const sd::ShapeDesc& group = shape_at(desc, as_instance(instance)->group, instance.where);
@@ -39,7 +45,6 @@ void place_instance(const sd::SceneDesc& desc, const sd::ShapeDesc& instance, Me
     if (is_group(child) || as_instance(child))
       throw InputError(child.where, "a shape group holds another group or an instance",
                        "groups cannot be nested: place the shapes themselves in the group");
-    if (std::holds_alternative<sd::CurvesDesc>(child.kind)) continue;  // warned about by place_shapes
     check_transform(child.to_world, child.where);
     out.push_back({store.use(child), instance.to_world * child.to_world,
                    child.flip_normals != instance.flip_normals, &child, false});
@@ -50,6 +55,7 @@ void place_instance(const sd::SceneDesc& desc, const sd::ShapeDesc& instance, Me
 // corners.
 void bake(geometry::TriangleMesh& mesh, const Transform& to_world, bool flip) {
   const std::optional<Transform> inverse = to_world.inverse();
+  mesh.fibres.transform(to_world);
   const bool reverse = (to_world.determinant3() < 0) != flip;
   if (!to_world.is_identity()) {
     parallel_for(mesh.positions.size(), 1 << 16, [&](std::size_t b, std::size_t e) {
@@ -73,6 +79,7 @@ void bake(geometry::TriangleMesh& mesh, const Transform& to_world, bool flip) {
 }
 
 double total_area(const geometry::TriangleMesh& mesh) {
+  if (!mesh.fibres.empty()) return mesh.fibres.area();
   return parallel_sum(mesh.triangle_count(), std::size_t{1} << 16, 0.0, [&](std::size_t b, std::size_t e) {
     double sum = 0;
     for (std::size_t t = b; t < e; ++t) sum += 0.5 * static_cast<double>(length(mesh.area_vector(t)));
@@ -83,6 +90,8 @@ double total_area(const geometry::TriangleMesh& mesh) {
 bool all_finite(const geometry::TriangleMesh& mesh) {
   for (const Vec3f& p : mesh.positions)
     if (!is_finite(p)) return false;
+  for (const geometry::Fibres::Point& p : mesh.fibres.points)
+    if (!is_finite(p.position) || !std::isfinite(p.radius)) return false;
   return true;
 }
 
@@ -91,10 +100,6 @@ bool all_finite(const geometry::TriangleMesh& mesh) {
 std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, Notes& notes) {
   std::vector<Placed> out;
   for (const sd::ShapeDesc& shape : desc.shapes) {
-    if (std::holds_alternative<sd::CurvesDesc>(shape.kind)) {
-      notes.warn(shape.where, "a shape of curves", "");
-      continue;
-    }
     if (shape.in_group) {
       if (shape.emitter) notes.warn(shape.where, "an emitter in a shape group", "the shape without it");
       continue;
@@ -104,8 +109,7 @@ std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, No
     if (as_instance(shape))
       place_instance(desc, shape, store, notes, out);
     else
-      out.push_back(
-          {store.use(shape), shape.to_world, shape.flip_normals, &shape, shape.emitter.has_value()});
+      out.push_back({store.use(shape), shape.to_world, shape.flip_normals, &shape, shines(shape, notes)});
   }
   return out;
 }
@@ -121,7 +125,7 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
   for (Placed& p : placed) {
     const auto source = static_cast<std::size_t>(p.source);
     const geometry::TriangleMesh& original = store.mesh(p.source);
-    const std::size_t triangles = original.triangle_count();
+    const std::size_t triangles = original.triangle_count(), segments = original.fibres.segments.size();
     const bool copy = p.shines || uses[source] == 1 || !p.to_world.inverse();
     geometry::Placement placement;
     bool flip = false;
@@ -146,7 +150,7 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
       placement.to_world = p.to_world;
       flip = p.flip_normals;
     }
-    g.triangles += triangles;
+    g.triangles += triangles, g.segments += segments;
     g.placements.push_back(placement);
     g.flip.push_back(flip);
     g.placed.push_back(p);

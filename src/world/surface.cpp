@@ -58,21 +58,32 @@ scatter::SurfaceUv interpolate_uv(const geometry::TriangleMesh& mesh, std::uint3
 }
 
 scatter::SurfaceUv World::Impl::uv(const geometry::Hit& hit) const {
+  const geometry::Fibres& fibres = rays->meshes()[hit.mesh].fibres;
+  if (!fibres.empty()) {
+    // Asked of every crossing, for its opacity: across the fibre nothing varies.
+    scatter::SurfaceUv at;
+    at.uv = {geometry::fibre_point(fibres, hit.triangle, hit.barycentric.x).parameter, 0.5f};
+    return at;
+  }
   return interpolate_uv(rays->meshes()[hit.mesh], hit.triangle, hit.barycentric);
 }
 
-SurfaceHit World::Impl::surface(const geometry::Hit& hit) const {
+SurfaceHit World::Impl::surface(const geometry::Hit& hit, Vec3f ray_direction) const {
   const geometry::TriangleMesh& mesh = rays->meshes()[hit.mesh];
   const geometry::Placement& placement = rays->placements()[hit.instance];
   const PlacementData& data = placements[hit.instance];
-  const Corners c = corners(mesh, hit.triangle);
-  const Vec2f b = hit.barycentric;
-  const float b0 = 1 - b.x - b.y;
 
   SurfaceHit out;
   out.hit = hit;
   out.material = static_cast<int>(placement.material);
   out.emitter = placement.emitter == 0xffffffffu ? -1 : static_cast<int>(placement.emitter);
+  if (!mesh.fibres.empty()) {
+    out.point = fibre_surface(hit, ray_direction);
+    return out;
+  }
+  const Corners c = corners(mesh, hit.triangle);
+  const Vec2f b = hit.barycentric;
+  const float b0 = 1 - b.x - b.y;
   scatter::SurfacePoint& point = out.point;
 
   Vec3f p[3];

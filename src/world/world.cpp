@@ -34,7 +34,9 @@ geometry::Blocking blocking(scatter::MaterialSet::Passage passage) {
 std::size_t bytes_of(const geometry::TriangleMesh& m) {
   return m.positions.size() * sizeof(Vec3f) + m.normals.size() * sizeof(Vec3f) +
          m.uvs.size() * sizeof(Vec2f) + m.colors.size() * sizeof(Rgb) +
-         m.indices.size() * sizeof(std::uint32_t);
+         m.indices.size() * sizeof(std::uint32_t) +
+         m.fibres.points.size() * (sizeof(geometry::Fibres::Point) + sizeof(float)) +
+         m.fibres.segments.size() * sizeof(std::uint32_t);
 }
 
 std::size_t bytes_of(const emitters::Emitter& emitter) {
@@ -43,6 +45,10 @@ std::size_t bytes_of(const emitters::Emitter& emitter) {
   if (const auto* sky = std::get_if<emitters::EnvironmentEmitter>(&emitter.kind))
     return sky->radiance.size() * (sizeof(Rgb) + sizeof(double));
   return 0;
+}
+
+Carrier carrier(const sd::ShapeDesc& shape) {
+  return std::holds_alternative<sd::CurvesDesc>(shape.kind) ? Carrier::fibres : Carrier::surface;
 }
 
 void step(const Sinks& sinks, double fraction) {
@@ -71,7 +77,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   TextureBuilder textures(desc);
   MaterialBuilder materials(desc, textures, notes);
   for (const Placed& p : placed) {
-    materials.use(p.shape->bsdf, p.shape->where);
+    materials.use(p.shape->bsdf, p.shape->where, carrier(*p.shape));
     if (p.shines) textures.color(p.shape->emitter->radiance, p.shape->emitter->where);
   }
   store.load(notes);
@@ -90,7 +96,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   std::vector<int> material_of;
   std::vector<scatter::ColorInput> radiance_of;
   for (const Placed& p : geometry.placed) {
-    material_of.push_back(materials.use(p.shape->bsdf, p.shape->where));
+    material_of.push_back(materials.use(p.shape->bsdf, p.shape->where, carrier(*p.shape)));
     radiance_of.push_back(p.shines ? textures.color(p.shape->emitter->radiance, p.shape->emitter->where)
                                    : scatter::ColorInput{});
   }
@@ -104,7 +110,8 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
     auto& placement = geometry.placements[i];
     placement.material = static_cast<std::uint32_t>(material_of[i]);
     placement.blocking = blocking(w.materials.passage(material_of[i]));
-    w.placements.push_back({placement.to_world.is_identity(), geometry.flip[i], placement.to_world,
+    w.placements.push_back({placement.to_world.is_identity(), w.materials.is_hair(material_of[i]),
+                            geometry.flip[i], placement.to_world,
                             placement.to_world.inverse().value_or(Transform{})});
     if (!p.shines) continue;
     emitters::AreaEmitter area = make_area_emitter(
@@ -130,6 +137,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   w.info.meshes = meshes;
   w.info.instances = geometry.placements.size();
   w.info.triangles = geometry.triangles;
+  w.info.segments = geometry.segments;
   w.info.unique_triangles = geometry.unique_triangles;
   w.info.textures = w.materials.textures.textures.size();
   w.info.materials = w.materials.materials.size();
@@ -144,7 +152,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
     return w.materials.opacity(static_cast<int>(w.rays->placements()[hit.instance].material), w.uv(hit));
   };
   callbacks.transmittance = [&w](const geometry::Hit& hit, Vec3f direction) {
-    const SurfaceHit at = w.surface(hit);
+    const SurfaceHit at = w.surface(hit, direction);
     return w.materials.transmittance(at.material, at.point, normalize(direction));
   };
   w.rays.emplace(std::move(geometry.meshes), std::move(geometry.placements), std::move(callbacks));
@@ -164,10 +172,12 @@ const WorldInfo& World::info() const { return impl_->info; }
 std::optional<SurfaceHit> World::intersect(const geometry::Ray& ray) const {
   const std::optional<geometry::Hit> hit = impl_->rays->intersect(ray);
   if (!hit) return std::nullopt;
-  return impl_->surface(*hit);
+  return impl_->surface(*hit, ray.direction);
 }
 
-SurfaceHit World::surface(const geometry::Hit& hit, Vec3f) const { return impl_->surface(hit); }
+SurfaceHit World::surface(const geometry::Hit& hit, Vec3f ray_direction) const {
+  return impl_->surface(hit, ray_direction);
+}
 
 Rgb World::emitted(const SurfaceHit& at, Vec3f wo) const {
   if (at.emitter < 0 || !(dot(wo, at.point.ng) > 0)) return Rgb{};
@@ -222,6 +232,7 @@ Vec3f World::offset_origin(Vec3f p, Vec3f ng, Vec3f direction) {
   // the step stays at that of a coordinate of 0.02.
   const float size = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 0.02f});
   const float step = 5e-5f * size;
+  if (ng == Vec3f{}) return p + direction * (step / length(direction));
   return p + ng * (dot(direction, ng) < 0 ? -step : step);
 }
 

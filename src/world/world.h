@@ -23,6 +23,7 @@ struct BuildOptions {
 
 struct WorldInfo {
   std::size_t meshes = 0, instances = 0, triangles = 0, unique_triangles = 0;
+  std::size_t segments = 0;  // of fibres
   std::size_t textures = 0, materials = 0, emitters = 0;
   std::size_t memory_bytes = 0;  // meshes, textures and acceleration structure
 };
@@ -53,7 +54,8 @@ class World {
   const WorldInfo& info() const;
 
   std::optional<SurfaceHit> intersect(const geometry::Ray& ray) const;
-  // The surface point for a known placement, triangle and barycentric coordinates.
+  // The surface point for a known placement, triangle and barycentric coordinates. The direction matters to
+  // fibres only: they are seen all around.
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   // Radiance leaving an emitting hit towards wo (0 on the dark side), texture included.
   Rgb emitted(const SurfaceHit& at, Vec3f wo) const;
@@ -72,7 +74,7 @@ class World {
   emitters::Emission sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const;
 
   // Where a ray from `p` should start so that it does not meet its own surface: offset along ng to the side
-  // of `direction`.
+  // of `direction`. Where ng is zero (Closure::is_fibre()) along `direction`, of any length.
   static Vec3f offset_origin(Vec3f p, Vec3f ng, Vec3f direction);
 
  private:

@@ -110,6 +110,12 @@ BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
   return t;
 }
 
+BsdfCase hair(std::string name, float diffuse, float specular, float exponent) {
+  BsdfCase c = single("hair_" + name, HairMaterial{gray(diffuse), gray(specular), number(exponent)});
+  c.inside_too = c.fibre = true;
+  return c;
+}
+
 std::vector<BsdfCase> build() {
   std::vector<BsdfCase> list;
   list.push_back(single("diffuse", DiffuseMaterial{color(0.8f, 0.5f, 0.2f)}));
@@ -210,6 +216,14 @@ std::vector<BsdfCase> build() {
   coated_principled.set.materials.push_back(layer(kGgx, 0.1f, 1.5f, 0.1f, 0.8f));
   coated_principled.material = 1;
   list.push_back(coated_principled);
+  list.push_back(hair("diffuse", 1, 0, 0));
+  list.push_back(hair("specular_0", 0, 1, 0));
+  list.push_back(hair("specular_3", 0, 1, 3));
+  list.push_back(hair("specular_2000", 0, 1, 2000));
+  list.push_back(hair("brown", 0.4f, 0.2f, 40));
+  list.push_back(
+      nested("mask_hair", HairMaterial{gray(0.3f), gray(0.5f), number(20)}, MaskMaterial{number(0.6f), 0}));
+  list.back().inside_too = list.back().fibre = true;
 
   list.push_back(nested("mask_half", DiffuseMaterial{gray(0.5f)}, MaskMaterial{number(0.5f), 0}));
   list.push_back(nested("mask_plastic", plastic(kGgx, 0.2f, false), MaskMaterial{number(0.7f), 0}));

@@ -66,12 +66,12 @@ TEST(MitsubaAlias, IsASecondName) {
 TEST(MitsubaWarnings, NameTheLineAndWhatIsUsedInstead) {
   const SceneDesc scene =
       parse(kCamera +
-            "\n<shape type=\"hair\"/>\n<bsdf type=\"hair\"/>\n<bsdf type=\"varnish\"><bsdf "
+            "\n<shape type=\"heightfield\"/>\n<bsdf type=\"hair\"/>\n<bsdf type=\"varnish\"><bsdf "
             "type=\"null\"/></bsdf>\n" +
             "<shape type=\"sphere\"><float name=\"raduis\" value=\"2\"/></shape>\n" +
             "<shape type=\"sphere\"><medium name=\"interior\" type=\"homogeneous\"/></shape>");
   ASSERT_EQ(scene.warnings.size(), 5u);
-  const std::pair<int, const char*> expected[] = {{3, "shape \"hair\""},
+  const std::pair<int, const char*> expected[] = {{3, "shape \"heightfield\""},
                                                   {4, "BSDF \"hair\""},
                                                   {5, "BSDF \"varnish\""},
                                                   {6, "did you mean \"radius\"?"},

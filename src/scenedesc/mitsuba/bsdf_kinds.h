@@ -18,6 +18,8 @@ BsdfKind ward(Reader& reader, Plugin& p);
 BsdfKind diffuse_transmitter(Reader& reader, Plugin& p);
 BsdfKind principled(Reader& reader, Plugin& p);
 BsdfKind principled_thin(Reader& reader, Plugin& p);
+BsdfKind hair(Reader& reader, Plugin& p);
+BsdfKind kajiya_kay(Reader& reader, Plugin& p);  // Lumirank's own: "kajiyakay"
 
 BsdfKind coating(Reader& reader, Plugin& p);
 BsdfKind mask(Reader& reader, Plugin& p);

@@ -21,6 +21,8 @@ const std::map<std::string, Builder>& builders() {
       {"principled", principled},
       {"principledthin", principled_thin},
       {"difftrans", diffuse_transmitter},
+      {"hair", hair},
+      {"kajiyakay", kajiya_kay},
       {"coating", coating},
       {"roughcoating", coating},
       {"mask", mask},

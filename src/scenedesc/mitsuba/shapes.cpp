@@ -1,3 +1,4 @@
+#include "scenedesc/mitsuba/curves.h"
 #include "scenedesc/mitsuba/plugin.h"
 
 namespace lumirank::scenedesc::mitsuba {
@@ -67,6 +68,9 @@ int Reader::build_shape(const Element& element, bool in_group) {
     shape.kind = mesh_file(
         *this, p,
         type == "obj" ? MeshFormat::obj : (type == "ply" ? MeshFormat::ply : MeshFormat::serialized));
+  } else if (type == "bsplinecurve" || type == "linearcurve" || type == "hair") {
+    shape.to_world = p.regular_transform();
+    shape.kind = curves(*this, p, shape.to_world);
   } else if (type == "rectangle") {
     shape.kind = RectangleDesc{};
   } else if (type == "cube") {

@@ -46,10 +46,10 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const 
             ? kRowLambertian
             : static_cast<std::uint16_t>(kRowScatter + forms.of_recipe(receivers.closures.recipe(closure)));
   }
-  const bool some_transmit = forms.some_transmit();
+  const bool some_two_sided = forms.some_two_sided();
   store.plan = TilePlan::build(kinds, kRowTile);
   store.groups.assign(store.plan.groups(), empty_group<RowGroup>());
-  if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
+  if (some_two_sided) store.two_sided.assign(store.plan.item.size(), 0);
   if (with_keys) store.key.assign(store.plan.item.size(), 0);
 
   parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
@@ -59,8 +59,11 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const 
       float* to = store.at(slot);
       const Vec3f wo = receivers.wo[i];
       const float side = dot(receivers.normal[i], wo) < 0 ? -1.0f : 1.0f;
-      const Vec3f n = receivers.normal[i] * side, ng = receivers.ng[i] * side;
+      Vec3f n = receivers.normal[i] * side, ng = receivers.ng[i] * side;
       const bool lambertian = kinds[i] == kRowLambertian;
+      const Sides sides =
+          lambertian ? Sides::front : forms[static_cast<std::uint16_t>(kinds[i] - kRowScatter)].sides;
+      if (sides == Sides::fibre) n = receivers.closure_at(i).frame.s;
       const bool black =
           lambertian ? max_component(receivers.albedo[i]) <= 0
                      : receivers.closures.lobes(receivers.closures.recipe(receivers.closure[i])).empty();
@@ -69,10 +72,10 @@ RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const 
       if (lambertian) {
         const Rgb f = receivers.albedo[i] * kInvPi;
         write3(to + 12 * 16, {f.r, f.g, f.b});
-      } else if (some_transmit) {
-        store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[i] - kRowScatter)].transmits;
+      } else if (some_two_sided) {
+        store.two_sided[slot] = sides != Sides::front;
       }
-      if (black || !answers(n, ng, wo)) continue;
+      if (black || (sides != Sides::fibre && !answers(n, ng, wo))) continue;
       // Lobes have a roughness of 1 at most: above it, all direct light is traced.
       const bool direct_elsewhere = settings.traced_direct_below > 1;
       to[15 * 16] = direct_elsewhere ? 1.0f : 0.0f;
@@ -88,7 +91,7 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms,
   ColumnStore store;
   const std::size_t count = lights.size();
   std::vector<std::uint16_t> kinds(count);
-  const bool some_transmit = forms.some_transmit();
+  const bool some_two_sided = forms.some_two_sided();
   for (std::size_t j = 0; j < count; ++j) {
     switch (lights.kind[j]) {
       case LightKind::omni:
@@ -113,7 +116,7 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms,
   }
   store.plan = TilePlan::build(kinds, kColumnTile);
   store.groups.assign(store.plan.groups(), empty_group<ColumnGroup>());
-  if (some_transmit) store.two_sided.assign(store.plan.item.size(), 0);
+  if (some_two_sided) store.two_sided.assign(store.plan.item.size(), 0);
   if (with_keys) store.key.assign(store.plan.item.size(), 0);
 
   parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
@@ -136,14 +139,17 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms,
         if (dot(n, wo) < 0) n = -n, ng = -ng;
         target = world::World::offset_origin(p, ng, n);
         const bool lambertian = lights.closure[j] == VirtualLights::kLambertian;
-        if (!answers(n, ng, wo) ||
+        const Sides sides =
+            lambertian ? Sides::front : forms[static_cast<std::uint16_t>(kinds[j] - kColumnScatter)].sides;
+        if (sides == Sides::fibre) n = lights.closure_at(j).frame.s;
+        if ((sides != Sides::fibre && !answers(n, ng, wo)) ||
             (!lambertian && lights.closures.lobes(lights.closures.recipe(lights.closure[j])).empty()))
           power = Rgb(0);
         if (lambertian) {
           power *= lights.albedo[j] * kInvPi;
           area *= max_component(lights.albedo[j]);
-        } else if (some_transmit) {
-          store.two_sided[slot] = forms[static_cast<std::uint16_t>(kinds[j] - kColumnScatter)].transmits;
+        } else if (some_two_sided) {
+          store.two_sided[slot] = sides != Sides::front;
         }
       }
       if (kind == LightKind::surface && lights.spherical()) {

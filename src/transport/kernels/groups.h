@@ -15,14 +15,15 @@
 namespace lumirank::transport {
 
 struct RowGroup {
-  Lane3 p, n, ng;             // position; shading and geometric normal, both on the side of wo
+  // Position; shading and geometric normal, both on the side of wo. Fibres: n is the tangent, ng zero.
+  Lane3 p, n, ng;
   Lane3 origin;               // where shadow rays start
   Lane3 f;                    // lambertian receivers: albedo/π
   Lane depth_min, depth_max;  // light depths that may shine here
 };
 
 struct ColumnGroup {
-  Lane3 p, n, ng;
+  Lane3 p, n, ng;   // as in RowGroup
   Lane3 target;     // where shadow rays end; directional: the direction towards the light
   Lane3 power;      // oriented, omni, spot, directional: as in VirtualLights; lambertian surface:
                     // Φ·albedo/π; other surface lights: Φ
@@ -63,7 +64,7 @@ struct GroupStore {
   TilePlan plan;
   std::vector<Group> groups;
   std::vector<std::uint8_t>
-      two_sided;  // slot: transmits, so the ray's side depends on its direction; empty: none
+      two_sided;  // slot: not Sides::front, so where the ray starts depends on its direction; empty: none
 
   std::vector<std::uint32_t> key;  // slot: what random numbers belong to; empty where none are needed
 

@@ -184,11 +184,11 @@ PairExtras PairBlock::extras(std::uint16_t row_kind, std::uint16_t column_kind) 
   extras.clamp = sphere ? bound_ : std::min(context_.clamp, bound_);
   extras.spheres = &context_.spheres;
   if (row_kind >= kRowScatter)
-    extras.row_transmits =
-        (*context_.row_scatter.forms)[static_cast<std::uint16_t>(row_kind - kRowScatter)].transmits;
+    extras.row_sides =
+        (*context_.row_scatter.forms)[static_cast<std::uint16_t>(row_kind - kRowScatter)].sides;
   if (column_kind >= kColumnScatter)
-    extras.column_transmits =
-        (*context_.column_scatter.forms)[static_cast<std::uint16_t>(column_kind - kColumnScatter)].transmits;
+    extras.column_sides =
+        (*context_.column_scatter.forms)[static_cast<std::uint16_t>(column_kind - kColumnScatter)].sides;
   return extras;
 }
 

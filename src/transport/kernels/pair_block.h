@@ -29,7 +29,7 @@ struct PairContext {
   SphereBackground spheres;
   bool has_smooth;  // rays need transmittances
   bool has_directional;
-  bool has_two_sided;  // some surface shines through, see GroupStore::two_sided
+  bool has_two_sided;  // some surface shines through or is a fibre, see GroupStore::two_sided
 };
 
 // What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.

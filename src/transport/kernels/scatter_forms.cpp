@@ -43,7 +43,8 @@ ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
   ScatterForm form;
   form.in_lanes = std::all_of(lobes.begin(), lobes.end(), has_lane_code);
   for (const scatter::Lobe& lobe : lobes) {
-    form.transmits = form.transmits || scatter::shines_through(lobe.kind);
+    if (scatter::shines_through(lobe.kind)) form.sides = Sides::both;
+    if (scatter::is_hair(lobe.kind)) form.sides = Sides::fibre;
     const bool coated = static_cast<bool>(lobe.coat);
     form.microfacets = form.microfacets || (needs_half_vector(lobe.kind) && !coated);
     form.anisotropic = form.anisotropic || is_anisotropic(lobe);
@@ -68,8 +69,9 @@ ScatterForms::ScatterForms(const ClosurePool& pool) {
   }
 }
 
-bool ScatterForms::some_transmit() const {
-  return std::any_of(forms_.begin(), forms_.end(), [](const ScatterForm& form) { return form.transmits; });
+bool ScatterForms::some_two_sided() const {
+  return std::any_of(forms_.begin(), forms_.end(),
+                     [](const ScatterForm& form) { return form.sides != Sides::front; });
 }
 
 }  // namespace lumirank::transport

@@ -18,13 +18,20 @@ struct LobeForm {
   friend bool operator==(const LobeForm&, const LobeForm&) = default;
 };
 
+// From where light matters.
+enum class Sides : std::uint8_t {
+  front,
+  both,   // some lobe shines through the surface
+  fibre,  // all around, and the sine of the angle to the tangent takes the place of the cosine
+};
+
 struct ScatterForm {
   std::vector<LobeForm> lobes;
   bool in_lanes = false;  // there is vectorised code for all lobes; otherwise scatter::eval_f, lane by lane
   bool microfacets = false;  // some lobe needs the half vector
   bool anisotropic = false;  // some lobe needs the tangent
   bool coated = false;       // some lobe has a coat
-  bool transmits = false;    // some lobe shines through the surface
+  Sides sides = Sides::front;
   friend bool operator==(const ScatterForm&, const ScatterForm&) = default;
 };
 
@@ -35,7 +42,8 @@ class ScatterForms {
   std::uint16_t of_recipe(std::uint32_t recipe) const { return form_of_recipe_[recipe]; }
   const ScatterForm& operator[](std::uint16_t form) const { return forms_[form]; }
   std::size_t size() const { return forms_.size(); }
-  bool some_transmit() const;
+  // Not all are Sides::front: rays start on the side to which they go.
+  bool some_two_sided() const;
 
  private:
   std::vector<ScatterForm> forms_;

@@ -1,0 +1,88 @@
+// Kajiya and Kay's hair (1989, section "A new lighting model for hair"): a diffuse part in proportion to the
+// sine of the angle between fibre and light, and a specular part about the cone of mirror directions. Theirs
+// makes energy; here both are normalised and reciprocal.
+//
+// Local x runs along the fibre. For a direction w, x = w·x is the sine of its latitude φ and c = √(1 - x²)
+// the sine of its angle to the fibre, which is also the share of the fibre's width that light along w meets.
+// So the cosine of a surface is replaced by c: radiance = ∫ f·L·c dω, and of the light from wi a fibre sends
+// on the share ∫ f·c dω ≤ 1 (Marschner et al. 2003, section 3).
+//
+// diffuse   f = color/π²: ∫ c dω = 2π·∫cos²φ dφ = π², so the share is exactly the colour.
+// specular  f = color · cosⁿ(φo + φi) / (2π·W(n)·max(co, ci)²), W(n) = ∫ cosⁿδ dδ over ±π/2; 0 beyond 90°.
+//           The share is ∫ cosⁿ(δ)/W · co²/max(co, ci)² dδ ≤ 1, symmetric in wo and wi, and near 1 for sharp
+//           lobes but at grazing light. (Kajiya and Kay have neither normalisation nor denominator.)
+#include <cmath>
+
+#include "scatter/lobe.h"
+
+namespace lumirank::scatter {
+namespace {
+
+constexpr float kInvPi2 = kInvPi * kInvPi;
+
+// c² never counts as less: f grows like 1/c².
+constexpr float kLeastSine2 = 1e-8f;
+
+// Not 1 - x²: near the fibre that difference has no digits left.
+float sine2(Vec3f w) { return std::max(kLeastSine2, w.y * w.y + w.z * w.z); }
+float latitude(Vec3f w) { return std::atan2(w.x, std::sqrt(w.y * w.y + w.z * w.z)); }
+
+// cos(φo + φi), at least 0.
+float off_mirror(float xo, float co, float xi, float ci) { return std::max(0.0f, co * ci - xo * xi); }
+
+// Draws of the specular lobe follow a logistic distribution of δ = φo + φi, cut to the latitudes there are.
+// It is nearly the shape of cosⁿ: a normal distribution of variance 1/(n + 1) for large n, whose width is
+// 1/0.6 logistic scales.
+struct Logistic {
+  float scale, lo, hi;  // hi and lo: of the distribution function
+  Logistic(float exponent, float phi) {
+    scale = 0.6f / std::sqrt(exponent + 1);
+    lo = cdf(std::max(-kPi / 2, phi - kPi / 2));
+    hi = cdf(std::min(kPi / 2, phi + kPi / 2));
+  }
+  float cdf(float delta) const { return 1 / (1 + std::exp(-delta / scale)); }
+  float density(float delta) const {
+    const float e = std::exp(-std::abs(delta) / scale);
+    return e / (scale * square(1 + e) * (hi - lo));
+  }
+  float draw(float u) const {
+    const float p = std::clamp(lo + u * (hi - lo), 1e-7f, 1 - 1e-7f);
+    return scale * std::log(p / (1 - p));
+  }
+};
+
+}  // namespace
+
+float hair_specular_scale(float exponent) {
+  // W(n) = √π·Γ((n + 1)/2)/Γ(n/2 + 1)
+  const float log_w = std::lgamma((exponent + 1) / 2) - std::lgamma(exponent / 2 + 1);
+  return 1 / (2 * kPi * std::sqrt(kPi) * std::exp(log_w));
+}
+
+float fibre_sine(Vec3f w) { return std::sqrt(w.y * w.y + w.z * w.z); }
+
+Rgb hair_diffuse_value(const Lobe& lobe) { return lobe.color * kInvPi2; }
+
+Rgb hair_specular_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+  const float so = sine2(wo), si = sine2(wi);
+  const float c = off_mirror(wo.x, std::sqrt(so), wi.x, std::sqrt(si));
+  if (c <= 0) return Rgb(0);
+  return lobe.color * (lobe.alpha_v * std::pow(c, lobe.alpha_u) / std::max(so, si));
+}
+
+float hair_specular_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+  const float phi_o = latitude(wo), delta = phi_o + latitude(wi);
+  if (std::abs(delta) >= kPi / 2) return 0;
+  return Logistic(lobe.alpha_u, phi_o).density(delta) / (2 * kPi * std::sqrt(sine2(wi)));
+}
+
+bool hair_specular_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi) {
+  const float phi_o = latitude(wo);
+  const float phi_i = Logistic(lobe.alpha_u, phi_o).draw(u.x) - phi_o;
+  const float c = std::cos(phi_i), azimuth = 2 * kPi * u.y;
+  if (!(c > 0)) return false;
+  wi = {std::sin(phi_i), c * std::cos(azimuth), c * std::sin(azimuth)};
+  return true;
+}
+
+}  // namespace lumirank::scatter

@@ -1,0 +1,85 @@
+// Curves and hair: Mitsuba 3's curve shapes and its "hair" BSDF, 0.6's "hair" shape, and the BSDF
+// "kajiyakay", which only Lumirank has.
+#include "scenedesc/hair.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "scenedesc/mitsuba/bsdf_kinds.h"
+#include "scenedesc/mitsuba/curves.h"
+#include "scenedesc/mitsuba/ior.h"
+
+namespace lumirank::scenedesc::mitsuba {
+
+namespace {
+
+float share(Plugin& p, const std::string& name, float fallback) {
+  const float value = p.number(name, fallback);
+  if (!(value >= 0 && value <= 1))
+    throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is not between 0 and 1");
+  return value;
+}
+
+float amount(Plugin& p, const std::string& name, float fallback) {
+  const float value = p.number(name, fallback);
+  if (!(value >= 0)) throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is negative");
+  return value;
+}
+
+std::string show(Rgb c) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.3g, %.3g, %.3g)", c.r, c.g, c.b);
+  return text;
+}
+
+}  // namespace
+
+BsdfKind hair(Reader& reader, Plugin& p) {
+  const bool pigments = p.has("eumelanin") || p.has("pheomelanin");
+  if (p.has("sigma_a") && pigments)
+    throw InputError(p.where_of("sigma_a"), p.title() + " has both \"sigma_a\" and pigments",
+                     "keep one of them");
+  Rgb sigma_a = hair_absorption(amount(p, "eumelanin", 1.3f), amount(p, "pheomelanin", 0.2f));
+  if (p.has("sigma_a")) {
+    sigma_a = p.constant_color("sigma_a", Rgb(0), Intent::emission) * amount(p, "scale", 1);
+    if (sigma_a.r < 0 || sigma_a.g < 0 || sigma_a.b < 0)
+      throw InputError(p.where_of("sigma_a"), "\"sigma_a\" of " + p.title() + " is negative");
+  }
+  const float eta = relative_index(p, "amber");
+  const HairDesc out = hair_from_absorption(sigma_a, eta, share(p, "longitudinal_roughness", 0.3f));
+  share(p, "azimuthal_roughness", 0.3f);
+  p.ignore({"scale", "scale_tilt"});
+  char exponent[32];
+  std::snprintf(exponent, sizeof exponent, "%.3g", out.exponent.value);
+  reader.warn(p.where(), "the BSDF \"hair\"",
+              "Kajiya-Kay hair of the same brightness: diffuse " + show(out.diffuse_reflectance.value) +
+                  ", specular " + show(out.specular_reflectance.value) + ", exponent " + exponent);
+  return out;
+}
+
+BsdfKind kajiya_kay(Reader&, Plugin& p) {
+  HairDesc out;
+  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.4f));
+  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(0.1f));
+  out.exponent = p.scalar("exponent", 40);
+  if (out.exponent.texture == kNone && !(out.exponent.value >= 0))
+    throw InputError(p.where_of("exponent"), "\"exponent\" of " + p.title() + " is negative");
+  return out;
+}
+
+CurvesDesc curves(Reader& reader, Plugin& p, const Transform& to_world) {
+  CurvesDesc out;
+  out.basis = p.type() == "bsplinecurve" ? CurvesDesc::Basis::bspline : CurvesDesc::Basis::linear;
+  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "curve file");
+  if (p.type() != "hair") return out;
+  // World units, whatever to_world does to the file's points.
+  out.file_radius = p.positive("radius", 0.025f) /
+                    static_cast<float>(std::cbrt(std::max(1e-30, std::abs(to_world.determinant3()))));
+  // Segments that hardly bend are merged there: no picture shows it.
+  p.ignore({"angle_threshold"});
+  if (const float reduction = share(p, "reduction", 0); reduction > 0)
+    reader.warn(p.where_of("reduction"), "the \"reduction\" of hair", "all of it");
+  return out;
+}
+
+}  // namespace lumirank::scenedesc::mitsuba

@@ -1,0 +1,45 @@
+// Points of fibres. What the tracer meets is a ribbon that faces the ray; shading sees a round thread.
+#include <cmath>
+
+#include "world/impl.h"
+
+namespace lumirank::world {
+namespace {
+
+Vec3f unit_or(Vec3f v, Vec3f fallback) {
+  const float len = length(v);
+  return len > 0 && std::isfinite(len) ? v / len : fallback;
+}
+
+}  // namespace
+
+// Hair is as thin as a line for all light: its vertices lie on the axis, whichever way they are seen, so that
+// a path is the same traced from either end. Other BSDFs have the surface of the thread, with its normal.
+scatter::SurfacePoint World::Impl::fibre_surface(const geometry::Hit& hit, Vec3f ray_direction) const {
+  const PlacementData& data = placements[hit.instance];
+  geometry::FibrePoint at =
+      geometry::fibre_point(rays->meshes()[hit.mesh].fibres, hit.triangle, hit.barycentric.x);
+  if (!data.identity) {
+    at.axis = data.to_world.point(at.axis);
+    at.along = unit_or(data.to_world.vector(at.along), at.along);
+    at.tangent = unit_or(data.to_world.vector(at.tangent), at.along);
+    at.radius *= static_cast<float>(std::cbrt(std::abs(data.to_world.determinant3())));
+  }
+  scatter::SurfacePoint point;
+  point.uv.uv = {at.parameter, 0.5f + 0.5f * hit.barycentric.y};
+  point.dpdu = at.tangent;
+  // Across and towards the ray, as Hit says.
+  const Vec3f sideways = unit_or(cross(at.along, -ray_direction), Frame::from_normal(at.along).s);
+  const Vec3f towards = cross(sideways, at.along);
+  const float y = hit.barycentric.y;
+  const Vec3f n = data.hair ? towards : towards * std::sqrt(std::max(0.0f, 1 - y * y)) + sideways * y;
+  point.position = data.hair ? at.axis : at.axis + n * at.radius;
+  point.ng = data.hair ? Vec3f{} : n;
+  // The shading normal stays perpendicular to the interpolated tangent.
+  const Vec3f bent = unit_or(n - at.tangent * dot(n, at.tangent), n);
+  point.shading = Frame::from_normal_tangent(bent, at.tangent);
+  point.dpdv = point.shading.t;
+  return point;
+}
+
+}  // namespace lumirank::world
