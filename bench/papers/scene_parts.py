@@ -3,7 +3,9 @@
 Units are metres, +y is up. Every mesh has texture coordinates, because the direction of brushing of an anisotropic metal is that of u.
 """
 import math
+import pathlib
 import struct
+import sys
 
 
 def add(a, b):
@@ -215,7 +217,7 @@ class Scene:
         origin, target = camera
         self.meshes = {}
         self.lines = [
-            f"<!-- {comment} Written by make_glossy_scenes.py. -->",
+            f"<!-- {comment} Written by {pathlib.Path(sys.argv[0]).name}. -->",
             '<scene version="3.0.0">',
             f'\t<integrator type="path"><integer name="max_depth" value="{depth}"/></integrator>',
             '\t<sensor type="perspective">',

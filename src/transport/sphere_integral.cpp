@@ -28,8 +28,11 @@ SphereCone sphere_cone(Vec3f n, Vec3f w, float radius) {
 Rgb sphere_integrand(const SphereEnds& ends, Vec3f l) {
   const float slope = dot(ends.ng, l), height = dot(ends.ng, ends.w);
   float indicator = std::abs(slope);
-  if (slope * height <= 0) return Rgb(0);
-  if (ends.disc) {
+  if (ends.y.is_fibre()) {
+    indicator = ends.y.cosine(l);
+  } else if (slope * height <= 0) {
+    return Rgb(0);
+  } else if (ends.disc) {
     if (!(length_squared(l * (height / slope) - ends.w) < ends.radius * ends.radius)) return Rgb(0);
     indicator = 1;
   }

@@ -63,6 +63,7 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t j = which[k];
       lights.radius[j] = which.size() > 1 ? sphere_radius(distance2[k], scale, largest) : largest;
+      if (lights.ng[j] == Vec3f{}) continue;  // a fibre has no tangent plane
       Rng rng(0, Stage::spheres, j);
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);
     }

@@ -198,7 +198,16 @@ def gltf():
     write_json("draco.gltf", draco)
 
 
+def curves():
+    # The first byte: basis (0 b-spline, 1 bezier, 2 linear), plus 4 where the radius is given from outside.
+    write("curves", "bspline", "\0" + "0 0 0 .1\n1 0 0 .1\n2 1 0 .1\n3 1 0 0\n4 0 0 1e-3\n")
+    write("curves", "bezier", "\1" + "0 0 0 1\n1 0 0 1\n2 0 0 1\n3 0 0 1\n\n0 0 0 1\n1 0 0 1\n2 0 0 1\n3 0 0 1\n")
+    write("curves", "linear", "\6" + "0 0 0\n1 0 0\n\n -1 +2 3e1\r\n4 5 6")
+    write("curves", "binary", b"\6BINARY_HAIR" + struct.pack("<I13f", 4, float("inf"), 0, 0, 0, 1, 0, 0, float("inf"), 0, 1, 0, 0, 2) + struct.pack("<f", 0))
+
+
 def main():
+    curves()
     obj()
     ply()
     serialized()

@@ -29,7 +29,7 @@ LobeCone lobe_cone(std::span<const scatter::Lobe> lobes) {
       cone.alpha_u = along_u ? most : least, cone.alpha_v = along_u ? least : most;
     }
     reach = std::max(reach, std::min(kPi, kReach * most));
-    anywhere = anywhere || scatter::shines_through(lobe.kind);
+    anywhere = anywhere || scatter::shines_through(lobe.kind) || scatter::is_hair(lobe.kind);
   }
   if (anywhere) reach = kPi;
   cone.per_solid_angle = reach > 0 ? 1 / (4 * kPi * sharpest) : 0;

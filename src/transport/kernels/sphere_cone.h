@@ -35,14 +35,16 @@ inline SphereGeometry sphere_geometry(const RowGroup& r, const ColumnGroup& c, c
   const Lane reach = c.radius * splat(extras.spheres->rules.beyond);
   at.alive &= at.d2 >= reach * reach;
   // The centre must be seen past both surfaces, and some of the cone past the shading normals' horizons.
-  if (row_kind == kRowLambertian || !extras.row_transmits)
+  if (row_kind == kRowLambertian || extras.row_sides == Sides::front)
     at.alive &= (dot(r.ng, at.w) > Lane{}) & (dot(r.n, at.w) > -c.radius);
-  if (column_kind == kColumnSphere || !extras.column_transmits)
+  if (column_kind == kColumnSphere || extras.column_sides == Sides::front)
     at.alive &= (dot(c.ng, at.w) < Lane{}) & (dot(c.n, at.w) < c.radius);
   const Lane r2 = c.radius * c.radius;
   at.inside = at.d2 <= r2;
   at.disc = at.d2 < r2 * splat(kDiscReach * kDiscReach);
   if (extras.spheres->rules.indicator == SphereRules::Indicator::cosine) at.disc = LaneMask{};
+  // A fibre has no tangent plane.
+  if (column_kind == kColumnScatterSphere && extras.column_sides == Sides::fibre) at.disc = LaneMask{};
   return at;
 }
 

@@ -14,7 +14,7 @@ struct SphereCounts {
 
 // Whether directions of the lobes of a group can be drawn in lanes.
 inline bool follows_lobes(const ScatterGroup& group) {
-  return group.form->in_lanes && !group.form->transmits;
+  return group.form->in_lanes && group.form->sides == Sides::front;
 }
 
 // Half vectors distributed like the normals of GGX with the roughness of a closure's sharpest lobe: their
@@ -87,20 +87,28 @@ struct SphereIntegrand {
   const PairExtras& extras;
   const SphereGeometry& at;
   Lane height, r2;
+  bool row_fibre, column_fibre;
 
   SphereIntegrand(const RowGroup& r_, const ColumnGroup& c_, const PairExtras& extras_,
                   const SphereGeometry& at_)
-      : r(r_), c(c_), extras(extras_), at(at_), height(dot(c.ng, at.w)), r2(c.radius * c.radius) {}
+      : r(r_),
+        c(c_),
+        extras(extras_),
+        at(at_),
+        height(dot(c.ng, at.w)),
+        r2(c.radius * c.radius),
+        row_fibre(scattering_row && extras.row_sides == Sides::fibre),
+        column_fibre(scattering_column && extras.column_sides == Sides::fibre) {}
 
   // sum += f_x cosθx f_y I · scale() at the direction l where `wanted`, f_x or f_y left out where lambertian.
   template <typename Scale>
   void add(Lane3& sum, const Lane3& l, LaneMask wanted, Scale&& scale) const {
     const Lane zero{};
-    const Lane slope = dot(c.ng, l);
-    LaneMask lit = wanted & (slope * height > zero);
+    const Lane slope = column_fibre ? fibre_sine(c.n, l) : dot(c.ng, l);
+    LaneMask lit = column_fibre ? wanted : wanted & (slope * height > zero);
     const Lane3 off = l * (height / select(lit, slope, splat(1))) - at.w;
     lit &= ~at.disc | (dot(off, off) < r2);
-    const Lane cos_x = dot(r.n, l);
+    const Lane cos_x = row_fibre ? fibre_sine(r.n, l) : dot(r.n, l);
     if constexpr (!scattering_row) lit &= (cos_x > zero) & (dot(r.ng, l) > zero);
     if constexpr (!scattering_column) lit &= dot(c.n, l) < zero;
     if (bits(lit) == 0) return;
