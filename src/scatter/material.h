@@ -136,8 +136,8 @@ struct MixtureMaterial {
 using Material =
     std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
-                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, HairMaterial, MaskMaterial,
-                 TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
+                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, HairMaterial,
+                 MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

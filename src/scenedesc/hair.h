@@ -10,9 +10,9 @@ namespace lumirank::scenedesc {
 Rgb hair_absorption(float eumelanin, float pheomelanin);
 
 // For the model of Marschner et al. 2003 in the parameters of Chiang et al. 2016: absorption `sigma_a` per
-// radius, relative index `eta`, longitudinal roughness `beta_m` in [0, 1]. At light across the fibre the result
-// has the same share of energy, split alike: what is reflected at the surface is specular, with an exponent of
-// the same width, and what has been inside is diffuse.
+// radius, relative index `eta`, longitudinal roughness `beta_m` in [0, 1]. At light across the fibre the
+// result has the same share of energy, split alike: what is reflected at the surface is specular, with an
+// exponent of the same width, and what has been inside is diffuse.
 HairDesc hair_from_absorption(Rgb sigma_a, float eta, float beta_m);
 
 }  // namespace lumirank::scenedesc

@@ -236,7 +236,7 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
   const ScatterForm& form = *group.form;
   const Lane cos_i = dot(group.n, wi);
   const LaneMask lit = group.answers & (cos_i > splat(kGrazing)) & (dot(group.ng, wi) > kZero);
-  const Lane3 behind = form.transmits ? eval_behind(group, wi, cos_i, direct) : black();
+  const Lane3 behind = form.sides == Sides::both ? eval_behind(group, wi, cos_i, direct) : black();
   if (bits(lit) == 0) return behind;
   Lane3 f = black();
 
