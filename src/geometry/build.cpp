@@ -41,6 +41,18 @@ void validate(const TriangleMesh& mesh, std::size_t k) {
   throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
 }
 
+// In world space. An instance keeps its radii and turns rays into its own space, so what counts is by how
+// much it lengthens most; what has been moved has its radii changed as Fibres::transform() says, which is
+// less.
+float widest_radius(const Fibres& fibres, const Transform& to_world) {
+  float widest = 0;
+  for (const Fibres::Point& p : fibres.points) widest = std::max(widest, p.radius);
+  float squares = 0;
+  for (const Vec3f& axis : {Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}})
+    squares += length_squared(to_world.vector(axis));
+  return to_world.is_identity() ? widest : widest * std::sqrt(squares);
+}
+
 bool is_affine(const Transform& t) {
   return t.m[12] == 0 && t.m[13] == 0 && t.m[14] == 0 && t.m[15] == 1 && t.is_finite();
 }
@@ -96,6 +108,7 @@ embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Tr
 embree::Geometry RayScene::Impl::fibres_of(const Fibres& fibres, const Transform* baked) {
   embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE));
   const std::size_t n = fibres.points.size();
+  const Fibres::Point* points = fibres.points.data();
   if (baked) {
     auto* out = static_cast<Fibres::Point*>(rtcSetNewGeometryBuffer(
         geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Fibres::Point), n));
@@ -103,12 +116,17 @@ embree::Geometry RayScene::Impl::fibres_of(const Fibres& fibres, const Transform
     Fibres moved = fibres;
     moved.transform(*baked);
     std::copy(moved.points.begin(), moved.points.end(), out);
+    points = out;
   } else {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                fibres.points.data(), 0, sizeof(Fibres::Point), n);
   }
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
                              fibres.segments.data(), 0, sizeof(std::uint32_t), fibres.segments.size());
+  traced.push_back({&fibres, points});
+  rtcSetGeometryUserData(geometry.get(), &traced.back());
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_fibre_caps);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_fibre_caps);
   return geometry;
 }
 
@@ -155,6 +173,7 @@ void RayScene::Impl::build(std::size_t flatten_limit) {
     const Placement& p = placements[k];
     const TriangleMesh& mesh = meshes[p.mesh];
     if (mesh.empty()) continue;
+    if (!mesh.fibres.empty()) run_up = std::max(run_up, 2.1f * widest_radius(mesh.fibres, p.to_world));
     embree::Scene& top = p.blocking == Blocking::smooth ? smooth : blocking;
     if (!top) top = new_scene();
     const auto id = static_cast<unsigned>(k);

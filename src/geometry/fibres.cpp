@@ -7,7 +7,7 @@
 namespace lumirank::geometry {
 namespace {
 
-constexpr float kTurnPerSegment = 10 * kPi / 180;
+constexpr float kTurnPerSegment = 5 * kPi / 180;
 constexpr int kMostSegments = 24;
 
 struct Cubic {  // Bernstein form
@@ -150,10 +150,10 @@ FibrePoint fibre_point(const Fibres& fibres, std::uint32_t segment, float u) {
   out.parameter = lerp(fibres.parameter[i], fibres.parameter[i + 1], u);
   out.along = out.tangent = unit_or(b.position - a.position, {0, 0, 1});
   if (!fibres.smooth) return out;
-  const bool goes_on = segment + 1 < fibres.segments.size() && fibres.segments[segment + 1] == i + 1;
-  const bool came_from = segment > 0 && fibres.segments[segment - 1] + 1 == i;
-  const Vec3f at_a = came_from ? unit_or(b.position - fibres.points[i - 1].position, out.along) : out.along;
-  const Vec3f at_b = goes_on ? unit_or(fibres.points[i + 2].position - a.position, out.along) : out.along;
+  const Vec3f at_a =
+      fibres.follows(segment) ? unit_or(b.position - fibres.points[i - 1].position, out.along) : out.along;
+  const Vec3f at_b =
+      fibres.goes_on(segment) ? unit_or(fibres.points[i + 2].position - a.position, out.along) : out.along;
   out.tangent = unit_or(lerp(at_a, at_b, u), out.along);
   return out;
 }

@@ -2,7 +2,9 @@
 // as.
 //
 // A fibre is a ribbon that turns its face to every ray (Embree's flat curves): as wide as the round thread, a
-// third of the cost, and without an inside in which a ray could be caught.
+// third of the cost, and without an inside in which a ray could be caught. It is cut off straight at both
+// ends of a curve, so that all around it shows 2∫r·sinθ dl, θ the angle between fibre and view, and is
+// rounded on the outer side of its bends.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +28,13 @@ struct Fibres {
   bool smooth = false;                  // tangents are interpolated between segments
 
   bool empty() const { return segments.empty(); }
+  // Another segment of the same curve ends where this one begins, or begins where it ends.
+  bool follows(std::uint32_t segment) const {
+    return segment > 0 && segments[segment - 1] + 1 == segments[segment];
+  }
+  bool goes_on(std::uint32_t segment) const {
+    return segment + std::size_t{1} < segments.size() && segments[segment + 1] == segments[segment] + 1;
+  }
   double area() const;  // of the round threads
   Bounds3f bounds() const;
   void transform(const Transform& t);  // radii by the cube root of the volume's change
@@ -35,7 +44,7 @@ enum class CurveBasis { bspline, bezier, linear };
 
 // Cuts curves into straight segments. `first`: where each curve begins, and the number of points at the end;
 // a cubic b-spline needs at least 4 points, a bezier curve 3k + 1, a polyline 2 (InternalError otherwise). A
-// cubic piece gets as many segments as it turns by 10°, 24 at most. Segments without length are left out.
+// cubic piece gets as many segments as it turns by 5°, 24 at most. Segments without length are left out.
 Fibres make_fibres(CurveBasis basis, std::span<const Vec3f> points, std::span<const float> radii,
                    std::span<const std::uint32_t> first);
 

@@ -10,11 +10,13 @@
 namespace lumirank::geometry {
 namespace {
 
-RTCRay to_embree(const Ray& ray) {
+// The ray with `start` added to all distances along it, and its origin as far behind.
+RTCRay to_embree(const Ray& ray, float start) {
   RTCRay r;
-  r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
+  const Vec3f origin = start > 0 ? ray.origin - ray.direction * start : ray.origin;
+  r.org_x = origin.x, r.org_y = origin.y, r.org_z = origin.z;
   r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
-  r.tnear = ray.t_min, r.tfar = ray.t_max;
+  r.tnear = ray.t_min + start, r.tfar = ray.t_max + start;
   r.time = 0, r.mask = 0xffffffffu, r.id = 0, r.flags = 0;
   return r;
 }
@@ -28,6 +30,23 @@ bool can_trace(const RTCRay& r) {
   for (const float x : {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z})
     good &= std::abs(x) <= kLargest;
   return good && r.tnear >= 0 && r.tnear <= r.tfar;
+}
+
+// In units of the ray's direction, see RayScene::Impl::run_up.
+float start_of(const RayScene::Impl& scene, Vec3f direction) {
+  if (!(scene.run_up > 0)) return 0;
+  const float start = scene.run_up / length(direction);
+  return std::isfinite(start) ? start : 0.0f;
+}
+
+void run_up(const RayScene::Impl& scene, RTCRay16& rays) {
+  for (unsigned k = 0; k < 16; ++k) {
+    const float start = start_of(scene, {rays.dir_x[k], rays.dir_y[k], rays.dir_z[k]});
+    rays.org_x[k] -= rays.dir_x[k] * start;
+    rays.org_y[k] -= rays.dir_y[k] * start;
+    rays.org_z[k] -= rays.dir_z[k] * start;
+    rays.tnear[k] += start, rays.tfar[k] += start;
+  }
 }
 
 Ray segment(const ShadowPacket& p, int k) {
@@ -93,6 +112,7 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
                      int{rays.tfar[k] >= kShadowEpsilon};
     valid[k] = good ? packet.valid[k] : 0;
   }
+  if (context.scene->run_up > 0) run_up(*context.scene, rays);
   embree::occluded16(valid, scene, context.embree, rays, context.scene->parts.empty());
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k) visible |= (unsigned{valid[k] != 0} & unsigned{rays.tfar[k] >= 0}) << k;
@@ -121,14 +141,15 @@ std::size_t RayScene::memory_bytes() const { return static_cast<std::size_t>(imp
 
 std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   RTCRayHit query;
-  query.ray = to_embree(ray);
+  const float start = start_of(*impl_, ray.direction);
+  query.ray = to_embree(ray, start);
   if (!can_trace(query.ray)) return std::nullopt;
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   closest(impl_->blocking.get(), query);
   if (impl_->smooth) closest(impl_->smooth.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   Hit hit;
-  hit.t = query.ray.tfar;
+  hit.t = query.ray.tfar - start;
   hit.instance = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
   hit.mesh = impl_->placements[hit.instance].mesh;
   hit.triangle = query.hit.primID;
@@ -141,7 +162,7 @@ std::optional<Hit> RayScene::intersect(const Ray& ray) const {
 bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
   QueryContext context = context_for(*impl_);
   context.key = key;
-  RTCRay query = to_embree(ray);
+  RTCRay query = to_embree(ray, start_of(*impl_, ray.direction));
   if (!can_trace(query)) return true;
   embree::occluded1(impl_->blocking.get(), context.embree, query);
   return query.tfar < 0;
@@ -160,7 +181,7 @@ Rgb RayScene::transmittance(const Ray& ray) const {
   crossed.clear();
   QueryContext context = context_for(*impl_);
   context.crossed = &crossed;
-  RTCRay query = to_embree(ray);
+  RTCRay query = to_embree(ray, start_of(*impl_, ray.direction));
   if (!can_trace(query)) return product;
   embree::occluded1(impl_->smooth.get(), context.embree, query);
   // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,19 @@
 
 namespace lumirank::geometry {
 
+// What filters know of fibres: where Embree sees their points, which is not where the mesh has them if a
+// transform has been applied.
+struct TracedFibres {
+  const Fibres* fibres;
+  const Fibres::Point* points;
+};
+
 struct RayScene::Impl {
   std::vector<TriangleMesh> meshes;
   std::vector<Placement> placements;
   PassageCallbacks callbacks;
+
+  std::deque<TracedFibres> traced;  // Embree holds pointers to them
 
   std::atomic<long long> bytes{0};
   std::string first_error;  // of Embree, if any
@@ -23,6 +33,10 @@ struct RayScene::Impl {
   std::vector<embree::Scene> parts;  // scenes of the meshes that are instanced
   embree::Scene blocking, smooth;    // smooth is null if no placement attenuates
   Bounds3f bounds;
+  // Embree leaves out what a ray meets of fibres within two radii of its origin. So rays are handed to it
+  // from so much farther behind: over twice the radius of the widest fibre, in world space. 0: there are
+  // none.
+  float run_up = 0;
 
   void build(std::size_t flatten_limit);
 
@@ -47,6 +61,9 @@ struct QueryContext {
   std::vector<Hit>* crossed = nullptr;   // smooth hits are noted here; null: any of them ends the ray
 };
 
+// Refuses hits on round caps of segments that are no part of the fibre. The geometry's user pointer is its
+// TracedFibres (null: triangles). The two below do so too.
+void filter_fibre_caps(const RTCFilterFunctionNArguments* arguments);
 // Lets a hit on a cut-out count with the probability of its opacity.
 void filter_cutout(const RTCFilterFunctionNArguments* arguments);
 // Notes a hit on a smooth surface and lets the ray go on.

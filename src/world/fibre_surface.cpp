@@ -27,7 +27,10 @@ scatter::SurfacePoint World::Impl::fibre_surface(const geometry::Hit& hit, Vec3f
   }
   scatter::SurfacePoint point;
   point.uv.uv = {at.parameter, 0.5f + 0.5f * hit.barycentric.y};
-  point.dpdu = at.tangent;
+  // Hair has the segment's own direction: a sine by an interpolated one would not be that of the width which
+  // rays meet. It turns little from segment to segment (make_fibres()).
+  const Vec3f tangent = data.hair ? at.along : at.tangent;
+  point.dpdu = tangent;
   // Across and towards the ray, as Hit says.
   const Vec3f sideways = unit_or(cross(at.along, -ray_direction), Frame::from_normal(at.along).s);
   const Vec3f towards = cross(sideways, at.along);
@@ -36,8 +39,8 @@ scatter::SurfacePoint World::Impl::fibre_surface(const geometry::Hit& hit, Vec3f
   point.position = data.hair ? at.axis : at.axis + n * at.radius;
   point.ng = data.hair ? Vec3f{} : n;
   // The shading normal stays perpendicular to the interpolated tangent.
-  const Vec3f bent = unit_or(n - at.tangent * dot(n, at.tangent), n);
-  point.shading = Frame::from_normal_tangent(bent, at.tangent);
+  const Vec3f bent = unit_or(n - tangent * dot(n, tangent), n);
+  point.shading = Frame::from_normal_tangent(bent, tangent);
   point.dpdv = point.shading.t;
   return point;
 }
