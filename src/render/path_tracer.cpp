@@ -155,8 +155,10 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   }
   float connection = 0;
   if (first_after_receiver && settings_.held.bound > 0)
-    connection =
-        walk.receiver_term * std::abs(dot(hit.point.ng, walk.ray.direction)) / square(walk.travelled);
+    connection = walk.receiver_term *
+                 (closure.is_fibre() ? closure.cosine(walk.ray.direction)
+                                     : std::abs(dot(hit.point.ng, walk.ray.direction))) /
+                 square(walk.travelled);
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_smooth() && may_continue) {
     // The vertex itself is non-specular for light that is found here.
