@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "scenedesc/hair.h"
 #include "scenedesc/pbrt_scene.h"
 
 namespace lumirank::scenedesc {
@@ -38,6 +39,30 @@ TEST(PbrtMaterial, TexturedRoughnessIsRemappedPointByPoint) {
   const auto& root =
       std::get<RootTextureDesc>(scene.textures.at(static_cast<std::size_t>(d.alpha_u.texture)).kind);
   EXPECT_EQ(scene.textures.at(static_cast<std::size_t>(root.input.texture)).id, "r");
+}
+
+TEST(PbrtMaterial, HairIsThatOfItsAbsorption) {
+  const auto hair = [](const std::string& parameters) {
+    const SceneDesc scene = pbrt_material("\"hair\" " + parameters);
+    EXPECT_NE(only_warning(scene).what.find("hair"), std::string::npos) << parameters;
+    return inner<HairDesc>(scene);
+  };
+  const auto expect = [](const HairDesc& got, const HairDesc& want) {
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(got.diffuse_reflectance.value[c], want.diffuse_reflectance.value[c], 1e-5f);
+    EXPECT_FLOAT_EQ(got.specular_reflectance.value.r, want.specular_reflectance.value.r);
+    EXPECT_FLOAT_EQ(got.exponent.value, want.exponent.value);
+  };
+  // Brown by default, as pbrt's.
+  expect(hair(""), hair_from_absorption(hair_absorption(1.3f, 0), 1.55f, 0.3f));
+  expect(hair("\"float pheomelanin\" 0.7"), hair_from_absorption(hair_absorption(0, 0.7f), 1.55f, 0.3f));
+  expect(hair("\"rgb sigma_a\" [ .1 .5 2 ] \"float eta\" 1.4 \"float beta_m\" 0.2"),
+         hair_from_absorption(Rgb(.1f, .5f, 2), 1.4f, 0.2f));
+  // Chiang et al. 2016, section 4.2, at β_n = 0.5: the width is 5.969 - 0.1075 + 0.633 - 1.34125 + 0.348375 +
+  // 0.00765625 = 5.50928.
+  const float w = std::log(0.25f) / 5.50928f;
+  expect(hair("\"rgb reflectance\" [ .25 .25 .25 ] \"float beta_n\" 0.5"),
+         hair_from_absorption(Rgb(w * w), 1.55f, 0.3f));
 }
 
 TEST(PbrtMaterial, Dielectrics) {

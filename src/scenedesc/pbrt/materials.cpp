@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenedesc/hair.h"
 #include "scenedesc/pbrt/reader.h"
 
 namespace lumirank::scenedesc::pbrt {
@@ -218,34 +219,40 @@ class MaterialMaker {
   const bool remap_;
 };
 
-// Kajiya-Kay in place of pbrt's model (Chiang et al. 2016): the colour of the fibre from its absorption as
-// that paper inverts it (section 4.2), the exponent from the width of the highlight.
+// Kajiya-Kay of the same energy in place of pbrt's model (Chiang et al. 2016), both in radii of the fibre.
 int MaterialMaker::hair() {
   const float beta_m = p_.number("beta_m", 0.3f), beta_n = p_.number("beta_n", 0.3f);
-  p_.ignore({"alpha", "eta"});
+  const float eta = p_.number("eta", 1.55f);
+  if (!(eta > 0)) p_.fail("eta", "is not positive");
+  if (!(beta_m >= 0 && beta_m <= 1)) p_.fail("beta_m", "is not between 0 and 1");
+  p_.ignore({"alpha"});
   Rgb sigma;
-  HairDesc out;
-  if (p_.has("reflectance") || p_.is_texture("reflectance")) {
-    out.diffuse_reflectance = color("reflectance", 0.5f);
-    p_.ignore({"sigma_a", "eumelanin", "pheomelanin"});
-  } else {
-    if (const auto given = constant_color(p_, "sigma_a", Intent::unbounded)) {
-      sigma = *given;
-      p_.ignore({"eumelanin", "pheomelanin"});
-    } else {
-      // Absorption of the two pigments (d'Eon et al. 2011, table 1).
-      const bool stated = p_.has("eumelanin") || p_.has("pheomelanin");
-      const float eu = p_.number("eumelanin", stated ? 0 : 1.3f), pheo = p_.number("pheomelanin", 0);
-      sigma = Rgb(0.419f, 0.697f, 1.37f) * eu + Rgb(0.187f, 0.4f, 1.05f) * pheo;
-    }
+  ColorInput painted;
+  if (const auto given = constant_color(p_, "sigma_a", Intent::unbounded)) {
+    sigma = *given;
+    p_.ignore({"reflectance", "color", "eumelanin", "pheomelanin"});
+  } else if (const char* name = p_.has("reflectance") ? "reflectance" : "color"; p_.has(name)) {
+    // The colour of dense hair, inverted (section 4.2 of that paper). A textured one cannot be.
+    painted = color(name, 0.5f);
     const float b = beta_n, width = 5.969f - 0.215f * b + 2.532f * b * b - 10.73f * b * b * b +
                                     5.574f * b * b * b * b + 0.245f * b * b * b * b * b;
-    for (int i = 0; i < 3; ++i) out.diffuse_reflectance.value[i] = std::exp(-width * std::sqrt(sigma[i]));
+    for (int i = 0; i < 3; ++i)
+      sigma[i] = square(std::log(std::clamp(painted.value[i], 1e-6f, 1.0f)) / width);
+    p_.ignore({"eumelanin", "pheomelanin"});
+  } else {
+    const bool stated = p_.has("eumelanin") || p_.has("pheomelanin");
+    const float eu = p_.number("eumelanin", stated ? 0 : 1.3f), pheo = p_.number("pheomelanin", 0);
+    if (!(eu >= 0 && pheo >= 0)) p_.fail("eumelanin", "or \"pheomelanin\" is negative");
+    sigma = hair_absorption(eu, pheo);
   }
-  // A lobe cosⁿ has about the variance 1/n, that of pbrt about β².
-  const float width = std::max(0.02f, 0.726f * beta_m + 0.812f * beta_m * beta_m);
-  out.exponent = {std::clamp(1 / (width * width), 1.0f, 1000.0f)};
-  reader_.warn_once(p_.where(), "pbrt's model of hair", "Kajiya-Kay of the same colour");
+  for (int i = 0; i < 3; ++i)
+    if (!(sigma[i] >= 0)) p_.fail("sigma_a", "is negative");
+  HairDesc out = hair_from_absorption(sigma, eta, beta_m);
+  if (painted.texture != kNone) out.diffuse_reflectance = painted;
+  reader_.warn_once(
+      p_.where(), "pbrt's model of hair",
+      "Kajiya-Kay hair of the same brightness, which sends light that went through a fibre back "
+      "as well as on, and has no second highlight and no glints");
   return add(out);
 }
 
