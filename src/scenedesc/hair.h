@@ -15,4 +15,12 @@ Rgb hair_absorption(float eumelanin, float pheomelanin);
 // exponent of the same width, and what has been inside is diffuse.
 HairDesc hair_from_absorption(Rgb sigma_a, float eta, float beta_m);
 
+// The inverse, as near as it comes; textured inputs count with their constant value. The specular share is
+// that of the mean channel, and diffuse shares beyond what clear hair has become those of clear hair.
+struct HairAbsorption {
+  Rgb sigma_a{0};
+  float eta = 1, beta_m = 0;
+};
+HairAbsorption hair_to_absorption(const HairDesc& hair);
+
 }  // namespace lumirank::scenedesc

@@ -216,7 +216,7 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
   expect("Oren-Nayar", bsdf(RoughDiffuseDesc{}));
   expect("Phong", bsdf(PhongDesc{}));
   expect("Ward", bsdf(WardDesc{}));
-  expect("hair", bsdf(HairDesc{}));
+  expect("hair, textured", bsdf(HairDesc{{Rgb(0), 0}}));
   expect("diffuse transmission", bsdf(DiffuseTransmitterDesc{}));
   PlasticDesc rough;
   rough.alpha.value = 0.25f, rough.lossless = true;
@@ -371,6 +371,46 @@ TEST(MitsubaWriter, MeshesAndPicturesInMemoryAreWrittenOnce) {
   const auto& file = std::get<MeshFileDesc>(trip.again.shapes.at(1).kind);
   EXPECT_EQ(read_mesh(file).positions, mesh->positions);
   EXPECT_EQ(read_mesh(file).uvs, mesh->uvs);
+}
+
+// Mitsuba has another model of hair; what is written has the same energy, so it is read as the same hair.
+TEST(MitsubaWriter, HairAndItsCurvesComeBack) {
+  const test::TemporaryFolder folder;
+  SceneDesc scene;
+  scene.sensors.emplace_back();
+  HairDesc hair;
+  hair.diffuse_reflectance.value = {0.6f, 0.3f, 0.05f};
+  hair.specular_reflectance.value = Rgb(0.08f);
+  hair.exponent.value = 30;
+  scene.bsdfs.emplace_back().kind = hair;
+  CurvesDesc c;
+  c.basis = CurvesDesc::Basis::linear;
+  c.points = {{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {0, 0.1f, 0}, {4, 0, 0}};
+  c.radii = {0.1f, 0.1f, 0, 0.3f, 0.2f};
+  c.first = {0, 3, 5};
+  for (const auto basis : {CurvesDesc::Basis::linear, CurvesDesc::Basis::bspline}) {
+    c.basis = basis;
+    if (basis == CurvesDesc::Basis::bspline) c.first = {0, 5};
+    scene.shapes.emplace_back().kind = c;
+    scene.shapes.back().bsdf = 0;
+  }
+  const RoundTrip trip(scene, folder);
+  ASSERT_EQ(trip.first.warnings.size(), 1u);
+  EXPECT_NE(trip.first.warnings[0].what.find("hair"), std::string::npos);
+  const auto& back =
+      std::get<HairDesc>(trip.again.bsdfs.at(static_cast<std::size_t>(trip.again.shapes.at(0).bsdf)).kind);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(back.diffuse_reflectance.value[i], hair.diffuse_reflectance.value[i], 1e-4f);
+  EXPECT_NEAR(back.specular_reflectance.value.g, 0.08f, 1e-4f);
+  EXPECT_NEAR(back.exponent.value, 30, 1e-2f);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto& wanted = std::get<CurvesDesc>(scene.shapes[k].kind);
+    const CurvesDesc read = read_curves(std::get<CurvesDesc>(trip.again.shapes.at(k).kind));
+    EXPECT_EQ(read.basis, wanted.basis);
+    EXPECT_EQ(read.points, wanted.points);
+    EXPECT_EQ(read.radii, wanted.radii);
+    EXPECT_EQ(read.first, wanted.first);
+  }
 }
 
 // A Bézier piece and its b-spline are one curve: equal at both ends and in the middle.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenedesc/hair.h"
 #include "scenedesc/mitsuba_writer/writer.h"
 
 namespace lumirank::scenedesc {
@@ -133,9 +134,24 @@ void MitsubaWriter::kind_of(const BsdfDesc& desc, const std::string& id) {
     open_bsdf("diffuse", id);
     color("reflectance", paper->reflectance);
   } else if (const auto* hair = std::get_if<HairDesc>(&kind)) {
-    warn(desc.where, "Kajiya and Kay's hair", "diffuse");
-    open_bsdf("diffuse", id);
-    color("reflectance", hair->diffuse_reflectance);
+    if (hair->diffuse_reflectance.texture != kNone) {
+      warn(desc.where, "Kajiya and Kay's hair, textured", "diffuse");
+      open_bsdf("diffuse", id);
+      color("reflectance", hair->diffuse_reflectance);
+    } else {
+      HairDesc plain = *hair;
+      const bool painted = plain.specular_reflectance.texture != kNone || plain.exponent.texture != kNone;
+      if (plain.specular_reflectance.texture != kNone)
+        plain.specular_reflectance = HairDesc{}.specular_reflectance;
+      if (plain.exponent.texture != kNone) plain.exponent = HairDesc{}.exponent;
+      warn(desc.where, "Kajiya and Kay's hair",
+           painted ? "Mitsuba's hair, of one gloss" : "Mitsuba's hair of the same brightness");
+      const HairAbsorption fibre = hair_to_absorption(plain);
+      open_bsdf("hair", id);
+      xml_.color("sigma_a", fibre.sigma_a);
+      xml_.number("int_ior", fibre.eta), xml_.number("ext_ior", 1);
+      xml_.number("longitudinal_roughness", fibre.beta_m);
+    }
   } else if (const auto* coat = std::get_if<CoatingDesc>(&kind)) {
     return coating(*coat, desc, id);
   } else if (const auto* mask = std::get_if<MaskDesc>(&kind)) {
