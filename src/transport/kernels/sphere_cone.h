@@ -94,8 +94,7 @@ inline Lane cosines_over_cone(const RowGroup& r, const ColumnGroup& c, const Lan
 }
 
 // How many widths of its lobe the cone has, where they overlap.
-inline Lane lobe_widths(const LobeCones& lobe, const Lane3& axis, Lane cosine, Lane solid_angle) {
-  const Lane sine = sqrt(max(splat(1) - cosine * cosine, Lane{}));
+inline Lane lobe_widths(const LobeCones& lobe, const Lane3& axis, Lane cosine, Lane sine, Lane solid_angle) {
   const Lane cos_both = cosine * lobe.cos_reach - sine * lobe.sin_reach;
   const Lane sin_both = sine * lobe.cos_reach + cosine * lobe.sin_reach;
   const LaneMask near = (dot(axis, lobe.axis) > cos_both) | (sin_both < Lane{});

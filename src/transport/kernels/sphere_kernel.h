@@ -58,12 +58,13 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
   } else if (by_cone) {
     if (all) apart = alive;
   } else {
-    const Lane solid_angle = splat(2 * kPi) * below;
-    if constexpr (scattering_row) row_widths = lobe_widths(extras.row->cones, axis, cosine, solid_angle);
+    const Lane solid_angle = splat(2 * kPi) * below, sine = select(at.inside, one, c.radius * inv_d);
+    if constexpr (scattering_row)
+      row_widths = lobe_widths(extras.row->cones, axis, cosine, sine, solid_angle);
     if constexpr (scattering_column) {
       const LobeCones& lobe = extras.column->cones;
       column_widths = select(at.inside, solid_angle * lobe.per_solid_angle,
-                             lobe_widths(lobe, axis * splat(-1), cosine, solid_angle));
+                             lobe_widths(lobe, axis * splat(-1), cosine, sine, solid_angle));
     }
     const Lane widths = row_widths + column_widths;
     count = max(select(at.disc, max(count, splat(kLeastOfDisc)), one), widths * splat(kSamplesPerWidth));

@@ -60,6 +60,7 @@ class Lattice {
  public:
   Lattice(LaneBits key, Lane count)
       : u_(unit_lane(key)), v_(unit_lane(mix(key ^ 0x68bc21ebu))), inv_(splat(1) / max(count, splat(1))) {}
+  Lane share() const { return inv_; }  // 1 / count
   Lane u(Lane number) const { return min((number + u_) * inv_, splat(1 - 0x1p-24f)); }
   Lane v(int k) const {
     const Lane v = v_ + splat(static_cast<float>(k) * 0.618033989f);
@@ -87,7 +88,7 @@ struct SphereIntegrand {
   const PairExtras& extras;
   const SphereGeometry& at;
   Lane height, r2;
-  bool row_fibre, column_fibre;
+  bool discs, row_fibre, column_fibre;
 
   SphereIntegrand(const RowGroup& r_, const ColumnGroup& c_, const PairExtras& extras_,
                   const SphereGeometry& at_)
@@ -97,6 +98,7 @@ struct SphereIntegrand {
         at(at_),
         height(dot(c.ng, at.w)),
         r2(c.radius * c.radius),
+        discs(bits(at.disc) != 0),
         row_fibre(scattering_row && extras.row_sides == Sides::fibre),
         column_fibre(scattering_column && extras.column_sides == Sides::fibre) {}
 
@@ -106,8 +108,10 @@ struct SphereIntegrand {
     const Lane zero{};
     const Lane slope = column_fibre ? fibre_sine(c.n, l) : dot(c.ng, l);
     LaneMask lit = column_fibre ? wanted : wanted & (slope * height > zero);
-    const Lane3 off = l * (height / select(lit, slope, splat(1))) - at.w;
-    lit &= ~at.disc | (dot(off, off) < r2);
+    if (discs) {
+      const Lane3 off = l * (height / select(lit, slope, splat(1))) - at.w;
+      lit &= ~at.disc | (dot(off, off) < r2);
+    }
     const Lane cos_x = row_fibre ? fibre_sine(r.n, l) : dot(r.n, l);
     if constexpr (!scattering_row) lit &= (cos_x > zero) & (dot(r.ng, l) > zero);
     if constexpr (!scattering_column) lit &= dot(c.n, l) < zero;
@@ -129,7 +133,7 @@ inline Lane3 integrate_in_lanes(const RowGroup& r, const ColumnGroup& c, const P
   const SphereIntegrand<row_kind, column_kind> integrand(r, c, extras, at);
   const LaneBits key = pair_keys(extras);
   const Lattice lattice(key, counts.cone);
-  const Lane per_direction = splat(2 * kPi) * cone.below / max(counts.cone, splat(1));
+  const Lane per_direction = splat(2 * kPi) * cone.below * lattice.share();
   Lane3 sum{zero, zero, zero};
   const auto uniform = [&](auto&& scale) {
     for (int k = 0;; ++k) {
