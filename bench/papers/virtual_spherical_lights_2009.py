@@ -3,7 +3,7 @@
 
     bench/papers/virtual_spherical_lights_2009.py OUT [--quick] [--parts table,columns,…]
 
-  table     relative L2 on indirect light only: clamped diffuse VPL, glossy VPL with and without clamping, VSL (section 4, Figures 6 and 7)
+  table     relative L2 on indirect light only: clamped diffuse VPL, glossy VPL with and without clamping, VSL, VSL with local compensation (section 4, Figures 6 and 7)
   columns   error against columns, and radius: error against the radius scale 0.5 … 16 and the automatic radius (Figure 8)
   cost      a VSL against a VPL at equal rays
   corner    corners of a diffuse box (Figure 4)
@@ -29,6 +29,7 @@ GLOSSY = ("kitchen", "hall", "tableau")
 PAPER = {"kitchen": ("94.6 %", "27.7 %"), "hall": ("96.7 %", "34.3 %"), "tableau": ("97.4 %", "17.5 %")}
 CLAMPS = ("0.01", "0.03", "0.1", "0.3")
 VSL = ("--light-type", "sphere")
+LOCAL = (*VSL, "--local-paths")
 # As published: fixed scale, cosine as indicator, samples by the cone alone.
 PAPER_VSL = (*VSL, "--sphere-indicator", "cosine", "--sphere-samples", "cone", "--radius-scale")
 
@@ -40,7 +41,7 @@ class Experiments:
         self.size = args.size or ("80x60" if quick else "200x150")
         self.lights = args.lights or (10000 if quick else 200000)
         self.rows, self.columns = args.rows or (150 if quick else 900), args.columns or (500 if quick else 8000)
-        self.spp = "4" if quick else "9"
+        self.spp = args.spp or ("4" if quick else "9")
         self.seconds = args.reference_seconds or (8 if quick else 480)
         self.runs = Runs(args.program, args.out, args.threads)
         self.page = Page("Virtual spherical lights: the experiments of the 2009 paper", args.out)
@@ -115,6 +116,11 @@ class Experiments:
             e = truth.error(picture)
             rows.append(self.row("VSL", e, report))
             shown.append(("VSL", picture, e))
+            vsl = e
+            picture, report = self.render(name, "vsl_local", [*LOCAL, "64"])
+            e = truth.error(picture)
+            rows.append(self.row("VSL, local compensation with 64 paths per receiver", e, report))
+            shown.append(("VSL_local", picture, e))
             page.heading(name)
             page.say("Stated errors (relative L1) of the two references: " + ", ".join(percent(s) for s in truth.stated) + ".")
             page.table(self.HEAD, rows)
@@ -122,15 +128,15 @@ class Experiments:
             for label, picture, error in shown:
                 page.picture(f"{name}_{label}", picture, truth.exposure, f"{label}, relative L2 {percent(error['l2'])}")
                 page.difference(f"{name}_{label}_difference", truth, picture, f"{label}: difference")
-            summary.append((name, percent(clamped["l2"]), percent(glossy["l2"]), percent(free["l2"]), percent(published["l2"]), percent(e["l2"]), *PAPER[name]))
+            summary.append((name, percent(clamped["l2"]), percent(glossy["l2"]), percent(free["l2"]), percent(published["l2"]), percent(vsl["l2"]), percent(e["l2"]), *PAPER[name]))
             self.page.write()
         page.heading("In short")
-        page.table(("scene", "diffuse VPL, clamped", "glossy VPL, clamped", "glossy VPL, free", "VSL as published", "VSL", "paper: VPL", "paper: VSL"), summary)
+        page.table(("scene", "diffuse VPL, clamped", "glossy VPL, clamped", "glossy VPL, free", "VSL as published", "VSL", "VSL, local compensation", "paper: VPL", "paper: VSL"), summary)
 
     def columns_and_radius(self):
         page = self.page
         page.heading("Figure 8: error against columns and against the radius")
-        counts = (100, 200, 400, 800) if self.args.quick else (500, 1000, 2000, 4000, 8000, 16000)
+        counts = (100, 200, 400, 800) if self.args.quick else [round(self.columns * f) for f in (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2)]
         curves, table = {}, []
         for name in GLOSSY:
             truth = self.truth(name)
@@ -243,14 +249,15 @@ class Experiments:
     def time(self):
         page = self.page
         page.heading("Error against seconds, also of the path tracer")
-        ladder = ((50, 100), (75, 200), (150, 400)) if self.args.quick else ((100, 300), (200, 1000), (400, 2500), (900, 8000), (1200, 20000))
-        budgets = (1, 2, 4) if self.args.quick else (4, 10, 25, 60, 150, 400)
+        # Rows, columns and, for local compensation, paths.
+        ladder = ((50, 100, 4), (75, 200, 8), (150, 400, 16)) if self.args.quick else ((100, 300, 4), (200, 1000, 16), (400, 2500, 48), (900, 8000, 128))
+        budgets = (1, 2, 4) if self.args.quick else (4, 10, 25, 60)
         for name in GLOSSY:
             truth = self.truth(name)
-            curves, table = {"VSL": [], "glossy VPL, clamped": [], "path tracer": []}, []
-            for label, file, arguments in (("VSL", "vsl", VSL), ("glossy VPL, clamped", "vpl", ["--clamp", "0.03"])):
-                for r, c in ladder:
-                    picture, report = self.render(name, f"time_{file}_{c}", arguments, rows=r, columns=c)
+            curves, table = {"VSL": [], "VSL, local compensation": [], "glossy VPL, clamped": [], "path tracer": []}, []
+            for label, file, arguments in (("VSL", "vsl", VSL), ("VSL, local compensation", "local", LOCAL), ("glossy VPL, clamped", "vpl", ["--clamp", "0.03"])):
+                for r, c, paths in ladder:
+                    picture, report = self.render(name, f"time_{file}_{c}", [*arguments, paths] if arguments is LOCAL else arguments, rows=r, columns=c)
                     e = truth.error(picture)
                     curves[label].append((report["seconds.total"], 100 * e["l2"]))
                     table.append((label, f"{r} rows, {c} columns", f"{report['seconds.total']:.1f}", percent(e["l2"]), percent(e["l1"])))
@@ -301,7 +308,8 @@ def main():
     parser.add_argument("--size", help="default 200x150")
     parser.add_argument("--lights", type=int, help="default 200000")
     parser.add_argument("--rows", type=int, help="default 900")
-    parser.add_argument("--columns", type=int, help="default 8000")
+    parser.add_argument("--columns", type=int, help="default 8000; Figure 8 goes from a sixteenth of them to twice as many")
+    parser.add_argument("--spp", help="receivers per pixel; default 9")
     parser.add_argument("--reference-seconds", type=float, help="of each of the two references; default 480")
     parser.add_argument("--references", type=pathlib.Path, help="folder of finished references: SCENE_a.pfm and SCENE_b.pfm, of different seeds, each with its report beside it")
     parser.add_argument("--threads", type=int, default=0)
