@@ -8,6 +8,8 @@
 // (towards the eye at a receiver, towards the previous vertex at a virtual light), `wi` the other one.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -35,6 +37,7 @@ enum class LobeKind : std::uint8_t {
   phong,                // color · (n+2)/(2π) · cosⁿ(angle to the mirror direction), alpha_u = exponent
   ward,                 // color, alpha_u, alpha_v; variant 0 ward, 1 ward-duer, 2 balanced; see ward.cpp
   sheen,                // Disney's: color · (1 - wi·m)⁵
+  charlie_sheen,        // cloth, alpha_u = α; see charlie_sheen.h
   disney_diffuse,       // Disney's with retro-reflection; alpha_u = roughness, extra = flatness; see
                         // disney_lobes.cpp
   clearcoat,            // Disney's: color · F · D · G with GTR1 of width alpha_u; see disney_lobes.cpp
@@ -78,7 +81,21 @@ struct Coat {
   friend bool operator==(const Coat&, const Coat&) = default;
 };
 
-// Plain data; which fields mean something depends on `kind`. 108 bytes.
+// Sheen over a lobe (charlie_sheen.h), in 65535ths to be small; the share is rounded up.
+struct Veil {
+  std::uint16_t share = 0;  // the largest channel of the sheen's colour; 0: there is no sheen
+  std::uint16_t roughness = 0;
+  Veil() = default;
+  Veil(float share_, float roughness_)
+      : share(static_cast<std::uint16_t>(std::min(65535.0f, std::ceil(share_ * 65535)))),
+        roughness(static_cast<std::uint16_t>(roughness_ * 65535 + 0.5f)) {}
+  float share_value() const { return static_cast<float>(share) / 65535; }
+  float roughness_value() const { return static_cast<float>(roughness) / 65535; }
+  explicit operator bool() const { return share > 0; }
+  friend bool operator==(const Veil&, const Veil&) = default;
+};
+
+// Plain data; which fields mean something depends on `kind`. 112 bytes.
 struct Lobe {
   LobeKind kind = LobeKind::diffuse;
   FresnelKind fresnel = FresnelKind::none;
@@ -90,6 +107,7 @@ struct Lobe {
   Rgb conductor_eta{0}, conductor_k{0};  // conductor; schlick: conductor_eta is F0
   float extra = 0;                       // disney_diffuse: flatness
   Coat coat;                             // over this lobe, if any
+  Veil veil;                             // the same; between the lobe and the coat
 };
 
 inline constexpr int kMaxLobes = 8;

@@ -28,6 +28,7 @@ class ClosureBuilder {
   void leaf(const PrincipledThinMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const DiffuseTransmitterMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const CoatingMaterial& m, const SurfacePoint& at, float weight);
+  void leaf(const SheenMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const HairMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const MaskMaterial& m, const SurfacePoint& at, float weight);
   void leaf(const TwoSidedMaterial& m, const SurfacePoint& at, float weight);

@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "scatter/albedo_table.h"
+#include "scatter/charlie_sheen.h"
 #include "scatter/closure_builder.h"
 #include "scatter/coat.h"
 #include "scatter/interface.h"
@@ -156,6 +157,10 @@ Base look_at(const Layer& layer, LobeView view) {
     case LobeKind::oren_nayar:
     case LobeKind::disney_diffuse:
       return {lobe.color, lobe.color * layer.diffuse_return};
+    case LobeKind::charlie_sheen: {
+      const Rgb albedo = charlie_sheen_albedo(lobe, 2.0f / 3);
+      return {albedo, albedo * layer.diffuse_return};
+    }
     case LobeKind::interfaced_diffuse: {
       const Rgb albedo = lobe.color * (lobe.alpha_v * lobe.alpha_v);
       return {albedo, albedo * layer.diffuse_return};
@@ -256,9 +261,13 @@ void ClosureBuilder::leaf(const CoatingMaterial& m, const SurfacePoint& at, floa
       continue;
     }
     widen(layer, lobe);
-    const Base base = look_at(layer, view_from(lobe, true));
+    Base base = look_at(layer, view_from(lobe, true));
+    if (lobe.veil) {
+      const float left = veil_factor(lobe.veil, 2.0f / 3);
+      base.albedo *= left, base.returned *= left, base.trapped *= left;
+    }
     albedo += base.albedo, returned += base.returned;
-    if (lobe.kind == LobeKind::diffuse) {
+    if (lobe.kind == LobeKind::diffuse && !lobe.veil) {
       push(diffuse_under(layer, lobe.color), point, weight);
       continue;
     }

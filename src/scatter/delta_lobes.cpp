@@ -1,4 +1,5 @@
 // Mirrors, smooth glass and what lets light straight through.
+#include "scatter/charlie_sheen.h"
 #include "scatter/fresnel.h"
 #include "scatter/lobe.h"
 
@@ -30,6 +31,7 @@ bool bare_delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) 
     default:
       return false;
   }
+  if (lobe.veil) coefficient *= veil_factor(lobe.veil, wo.z);
   return !is_black(coefficient);
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/warp.h"
 #include "scatter/albedo_table.h"
+#include "scatter/charlie_sheen.h"
 #include "scatter/fresnel.h"
 #include "scatter/interface.h"
 
@@ -35,7 +36,7 @@ Rgb quadrature_albedo(LobeView view, Vec3f wo) {
 
 bool draws_cosine(LobeKind kind) {
   return kind == LobeKind::diffuse || kind == LobeKind::oren_nayar || kind == LobeKind::interfaced_diffuse ||
-         kind == LobeKind::sheen || kind == LobeKind::disney_diffuse;
+         kind == LobeKind::sheen || kind == LobeKind::charlie_sheen || kind == LobeKind::disney_diffuse;
 }
 
 Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi) {
@@ -58,7 +59,9 @@ bool delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
                         : bare_delta_direction(view, wo, wi, coefficient);
 }
 
-Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
+namespace {
+
+Rgb unveiled_value(LobeView view, Vec3f wo, Vec3f wi) {
   const Lobe& lobe = view.lobe;
   switch (lobe.kind) {
     case LobeKind::diffuse:
@@ -81,6 +84,8 @@ Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
       return ward_value(lobe, wo, wi);
     case LobeKind::sheen:
       return sheen_value(lobe, wo, wi);
+    case LobeKind::charlie_sheen:
+      return charlie_sheen_value(lobe, wo, wi);
     case LobeKind::disney_diffuse:
       return disney_diffuse_value(lobe, wo, wi);
     case LobeKind::clearcoat:
@@ -97,6 +102,13 @@ Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
   return Rgb(0);
 }
 
+}  // namespace
+
+Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
+  const Rgb value = unveiled_value(view, wo, wi);
+  return view.lobe.veil ? value * veil_factor(view.lobe.veil, std::min(wo.z, wi.z)) : value;
+}
+
 float bare_pdf(LobeView view, Vec3f wo, Vec3f wi) {
   const Lobe& lobe = view.lobe;
   switch (lobe.kind) {
@@ -104,6 +116,7 @@ float bare_pdf(LobeView view, Vec3f wo, Vec3f wi) {
     case LobeKind::oren_nayar:
     case LobeKind::interfaced_diffuse:
     case LobeKind::sheen:
+    case LobeKind::charlie_sheen:
     case LobeKind::disney_diffuse:
       return pdf_cosine_hemisphere(wi.z);
     case LobeKind::microfacet_reflect:
@@ -139,6 +152,7 @@ bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
     case LobeKind::oren_nayar:
     case LobeKind::interfaced_diffuse:
     case LobeKind::sheen:
+    case LobeKind::charlie_sheen:
     case LobeKind::disney_diffuse:
       wi = warp_cosine_hemisphere(u);
       return wi.z > 0;
@@ -172,6 +186,8 @@ bool bare_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 
 Rgb bare_albedo(LobeView view, Vec3f wo) {
   const Lobe& lobe = view.lobe;
+  if (lobe.veil && !is_delta(lobe.kind)) return quadrature_albedo(view, wo);
+  if (lobe.kind == LobeKind::charlie_sheen) return charlie_sheen_albedo(lobe, wo.z);
   if (lobe.kind == LobeKind::diffuse || lobe.kind == LobeKind::diffuse_transmit ||
       lobe.kind == LobeKind::hair_diffuse)
     return lobe.color;
@@ -189,7 +205,9 @@ Rgb bare_albedo(LobeView view, Vec3f wo) {
   return quadrature_albedo(view, wo);
 }
 
-float bare_importance(LobeView view, float cos_o) {
+namespace {
+
+float unveiled_importance(LobeView view, float cos_o) {
   const Lobe& lobe = view.lobe;
   const float scale = mean(lobe.color);
   // Microfacets may reflect or refract where the macroscopic surface does not: never below a twentieth.
@@ -205,11 +223,20 @@ float bare_importance(LobeView view, float cos_o) {
       return scale * std::max(least, 1 - fresnel_dielectric(cos_o, lobe.eta));
     case LobeKind::sheen:
       return scale * std::max(least, schlick_weight(cos_o));
+    case LobeKind::charlie_sheen:
+      return scale * std::max(least, sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).held);
     case LobeKind::clearcoat:
       return scale * std::max(least, schlick_weight(cos_o));
     default:
       return scale;
   }
+}
+
+}  // namespace
+
+float bare_importance(LobeView view, float cos_o) {
+  const Veil& veil = view.lobe.veil;
+  return unveiled_importance(view, cos_o) * (veil ? std::max(0.05f, veil_factor(veil, cos_o)) : 1.0f);
 }
 
 }  // namespace lumirank::scatter

@@ -77,6 +77,8 @@ Rgb ward_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
 float ward_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
 bool ward_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
 Rgb sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+Rgb charlie_sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
+Rgb charlie_sheen_albedo(const Lobe& lobe, float cos_o);
 Rgb disney_diffuse_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
 Rgb clearcoat_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
 float clearcoat_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);

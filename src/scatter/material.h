@@ -102,6 +102,12 @@ struct CoatingMaterial {
   FloatInput alpha_u, alpha_v;
   bool smooth = true;
 };
+// Sheen (charlie_sheen.h) over an opaque material without coating, sheen or hair.
+struct SheenMaterial {
+  int nested = -1;
+  ColorInput color;
+  FloatInput roughness;  // √α
+};
 struct HairMaterial {  // for fibres only: the point's shading.s runs along them
   ColorInput diffuse_reflectance, specular_reflectance;
   FloatInput exponent;
@@ -136,8 +142,9 @@ struct MixtureMaterial {
 using Material =
     std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
-                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, HairMaterial,
-                 MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial, MixtureMaterial>;
+                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, SheenMaterial,
+                 HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
+                 MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

@@ -14,11 +14,12 @@ bool nearly_diffuse(LobeKind kind) {
 
 bool same_sort(const Lobe& a, const Lobe& b) {
   return a.kind == b.kind && a.fresnel == b.fresnel && a.distribution == b.distribution &&
-         a.variant == b.variant && static_cast<bool>(a.coat) == static_cast<bool>(b.coat);
+         a.variant == b.variant && static_cast<bool>(a.coat) == static_cast<bool>(b.coat) &&
+         static_cast<bool>(a.veil) == static_cast<bool>(b.veil);
 }
 
 bool equal_but_color(const Lobe& a, const Lobe& b) {
-  if (!same_sort(a, b) || a.coat != b.coat) return false;
+  if (!same_sort(a, b) || a.coat != b.coat || a.veil != b.veil) return false;
   if (a.kind == LobeKind::diffuse) return true;
   if (a.kind == LobeKind::oren_nayar) return a.alpha_u == b.alpha_u;
   return a.alpha_u == b.alpha_u && a.alpha_v == b.alpha_v && a.eta == b.eta &&
@@ -34,6 +35,9 @@ Lobe average(const Lobe& a, const Lobe& b) {
   out.coat.eta = lerp(a.coat.eta, b.coat.eta, t), out.coat.bend = lerp(a.coat.bend, b.coat.bend, t);
   for (int i = 0; i < 6; ++i) out.coat.t[i] = lerp(a.coat.t[i], b.coat.t[i], t);
   out.coat.depth = lerp(a.coat.depth, b.coat.depth, t);
+  if (a.veil)
+    out.veil = Veil(lerp(a.veil.share_value(), b.veil.share_value(), t),
+                    lerp(a.veil.roughness_value(), b.veil.roughness_value(), t));
   if (a.kind == LobeKind::oren_nayar) {
     out.conductor_eta = a.conductor_eta + b.conductor_eta;
   } else {

@@ -140,6 +140,10 @@ std::string kind(const BsdfDesc& desc) {
                           ", absorption " + show(x.absorption) + ", weight " + show(x.weight) +
                           rough(x.distribution, x.alpha_u, x.alpha_v) + " over " + b(x.nested);
                  },
+                 [](const SheenDesc& x) {
+                   const std::string look = show(x.color) + ", roughness " + show(x.roughness);
+                   return "sheen " + look + " over " + b(x.nested);
+                 },
                  [](const MaskDesc& x) { return "mask " + show(x.opacity) + " over " + b(x.nested); },
                  [](const TwoSidedDesc& x) {
                    return "twosided " + b(x.front) + (x.back == x.front ? "" : " and " + b(x.back));

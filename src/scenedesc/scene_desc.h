@@ -181,6 +181,13 @@ struct CoatingDesc {
   Distribution distribution = Distribution::beckmann;
   FloatInput alpha_u{0}, alpha_v{0};
 };
+// Sheen of cloth over the nested BSDF, which is dimmed by what the sheen reflects: glTF's
+// KHR_materials_sheen.
+struct SheenDesc {
+  int nested = kNone;
+  ColorInput color{Rgb(0)};
+  FloatInput roughness{0};  // the square root of α
+};
 struct MaskDesc {  // opacity 1: the nested BSDF; 0: nothing there
   FloatInput opacity{0.5f};
   int nested = kNone;
@@ -215,7 +222,8 @@ struct BsdfDesc {
   SourceLocation where;
   std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc, ThinDielectricDesc,
                PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, PrincipledThinDesc, DiffuseTransmitterDesc,
-               CoatingDesc, HairDesc, MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>
+               CoatingDesc, SheenDesc, HairDesc, MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc,
+               MixtureDesc>
       kind;
 };
 

@@ -84,6 +84,7 @@ bool MaterialBuilder::holds_hair(int bsdf, std::size_t depth) const {
   const auto& kind = desc_.bsdfs[static_cast<std::size_t>(bsdf)].kind;
   if (std::holds_alternative<sd::HairDesc>(kind)) return true;
   if (const auto* m = std::get_if<sd::CoatingDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  if (const auto* m = std::get_if<sd::SheenDesc>(&kind)) return holds_hair(m->nested, depth + 1);
   if (const auto* m = std::get_if<sd::MaskDesc>(&kind)) return holds_hair(m->nested, depth + 1);
   if (const auto* m = std::get_if<sd::TwoSidedDesc>(&kind)) return holds_hair(m->front, depth + 1);
   if (const auto* m = std::get_if<sd::BumpMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
@@ -101,6 +102,10 @@ int MaterialBuilder::instead_around_hair(const sd::BsdfDesc& b) {
   if (const auto* coat = std::get_if<sd::CoatingDesc>(&b.kind)) {
     notes_.warn(b.where, "a coating over hair", "the hair without it");
     return coat->nested;
+  }
+  if (const auto* sheen = std::get_if<sd::SheenDesc>(&b.kind)) {
+    notes_.warn(b.where, "sheen over hair", "the hair without it");
+    return sheen->nested;
   }
   if (bump || map) {
     notes_.warn(b.where, "a bump or normal map around hair", "the hair without it");
@@ -134,6 +139,7 @@ bool MaterialBuilder::transmits(int material) const {
     bool operator()(const sc::PrincipledThinMaterial&) const { return true; }
     bool operator()(const sc::DiffuseTransmitterMaterial&) const { return true; }
     bool operator()(const sc::CoatingMaterial& m) const { return all.transmits(m.nested); }
+    bool operator()(const sc::SheenMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::BumpMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::NormalMapMaterial& m) const { return all.transmits(m.nested); }
     bool operator()(const sc::MixtureMaterial& m) const {
@@ -153,19 +159,20 @@ bool MaterialBuilder::transmits(int material) const {
   return std::visit(Ask{*this}, materials_[static_cast<std::size_t>(material)]);
 }
 
-bool MaterialBuilder::is_coated(int material) const {
+template <typename Sought>
+bool MaterialBuilder::holds(int material) const {
   return std::visit(
       [&](const auto& m) {
         using Kind = std::decay_t<decltype(m)>;
-        if constexpr (std::is_same_v<Kind, sc::CoatingMaterial>) {
+        if constexpr (std::is_same_v<Kind, Sought>) {
           return true;
         } else if constexpr (std::is_same_v<Kind, sc::TwoSidedMaterial>) {
-          return is_coated(m.front) || is_coated(m.back);
+          return holds<Sought>(m.front) || holds<Sought>(m.back);
         } else if constexpr (std::is_same_v<Kind, sc::MixtureMaterial>) {
           return std::any_of(m.parts.begin(), m.parts.end(),
-                             [&](const auto& part) { return is_coated(part.nested); });
+                             [&](const auto& part) { return holds<Sought>(part.nested); });
         } else if constexpr (requires { m.nested; }) {
-          return is_coated(m.nested);
+          return holds<Sought>(m.nested);
         } else {
           return false;
         }
@@ -285,7 +292,7 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
     sc::Material operator()(const sd::CoatingDesc& d) const {
       sc::CoatingMaterial m;
       m.nested = nested(d.nested);
-      if (self.is_coated(m.nested)) {
+      if (self.holds<sc::CoatingMaterial>(m.nested)) {
         self.notes_.warn(where, "a coating over a BSDF that has a coating", "the inner one alone");
         return self.materials_[static_cast<std::size_t>(m.nested)];
       }
@@ -296,6 +303,20 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
       m.distribution = world::convert(d.distribution);
       m.alpha_u = number(d.alpha_u), m.alpha_v = number(d.alpha_v);
       m.smooth = is_zero(d.alpha_u) && is_zero(d.alpha_v);
+      return m;
+    }
+    sc::Material operator()(const sd::SheenDesc& d) const {
+      sc::SheenMaterial m;
+      m.nested = nested(d.nested);
+      const char* below = self.transmits(m.nested)                    ? "that lets light pass"
+                          : self.holds<sc::CoatingMaterial>(m.nested) ? "that has a coating"
+                          : self.holds<sc::SheenMaterial>(m.nested)   ? "that has sheen"
+                                                                      : nullptr;
+      if (below) {
+        self.notes_.warn(where, std::string("sheen over a BSDF ") + below, "that BSDF alone");
+        return self.materials_[static_cast<std::size_t>(m.nested)];
+      }
+      m.color = color(d.color), m.roughness = number(d.roughness);
       return m;
     }
     sc::Material operator()(const sd::MaskDesc& d) const {

@@ -24,7 +24,9 @@ class MaterialBuilder {
  private:
   int add(scatter::Material material);
   bool transmits(int material) const;
-  bool is_coated(int material) const;
+  // The material, or one nested in it, is a Sought.
+  template <typename Sought>
+  bool holds(int material) const;
 
   scatter::Material convert(const scenedesc::BsdfDesc& b, Carrier carrier);
   bool holds_hair(int bsdf, std::size_t depth = 0) const;

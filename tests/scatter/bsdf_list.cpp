@@ -216,6 +216,25 @@ std::vector<BsdfCase> build() {
   coated_principled.set.materials.push_back(layer(kGgx, 0.1f, 1.5f, 0.1f, 0.8f));
   coated_principled.material = 1;
   list.push_back(coated_principled);
+
+  for (const float roughness : {0.07f, 0.25f, 0.5f, 1.0f})
+    list.push_back(nested("sheen_white_" + std::to_string(static_cast<int>(100 * roughness)),
+                          DiffuseMaterial{gray(1)}, SheenMaterial{0, gray(1), number(roughness)}));
+  list.push_back(nested("sheen_alone", DiffuseMaterial{gray(0)},
+                        SheenMaterial{0, color(0.9f, 0.5f, 0.1f), number(0.3f)}));
+  list.push_back(nested("sheen_plastic", plastic(kGgx, 0.3f, true),
+                        SheenMaterial{0, color(0.2f, 0.8f, 0.4f), number(0.4f)}));
+  list.push_back(
+      nested("sheen_metal", conductor(kGgx, 0.08f, 0.4f), SheenMaterial{0, gray(0.7f), number(0.6f)}));
+  list.push_back(nested("sheen_mirror", perfect_mirror(kGgx, 0), SheenMaterial{0, gray(0.7f), number(0.6f)}));
+  for (const float alpha : {0.0f, 0.3f}) {
+    BsdfCase coated_sheen = nested(alpha == 0 ? "sheen_coated" : "sheen_coated_rough",
+                                   plastic(kGgx, 0.2f, true), SheenMaterial{0, gray(1), number(0.8f)});
+    coated_sheen.set.materials.push_back(layer(kGgx, alpha, 1.5f, 0.1f * alpha, 1));
+    std::get<CoatingMaterial>(coated_sheen.set.materials.back()).nested = 1;
+    coated_sheen.material = 2;
+    list.push_back(coated_sheen);
+  }
   list.push_back(hair("diffuse", 1, 0, 0));
   list.push_back(hair("specular_0", 0, 1, 0));
   list.push_back(hair("specular_3", 0, 1, 3));

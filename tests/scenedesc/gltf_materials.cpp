@@ -246,8 +246,17 @@ TEST(GltfMaterial, SpecularClearCoatSheenUnlit) {
 
   m.root["materials"][0]["extensions"] = {{"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0.25, 0}}}}};
   scene = parse(m);
-  EXPECT_EQ(find_bsdf<PrincipledDesc>(scene)->sheen.value, 0.5f);
-  EXPECT_NE(warning_about(scene, "sheen"), nullptr);
+  const auto* cloth = find_bsdf<SheenDesc>(scene);
+  ASSERT_NE(cloth, nullptr);
+  EXPECT_EQ(cloth->color.value, Rgb(0.5f, 0.25f, 0));
+  EXPECT_EQ(cloth->roughness.value, 0.07f);
+  EXPECT_NE(warning_about(scene, "sheen of a roughness"), nullptr) << "the extension's default is 0";
+  EXPECT_TRUE(std::holds_alternative<PlasticDesc>(scene.bsdfs[static_cast<std::size_t>(cloth->nested)].kind));
+  m.root["materials"][0]["extensions"]["KHR_materials_sheen"]["sheenRoughnessFactor"] = 0.5;
+  scene = parse(m);
+  EXPECT_EQ(find_bsdf<SheenDesc>(scene)->roughness.value, 0.5f);
+  EXPECT_EQ(warning_about(scene, "sheen"), nullptr);
+  EXPECT_NE(describe(scene).find("sheen "), std::string::npos);
 
   m.root["materials"][0]["extensions"] = {{"KHR_materials_unlit", json::object()}};
   scene = parse(m);

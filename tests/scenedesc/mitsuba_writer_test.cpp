@@ -224,6 +224,9 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
   CoatingDesc coat;
   coat.nested = 0;
   expect("coating", bsdf(coat));
+  SheenDesc cloth;
+  cloth.nested = 0;
+  expect("sheen", bsdf(cloth));
   expect("textured weights", bsdf(MixtureDesc{{{{0, 0}, false, 0}, {{0.2f}, false, 0}, {{0.2f}, false, 0}}}));
   expect("scaled", [](SceneDesc& scene) {
     scene.textures.emplace_back().kind = ScaleTextureDesc{{Rgb(0), 0}, Rgb(2)};

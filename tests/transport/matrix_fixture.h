@@ -197,6 +197,12 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
     coating.nested = add_bsdf(desc, RoughDiffuseDesc{color(0.6f, 0.5f, 0.4f), value(0.3f)});
     all.push_back(add_bsdf(desc, coating));
   }
+  SheenDesc cloth;
+  cloth.color = color(0.5f, 0.7f, 0.3f), cloth.roughness = value(0.5f);
+  for (const int below : {all.front(), all[1], all[2]}) {
+    cloth.nested = below;
+    all.push_back(add_bsdf(desc, cloth));
+  }
   for (const float exponent : {8.0f, 60.0f}) {
     HairDesc hair;
     hair.exponent = value(exponent);

@@ -4,17 +4,24 @@
 namespace lumirank::scenedesc::gltf {
 
 int Reader::sheen_bsdf(const Element& material, const Surface& s, const Element& sheen) {
-  const ColorInput color = color_input(sheen, "sheenColorFactor", Rgb(0), "sheenColorTexture");
+  ColorInput color = color_input(sheen, "sheenColorFactor", Rgb(0), "sheenColorTexture");
   if (color.texture == kNone && color.value == Rgb(0)) return opaque_bsdf(material, s);
-  warn(sheen, "sheen with a colour and a roughness of its own", "white sheen as in the principled BSDF");
-  PrincipledDesc cloth;
-  cloth.base_color = s.base;
-  cloth.roughness = s.roughness;
-  cloth.metallic = s.metallic;
-  cloth.eta = s.ior;
-  cloth.sheen = color.texture == kNone ? FloatInput{std::min(max_component(color.value), 1.0f)}
-                                       : FloatInput{0, color.texture};
-  return add_bsdf(material, cloth);
+  if (color.texture == kNone && max_component(color.value) > 1) {
+    warn(sheen.at("sheenColorFactor"), "a sheen colour above 1", "1");
+    color.value = clamp_below(color.value, 1.0f);
+  }
+  SheenDesc cloth;
+  cloth.color = color;
+  cloth.roughness =
+      float_input(sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", TextureChannel::alpha);
+  // The model has no limit at 0, which is the extension's default.
+  constexpr float least = 0.07f;
+  if (cloth.roughness.texture == kNone && cloth.roughness.value < least) {
+    warn(sheen, "sheen of a roughness below 0.07", "0.07");
+    cloth.roughness.value = least;
+  }
+  cloth.nested = opaque_bsdf(material, s);
+  return add_bsdf(sheen, cloth);
 }
 
 int Reader::coated_bsdf(const Element& clearcoat, int base) {

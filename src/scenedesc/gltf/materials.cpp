@@ -120,6 +120,8 @@ int Reader::uv_set_of(const Element& material) {
       {"KHR_materials_transmission", "transmissionTexture"},
       {"KHR_materials_specular", "specularTexture"},
       {"KHR_materials_specular", "specularColorTexture"},
+      {"KHR_materials_sheen", "sheenColorTexture"},
+      {"KHR_materials_sheen", "sheenRoughnessTexture"},
       {"KHR_materials_clearcoat", "clearcoatTexture"},
       {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"}};
   for (const auto& [extension, texture] : others)

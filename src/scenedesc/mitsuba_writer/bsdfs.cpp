@@ -41,6 +41,7 @@ bool MitsubaWriter::transmits(int index) const {
   if (const auto* bump = std::get_if<BumpMapDesc>(&kind)) return transmits(bump->nested);
   if (const auto* normal = std::get_if<NormalMapDesc>(&kind)) return transmits(normal->nested);
   if (const auto* coat = std::get_if<CoatingDesc>(&kind)) return transmits(coat->nested);
+  if (const auto* sheen = std::get_if<SheenDesc>(&kind)) return transmits(sheen->nested);
   if (const auto* mix = std::get_if<MixtureDesc>(&kind))
     return std::any_of(mix->parts.begin(), mix->parts.end(),
                        [&](const auto& p) { return transmits(p.bsdf); });
@@ -154,6 +155,9 @@ void MitsubaWriter::kind_of(const BsdfDesc& desc, const std::string& id) {
     }
   } else if (const auto* coat = std::get_if<CoatingDesc>(&kind)) {
     return coating(*coat, desc, id);
+  } else if (const auto* sheen = std::get_if<SheenDesc>(&kind)) {
+    warn(desc.where, "sheen of cloth", "the BSDF below it alone");
+    return kind_of(scene_.bsdfs[static_cast<std::size_t>(sheen->nested)], id);
   } else if (const auto* mask = std::get_if<MaskDesc>(&kind)) {
     open_bsdf("mask", id);
     scalar("opacity", mask->opacity);

@@ -8,6 +8,7 @@ namespace {
 using scatter::LobeKind;
 
 bool has_lane_code(const scatter::Lobe& lobe) {
+  if (lobe.veil) return false;
   if (lobe.coat && scatter::shines_through(lobe.kind)) return false;
   switch (lobe.kind) {
     case LobeKind::diffuse:

@@ -1,0 +1,114 @@
+#include "scatter/charlie_sheen.h"
+
+#include <cmath>
+#include <vector>
+
+#include "scatter/lobe.h"
+
+namespace lumirank::scatter {
+namespace {
+
+constexpr int kRoughnesses = 25, kCosines = 33;
+constexpr int kSteps = 48;  // of the integrals, in either dimension
+// The cosine's grid is finer towards grazing: its square root is spaced evenly, from 0.0001 on.
+constexpr float kFirstRoot = 0.01f;
+
+float grid_roughness(int r) {
+  return kMinSheenRoughness + (1 - kMinSheenRoughness) * static_cast<float>(r) / (kRoughnesses - 1);
+}
+float grid_cosine(int c) {
+  const float root = kFirstRoot + (1 - kFirstRoot) * static_cast<float>(c) / (kCosines - 1);
+  return root * root;
+}
+
+// D·V.
+float raw_value(float alpha, Vec3f wo, Vec3f wi) {
+  const Vec3f h = normalize(wo + wi);
+  const float sin2 = std::min(1.0f, h.x * h.x + h.y * h.y), inverse = 1 / alpha;
+  const float d = (2 + inverse) * (0.5f * kInvPi) * std::pow(sin2, 0.5f * inverse);
+  return d / (4 * (wo.z + wi.z - wo.z * wi.z));
+}
+
+struct Cell {
+  int index;
+  float fraction;
+};
+Cell cell_of(float x, int count) {
+  const float at = std::clamp(x, 0.0f, 1.0f) * static_cast<float>(count - 1);
+  const int index = std::min(static_cast<int>(at), count - 2);
+  return {index, at - static_cast<float>(index)};
+}
+
+using Table = std::vector<float>;
+
+float look_up(const Table& table, float roughness, float cosine) {
+  const Cell r = cell_of((roughness - kMinSheenRoughness) / (1 - kMinSheenRoughness), kRoughnesses);
+  const Cell c = cell_of((std::sqrt(std::max(cosine, 0.0f)) - kFirstRoot) / (1 - kFirstRoot), kCosines);
+  const float* row = &table[static_cast<std::size_t>(r.index * kCosines + c.index)];
+  return lerp(lerp(row[0], row[1], c.fraction), lerp(row[kCosines], row[kCosines + 1], c.fraction),
+              r.fraction);
+}
+
+// ∫ D·V / norm(cos_i) · cos_i dwi for every cell, by midpoints in the azimuth and the square root of cos_i.
+template <typename Norm>
+Table integrate(const Norm& norm) {
+  Table out;
+  for (int r = 0; r < kRoughnesses; ++r) {
+    const float roughness = grid_roughness(r), alpha = roughness * roughness;
+    for (int c = 0; c < kCosines; ++c) {
+      const float cos_o = grid_cosine(c);
+      const Vec3f wo{std::sqrt(std::max(0.0f, 1 - cos_o * cos_o)), 0, cos_o};
+      double sum = 0;
+      for (int i = 0; i < kSteps; ++i) {
+        const float root = (static_cast<float>(i) + 0.5f) / kSteps, cos_i = root * root;
+        const float sin_i = std::sqrt(1 - cos_i * cos_i);
+        double ring = 0;
+        for (int k = 0; k < kSteps; ++k) {
+          const float phi = kPi * (static_cast<float>(k) + 0.5f) / kSteps;
+          ring += raw_value(alpha, wo, {sin_i * std::cos(phi), sin_i * std::sin(phi), cos_i});
+        }
+        sum += ring * cos_i * 2 * root / norm(roughness, std::min(cos_o, cos_i));
+      }
+      out.push_back(static_cast<float>(sum * 2 * kPi / (kSteps * kSteps)));
+    }
+  }
+  return out;
+}
+
+struct Tables {
+  Table raw, held;
+};
+const Tables& tables() {
+  static const Tables both = [] {
+    Tables t;
+    t.raw = integrate([](float, float) { return 1.0f; });
+    t.held = integrate(
+        [&](float roughness, float cosine) { return std::max(1.0f, look_up(t.raw, roughness, cosine)); });
+    return t;
+  }();
+  return both;
+}
+
+float raw_albedo(float roughness, float cosine) { return look_up(tables().raw, roughness, cosine); }
+
+}  // namespace
+
+SheenAlbedo sheen_albedo(float roughness, float cosine) {
+  return {raw_albedo(roughness, cosine), std::min(1.0f, look_up(tables().held, roughness, cosine))};
+}
+
+float veil_factor(const Veil& veil, float least_cosine) {
+  return 1 - veil.share_value() * std::min(1.0f, raw_albedo(veil.roughness_value(), least_cosine));
+}
+
+// color · D·V / max(1, E(least cosine)); alpha_u is α.
+Rgb charlie_sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+  const float e = raw_albedo(std::sqrt(lobe.alpha_u), std::min(wo.z, wi.z));
+  return lobe.color * (raw_value(lobe.alpha_u, wo, wi) / std::max(1.0f, e));
+}
+
+Rgb charlie_sheen_albedo(const Lobe& lobe, float cos_o) {
+  return lobe.color * sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).held;
+}
+
+}  // namespace lumirank::scatter
