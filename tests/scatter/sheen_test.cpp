@@ -11,8 +11,8 @@ namespace {
 
 // At a horizontal direction V·cos_i = 1/4 and dwi = 4·(wo·h)·dh, so E(0) = ∫ D(h)·(wo·h) dh over the half of
 // the h that face wo = (1/π)·∫ (2 + 1/α)·sin^(2 + 1/α) θ dθ, the integral up to π/2 being
-// (√π/2)·Γ((a + 1)/2)/Γ(a/2 + 1) with a = 2 + 1/α. The table starts at a cosine of 0.0001 and its integrals have 48
-// steps, which together are given 3 %.
+// (√π/2)·Γ((a + 1)/2)/Γ(a/2 + 1) with a = 2 + 1/α. The table starts at a cosine of 0.0001 and its integrals
+// have 48 steps, which together are given 3 %.
 TEST(CharlieSheen, AtTheHorizonTheAlbedoIsKnown) {
   for (const float roughness : {kMinSheenRoughness, 0.2f, 0.4f, 0.7f, 1.0f}) {
     const double a = 2 + 1 / (double{roughness} * roughness);

@@ -34,7 +34,7 @@ double quadrature(const SphereEnds& ends, int n) {
 
 class SphericalPairs : public ::testing::TestWithParam<SphereRules> {
  protected:
-  static constexpr std::size_t kRows = 80, kColumns = 80;
+  static constexpr std::size_t kRows = 110, kColumns = 110;
   static void SetUpTestSuite() {
     scenedesc::SceneDesc desc = room_with_blocks();
     add_all_bsdfs(desc);
