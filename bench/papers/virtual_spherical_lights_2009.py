@@ -120,14 +120,14 @@ class Experiments:
             picture, report = self.render(name, "vsl_local", [*LOCAL, "64"])
             e = truth.error(picture)
             rows.append(self.row("VSL, local compensation with 64 paths per receiver", e, report))
-            shown.append(("VSL_local", picture, e))
+            shown.append(("VSL with local paths", picture, e))
             page.heading(name)
             page.say("Stated errors (relative L1) of the two references: " + ", ".join(percent(s) for s in truth.stated) + ".")
             page.table(self.HEAD, rows)
             page.picture(f"{name}_reference", truth.picture, truth.exposure, "path traced")
             for label, picture, error in shown:
-                page.picture(f"{name}_{label}", picture, truth.exposure, f"{label}, relative L2 {percent(error['l2'])}")
-                page.difference(f"{name}_{label}_difference", truth, picture, f"{label}: difference")
+                page.picture(f"{name}_{label.replace(' ', '_')}", picture, truth.exposure, f"{label}, relative L2 {percent(error['l2'])}")
+                page.difference(f"{name}_{label.replace(' ', '_')}_difference", truth, picture, f"{label}: difference")
             summary.append((name, percent(clamped["l2"]), percent(glossy["l2"]), percent(free["l2"]), percent(published["l2"]), percent(vsl["l2"]), percent(e["l2"]), *PAPER[name]))
             self.page.write()
         page.heading("In short")
@@ -193,7 +193,7 @@ class Experiments:
         rows, profiles = [], {"path traced": self.profile(truth.picture)}
         page.picture("box_reference", truth.picture, truth.exposure, "path traced")
         tries = (("VPL, clamped", "vpl", [["--clamp", c] for c in ("0.03", "0.3", "1")]),
-                 ("VSL as published", "vsl_paper", [[*PAPER_VSL, s] for s in ("0.5", "1", "2", "4")]), ("VSL", "vsl", [VSL]))
+                 ("VSL as published", "vsl_paper", [[*PAPER_VSL, s] for s in ("0.5", "1", "2", "4")]), ("VSL", "vsl", [VSL]), ("VSL, local compensation", "vsl_local", [[*LOCAL, "64"]]))
         for label, file, choices in tries:
             done = []
             for arguments in choices:
@@ -254,8 +254,8 @@ class Experiments:
         budgets = (1, 2, 4) if self.args.quick else (4, 10, 25, 60)
         for name in GLOSSY:
             truth = self.truth(name)
-            curves, table = {"VSL": [], "VSL, local compensation": [], "glossy VPL, clamped": [], "path tracer": []}, []
-            for label, file, arguments in (("VSL", "vsl", VSL), ("VSL, local compensation", "local", LOCAL), ("glossy VPL, clamped", "vpl", ["--clamp", "0.03"])):
+            curves, table = {"VSL": [], "VSL, local paths": [], "glossy VPL, clamped": [], "path tracer": []}, []
+            for label, file, arguments in (("VSL", "vsl", VSL), ("VSL, local paths", "local", LOCAL), ("glossy VPL, clamped", "vpl", ["--clamp", "0.03"])):
                 for r, c, paths in ladder:
                     picture, report = self.render(name, f"time_{file}_{c}", [*arguments, paths] if arguments is LOCAL else arguments, rows=r, columns=c)
                     e = truth.error(picture)
