@@ -2,16 +2,15 @@
 // picture.
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "lumirank/error.h"
 #include "lumirank/lumirank.h"
+#include "support/channel_means.h"
 #include "support/scene_file.h"
-#include "support/statistics.h"
 
 namespace lumirank {
 namespace {
 
+using test::mean_colour;
 using test::mean_of;
 using test::student_quantile;
 
@@ -40,14 +39,6 @@ Scene corner() {
       "0, "
       "-0.1\" up=\"0, 1, 0.2\"/></transform><rgb name=\"intensity\" value=\"5, 6, 7\"/><float "
       "name=\"cutoff_angle\" value=\"35\"/></emitter>");
-}
-
-std::array<double, 3> mean_colour(const Picture& picture) {
-  std::array<double, 3> sum{};
-  const auto& rgb = picture.planes[0].rgb;
-  for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
-  for (double& s : sum) s /= static_cast<double>(rgb.size() / 3);
-  return sum;
 }
 
 RenderSettings settings_for(const std::string& light_type) {

@@ -1,19 +1,19 @@
 // Fur in the matrix against fur in the path tracer.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <string>
 
 #include "base/random.h"
 #include "lumirank/lumirank.h"
+#include "support/channel_means.h"
 #include "support/scene_file.h"
-#include "support/statistics.h"
 
 namespace lumirank {
 namespace {
 
+using test::mean_colour;
 using test::mean_of;
 using test::student_quantile;
 
@@ -53,14 +53,6 @@ std::string spot(const char* origin, const char* target, int cutoff) {
          std::to_string(cutoff) + "\"/></emitter>";
 }
 
-std::array<double, 3> mean_colour(const Picture& picture) {
-  std::array<double, 3> sum{};
-  const auto& rgb = picture.planes[0].rgb;
-  for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
-  for (double& s : sum) s /= static_cast<double>(rgb.size() / 3);
-  return sum;
-}
-
 RenderSettings unclamped(const char* only) {
   RenderSettings settings;
   settings.only = only;
@@ -85,20 +77,13 @@ void expect_equal_means(const std::string& body, const char* only, int spp) {
   how.paths = "columns";
   how.spp = spp;
   constexpr int kSeeds = 32;
-  std::vector<double> lights[3], paths[3];
+  test::ChannelMeans lights, paths;
   for (int k = 0; k < kSeeds; ++k) {
     settings.seed = 300 + static_cast<std::uint64_t>(k);
-    const auto a = mean_colour(render(scene, settings).picture);
-    const auto b = mean_colour(reference(scene, settings, how).picture);
-    for (std::size_t c = 0; c < 3; ++c) lights[c].push_back(a[c]), paths[c].push_back(b[c]);
+    lights.add(render(scene, settings).picture);
+    paths.add(reference(scene, settings, how).picture);
   }
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto a = mean_of(lights[c]), b = mean_of(paths[c]);
-    const double error = std::hypot(a.standard_error, b.standard_error);
-    EXPECT_NEAR(a.mean, b.mean, student_quantile(kAlpha, 3, kSeeds - 1) * error) << only << ", channel " << c;
-    // The test has teeth: an error of 4 % would be seen.
-    EXPECT_LT(student_quantile(kAlpha, 3, kSeeds - 1) * error, 0.04 * b.mean) << only << ", channel " << c;
-  }
+  test::expect_equal_means(lights, paths, 0.04, only);
 }
 
 TEST(HairUnbiased, FurUnderALamp) {

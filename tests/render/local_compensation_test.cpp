@@ -2,21 +2,16 @@
 // picture.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstring>
 
 #include "lumirank/error.h"
 #include "lumirank/lumirank.h"
+#include "support/channel_means.h"
 #include "support/scene_file.h"
-#include "support/statistics.h"
 
 namespace lumirank {
 namespace {
 
-using test::mean_of;
-using test::student_quantile;
-
-constexpr double kAlpha = 1e-3;  // false alarms of each test
 constexpr int kSeeds = 32;
 
 std::string wall(const std::string& transform, const std::string& bsdf) {
@@ -52,34 +47,19 @@ RenderSettings brute_force(const std::string& light_type) {
   return settings;
 }
 
-std::array<double, 3> mean_colour(const Picture& picture) {
-  std::array<double, 3> sum{};
-  const auto& rgb = picture.planes[0].rgb;
-  for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
-  for (double& s : sum) s /= static_cast<double>(rgb.size() / 3);
-  return sum;
-}
-
 // Means over seeds of the renderer with `settings` and of the path tracer agree, and would not if a `teeth`
 // of the light were missing.
 void expect_whole(const Scene& scene, RenderSettings settings, double teeth) {
   ReferenceSettings how;
   how.paths = "columns";
   how.spp = 512;
-  std::vector<double> whole[3], paths[3];
+  test::ChannelMeans whole, paths;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + k;
-    const auto a = mean_colour(render(scene, settings).picture);
-    const auto b = mean_colour(reference(scene, settings, how).picture);
-    for (std::size_t c = 0; c < 3; ++c) whole[c].push_back(a[c]), paths[c].push_back(b[c]);
+    whole.add(render(scene, settings).picture);
+    paths.add(reference(scene, settings, how).picture);
   }
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto w = mean_of(whole[c]), p = mean_of(paths[c]);
-    const double error =
-        student_quantile(kAlpha, 3, kSeeds - 1) * std::hypot(w.standard_error, p.standard_error);
-    EXPECT_NEAR(w.mean, p.mean, error) << "channel " << c;
-    EXPECT_LT(error, teeth * p.mean) << "channel " << c;
-  }
+  test::expect_equal_means(whole, paths, teeth);
 }
 
 // The floor shows the wall in its gloss; far from the edge, so that unclamped points have finite variance.
@@ -95,7 +75,7 @@ TEST(LocalCompensation, SharpLobesTakeAllTheirLightFromPaths) {
 }
 
 // Spheres of a hundredth of the usual size are nearly points: without compensation the edge would have
-// infinite variance, with it nothing is closer than ten times the distance of the tenth neighbour.
+// infinite variance, with it no light is closer than half the distance of its tenth neighbour, or twice.
 TEST(LocalCompensation, PathsAndColumnsShareTheLightByDistance) {
   const Scene scene = corner(kMatt, "0,0.1,-0.45");
   RenderSettings settings = brute_force("sphere");

@@ -1,16 +1,17 @@
 // The matrix against the path tracer, and row-column sampling against the matrix.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstring>
 
 #include "lumirank/lumirank.h"
+#include "support/channel_means.h"
 #include "support/scene_file.h"
 #include "support/statistics.h"
 
 namespace lumirank {
 namespace {
 
+using test::mean_colour;
 using test::mean_of;
 using test::normal_quantile;
 using test::student_quantile;
@@ -18,15 +19,6 @@ using test::student_quantile;
 constexpr double kAlpha = 1e-3;  // false alarms of each test
 
 Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
-
-// Mean of each channel over the whole (cropped) picture.
-std::array<double, 3> mean_colour(const Picture& picture) {
-  std::array<double, 3> sum{};
-  const auto& rgb = picture.planes[0].rgb;
-  for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
-  for (double& s : sum) s /= static_cast<double>(rgb.size() / 3);
-  return sum;
-}
 
 // Brute force over unclamped columns estimates the same as the path tracer over the paths that columns carry.
 // The window shows the middle of the back wall: farther than 5 % of the scene from every other surface, so
@@ -46,20 +38,13 @@ void expect_equal_means(const char* only) {
   how.paths = "columns";
   how.spp = 512;
   constexpr int kSeeds = 48;
-  std::vector<double> lights[3], paths[3];
+  test::ChannelMeans lights, paths;
   for (int k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + static_cast<std::uint64_t>(k);
-    const auto a = mean_colour(render(scene, settings).picture);
-    const auto b = mean_colour(reference(scene, settings, how).picture);
-    for (std::size_t c = 0; c < 3; ++c) lights[c].push_back(a[c]), paths[c].push_back(b[c]);
+    lights.add(render(scene, settings).picture);
+    paths.add(reference(scene, settings, how).picture);
   }
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto a = mean_of(lights[c]), b = mean_of(paths[c]);
-    const double error = std::hypot(a.standard_error, b.standard_error);
-    EXPECT_NEAR(a.mean, b.mean, student_quantile(kAlpha, 3, kSeeds - 1) * error) << only << ", channel " << c;
-    // The test has teeth: an error of 6 % would be seen.
-    EXPECT_LT(student_quantile(kAlpha, 3, kSeeds - 1) * error, 0.06 * b.mean) << only << ", channel " << c;
-  }
+  test::expect_equal_means(lights, paths, 0.06, only);
 }
 
 TEST(Unbiased, BruteForceAgreesWithThePathTracerOnDirectLight) { expect_equal_means("direct"); }

@@ -270,16 +270,24 @@ TEST(SphericalLights, StrategiesAgreeOnNarrowLobes) {
   }
 }
 
-TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
+// [-1,1]³, seen from inside, and lights 0.1 apart on its floor; the 60th is in the middle.
+world::World cube() {
   scenedesc::SceneDesc desc;
   add_shape(desc, scenedesc::CubeDesc{}, Transform{});
-  const world::World world = build_world(desc);
+  return build_world(desc);
+}
+VirtualLights grid_on_the_floor() {
   VirtualLights lights;
-  // A grid on the floor, 0.1 apart, seen from inside of the cube [-1,1]³.
   for (int a = -5; a <= 5; ++a)
     for (int b = -5; b <= 5; ++b)
       add_light(lights, LightKind::surface, {0.1f * static_cast<float>(a), 0.1f * static_cast<float>(b), -1},
                 {0, 0, 1}, Rgb(1));
+  return lights;
+}
+
+TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
+  const world::World world = cube();
+  VirtualLights lights = grid_on_the_floor();
   add_light(lights, LightKind::omni, {0, 0, 0}, {}, Rgb(1));
   EXPECT_EQ(make_spherical(lights, world, {2}), 2);
   const std::size_t middle = 60;
@@ -297,14 +305,8 @@ TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
 }
 
 TEST(SphericalLights, AReachIsSoManyRadii) {
-  scenedesc::SceneDesc desc;
-  add_shape(desc, scenedesc::CubeDesc{}, Transform{});
-  const world::World world = build_world(desc);
-  VirtualLights lights;
-  for (int a = -5; a <= 5; ++a)
-    for (int b = -5; b <= 5; ++b)
-      add_light(lights, LightKind::surface, {0.1f * static_cast<float>(a), 0.1f * static_cast<float>(b), -1},
-                {0, 0, 1}, Rgb(1));
+  const world::World world = cube();
+  VirtualLights lights = grid_on_the_floor();
   add_light(lights, LightKind::omni, {0, 0, 0.1f}, {}, Rgb(1));  // has no radius
   make_spherical(lights, world, {2});
   const LightReach reach(lights, world, 2, 3);
