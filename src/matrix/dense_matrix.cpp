@@ -1,5 +1,7 @@
 #include "matrix/dense_matrix.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -24,6 +26,7 @@ DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
       group(std::move(other.group)),
       indirect(std::move(other.indirect)),
       half(std::move(other.half)),
+      emitted(std::move(other.emitted)),
       rows_(other.rows_),
       columns_(other.columns_),
       unoccluded_(std::move(other.unoccluded_)),
@@ -95,10 +98,30 @@ void DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rg
   sinks.report("columns", 1.0);
 }
 
+ColumnSet DenseMatrix::column_set(Index j) const {
+  ColumnSet set;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const Rgb e = unoccluded_[i * columns_ + j];
+    for (int c = 0; c < 3; ++c) set.intensity[c] = std::max(set.intensity[c], e[c]);
+  }
+  set.box.extend(column_position.empty() ? Vec3f{} : column_position[j]);
+  set.ceiling = set.intensity;
+  return set;
+}
+
+namespace {
+class GreatestEntries final : public RowBounds {
+  void set_rows(std::span<const Index>) override {}
+  Rgb bound(const ColumnSet& set) const override { return set.intensity; }
+};
+}  // namespace
+
+std::unique_ptr<RowBounds> DenseMatrix::row_bounds() const { return std::make_unique<GreatestEntries>(); }
+
 RowFeatures DenseMatrix::row_features() const { return {pixel, row_position, row_normal, row_weight}; }
 
 ColumnFeatures DenseMatrix::column_features() const {
-  return {column_position, column_normal, power, group, indirect, half};
+  return {column_position, column_normal, power, group, indirect, half, emitted};
 }
 
 std::vector<Rgb> DenseMatrix::exact_sums() const {

@@ -27,6 +27,9 @@ class DenseMatrix : public LightingMatrix {
                Part part = Part::value) const override;
   void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                   const Sinks& sinks = {}) const override;
+  // The greatest entries of the column, whatever the row: bounds know nothing better of a made-up matrix.
+  ColumnSet column_set(Index j) const override;
+  std::unique_ptr<RowBounds> row_bounds() const override;
   RowFeatures row_features() const override;
   ColumnFeatures column_features() const override;
 
@@ -42,6 +45,7 @@ class DenseMatrix : public LightingMatrix {
   std::vector<float> power;
   std::vector<std::uint16_t> group;
   std::vector<std::uint8_t> indirect, half;
+  std::vector<Rgb> emitted;
 
  private:
   void pay(std::size_t i, std::size_t j) const;

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,10 +18,11 @@
 #include "base/rgb.h"
 #include "base/sinks.h"
 #include "base/vec.h"
+#include "matrix/entry_bounds.h"
 
 namespace lumirank::matrix {
 
-using Index = std::uint32_t;
+class EntryReader;
 
 // What has been paid so far. Methods compare by cost as well as by time.
 struct Counters {
@@ -48,6 +50,8 @@ struct ColumnFeatures {
   // Columns are often random samples of what infinitely many would add up to. 1 and 2: member of one of two
   // independent halves, twice the sum over either of which estimates the same; 0: no sample, but exact.
   std::span<const std::uint8_t> half;
+  std::span<const Rgb>
+      emitted;  // what `power` is a scalar of: entries of like columns are in this proportion
 };
 
 // Which part of an entry.
@@ -89,6 +93,13 @@ class LightingMatrix {
   // r + g + b that clamping took away from the visible entries that have been evaluated so far, 0 if nothing
   // is clamped: what a row lost is the difference before and after it.
   virtual double clamped_energy() const { return 0; }
+
+  // Entries for one thread at a time.
+  virtual std::unique_ptr<EntryReader> reader() const;
+
+  // Bounds: what column j is by itself, and a work space for questions about rows.
+  virtual ColumnSet column_set(Index j) const = 0;
+  virtual std::unique_ptr<RowBounds> row_bounds() const = 0;
 
   virtual RowFeatures row_features() const { return {}; }
   virtual ColumnFeatures column_features() const { return {}; }

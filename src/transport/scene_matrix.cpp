@@ -22,8 +22,8 @@ bool has_cutouts(const geometry::RayScene& rays) {
 // Proportional to the power that a light sends out, on one scale for all kinds that have an area or a flux: a
 // surface light's Φ times its albedo, an emitter sample's π·L·A, a point light's mean intensity times 4π (a
 // spot's times its cone). Directional light sends E through the disc of the scene's bounding sphere.
-float emitted_power(const VirtualLights& lights, std::size_t j, float scene_radius) {
-  const float power = luminance(lights.power[j]);
+Rgb emitted_power(const VirtualLights& lights, std::size_t j, float scene_radius) {
+  const Rgb power = lights.power[j];
   switch (lights.kind[j]) {
     case LightKind::omni:
       return power * 4 * kPi;
@@ -39,8 +39,8 @@ float emitted_power(const VirtualLights& lights, std::size_t j, float scene_radi
     case LightKind::surface:
       break;
   }
-  if (lights.closure[j] == VirtualLights::kLambertian) return luminance(lights.power[j] * lights.albedo[j]);
-  return luminance(lights.power[j] * scatter::albedo(lights.closure_at(j), lights.incoming[j]));
+  if (lights.closure[j] == VirtualLights::kLambertian) return lights.power[j] * lights.albedo[j];
+  return lights.power[j] * scatter::albedo(lights.closure_at(j), lights.incoming[j]);
 }
 
 std::size_t items_in_tile(const TilePlan& plan, std::size_t tile) {
@@ -107,9 +107,11 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   column_power.resize(lights.size());
   column_group.resize(lights.size(), 0);
   column_indirect.resize(lights.size());
+  column_emitted.resize(lights.size());
   parallel_for(lights.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
-      column_power[j] = emitted_power(lights, j, radius);
+      column_emitted[j] = emitted_power(lights, j, radius);
+      column_power[j] = luminance(column_emitted[j]);
       column_indirect[j] = lights.kind[j] == LightKind::surface;
       if (settings.group_by_emitter) column_group[j] = lights.emitter[j];
     }
@@ -223,8 +225,8 @@ matrix::RowFeatures SceneMatrix::row_features() const {
 }
 
 matrix::ColumnFeatures SceneMatrix::column_features() const {
-  return {impl_->lights.position, impl_->lights.normal,   impl_->column_power,
-          impl_->column_group,    impl_->column_indirect, impl_->lights.half};
+  return {impl_->lights.position, impl_->lights.normal, impl_->column_power,  impl_->column_group,
+          impl_->column_indirect, impl_->lights.half,   impl_->column_emitted};
 }
 
 double SceneMatrix::clamped_energy() const {

@@ -42,6 +42,8 @@ class SceneMatrix final : public matrix::LightingMatrix {
                std::span<Rgb> out, matrix::Part part) const override;
   void accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
                   const Sinks& sinks) const override;
+  matrix::ColumnSet column_set(matrix::Index j) const override;
+  std::unique_ptr<matrix::RowBounds> row_bounds() const override;
   matrix::RowFeatures row_features() const override;
   matrix::ColumnFeatures column_features() const override;
 

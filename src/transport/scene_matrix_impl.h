@@ -27,6 +27,7 @@ struct SceneMatrix::Impl {
   std::vector<float> row_weight, column_power;
   std::vector<std::uint16_t> column_group;
   std::vector<std::uint8_t> column_indirect;
+  std::vector<Rgb> column_emitted;
 
   // Work space of one task at a time; kept for the next one.
   class Lease {

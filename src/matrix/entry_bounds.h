@@ -1,0 +1,60 @@
+// What a set of columns can add to a row at most, without looking at its entries: what light cuts refine by
+// (Walter et al. 2005, section 4.1: material × geometry × intensity, visibility taken as 1).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "base/bounds.h"
+#include "base/rgb.h"
+#include "base/vec.h"
+
+namespace lumirank::matrix {
+
+using Index = std::uint32_t;
+
+// All directions within an angle of an axis.
+struct Cone {
+  Vec3f axis{0, 0, 1};  // unit
+  float cosine = -1;    // of that angle; -1: all directions
+};
+// A cone that holds both; the least one, but for rounding to the safe side.
+Cone join(const Cone& a, const Cone& b);
+
+// How a column sends light. Columns that differ in it, or of which only one is spherical, do not share a
+// node.
+enum class Emission : std::uint8_t {
+  omni,         // from its position, in all directions alike or bounded by the same number
+  oriented,     // the same times the cosine with its normal, nothing behind
+  directional,  // from infinitely far
+};
+
+// A set of columns of one kind, as bounds see it.
+struct ColumnSet {
+  Emission emission = Emission::omni;
+  bool spherical = false;
+  Bounds3f box;      // positions; not used if directional
+  Cone cone;         // oriented: normals; directional: directions towards the light
+  float radius = 0;  // of the largest sphere
+  // Sum over the columns of the greatest radiant intensity that each has in any direction, before the cosine
+  // (directional: irradiance).
+  Rgb intensity{0};
+  // Sum over the columns of the greatest entry that clamping leaves; infinite where it leaves any.
+  Rgb ceiling{kInfinity};
+};
+// Both must be of one kind (emission and spherical).
+ColumnSet join(const ColumnSet& a, const ColumnSet& b);
+
+// Bounds for one set of rows at a time: a receiver, the receivers of a pixel, a slice. One thread at a time.
+class RowBounds {
+ public:
+  virtual ~RowBounds() = default;
+  // The rows of which the following questions ask. Costs O(rows); keeps its buffers.
+  virtual void set_rows(std::span<const Index> rows) = 0;
+  // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i. Finite unless a row may lie in the
+  // set's box and nothing is clamped.
+  virtual Rgb bound(const ColumnSet& set) const = 0;
+};
+
+}  // namespace lumirank::matrix
