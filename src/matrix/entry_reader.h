@@ -8,8 +8,8 @@
 
 namespace lumirank::matrix {
 
-// Gives the same numbers as the matrix that made it, and pays for them in the same counters. Runs on the
-// calling thread alone. The matrix must outlive it.
+// Gives the same numbers as the matrix that made it, and pays for them in the same counters (at the latest
+// when it goes). Runs on the calling thread alone. The matrix must outlive it.
 class EntryReader {
  public:
   virtual ~EntryReader() = default;

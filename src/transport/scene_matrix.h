@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "matrix/entry_reader.h"
 #include "matrix/lighting_matrix.h"
 #include "transport/receivers.h"
 #include "transport/sphere_rules.h"
@@ -42,6 +43,7 @@ class SceneMatrix final : public matrix::LightingMatrix {
                std::span<Rgb> out, matrix::Part part) const override;
   void accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
                   const Sinks& sinks) const override;
+  std::unique_ptr<matrix::EntryReader> reader() const override;
   matrix::ColumnSet column_set(matrix::Index j) const override;
   std::unique_ptr<matrix::RowBounds> row_bounds() const override;
   matrix::RowFeatures row_features() const override;

@@ -1,8 +1,7 @@
 // Entries and blocks of a SceneMatrix: pairs in any order, sorted into groups of one class.
-#include <algorithm>
-
 #include "base/error.h"
 #include "base/parallel.h"
+#include "transport/kernels/pair_list.h"
 #include "transport/scene_matrix_impl.h"
 
 namespace lumirank::transport {
@@ -13,50 +12,6 @@ using matrix::Part;
 namespace {
 
 constexpr std::size_t kPiece = 4096;  // pairs per task
-
-// Pairs by number, evaluated together; entry k of the piece goes to out(k).
-class PairList {
- public:
-  explicit PairList(const PairContext& context) : context_(context) {}
-
-  void add(Index i, Index j) {
-    const std::uint32_t row = context_.rows->plan.slot[i], column = context_.columns->plan.slot[j];
-    const std::uint32_t kinds = static_cast<std::uint32_t>(context_.rows->plan.kind_of(row)) << 16 |
-                                context_.columns->plan.kind_of(column);
-    pairs_.push_back({kinds, row, column, static_cast<std::uint32_t>(pairs_.size())});
-  }
-
-  template <typename Out>
-  Tally evaluate(PairBlock& block, Part part, Out&& out) {
-    std::stable_sort(pairs_.begin(), pairs_.end(),
-                     [](const Pair& a, const Pair& b) { return a.kinds < b.kinds; });
-    for (std::size_t k = 0; k < pairs_.size();) {
-      std::uint32_t used = 0;
-      const std::uint32_t kinds = pairs_[k].kinds;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const bool more = k < pairs_.size() && pairs_[k].kinds == kinds;
-        const Pair& pair = pairs_[more ? k : k - 1];
-        rows_.push_back(pair.row), columns_.push_back(pair.column);
-        numbers_.push_back(more ? pair.number : kNoItem);
-        if (more) used |= 1u << lane, ++k;
-      }
-      used_.push_back(static_cast<std::uint16_t>(used));
-    }
-    block.set_list(rows_, columns_, used_);
-    const Tally tally = finish(block, part, pairs_.size());
-    copy_out(block, part, numbers_, out);
-    return tally;
-  }
-
- private:
-  struct Pair {
-    std::uint32_t kinds, row, column, number;
-  };
-  const PairContext& context_;
-  std::vector<Pair> pairs_;
-  std::vector<std::uint32_t> rows_, columns_, numbers_;
-  std::vector<std::uint16_t> used_;
-};
 
 }  // namespace
 

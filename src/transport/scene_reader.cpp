@@ -1,0 +1,130 @@
+// Entries of a SceneMatrix for one thread: a slice's receivers are copied together once, so that each column
+// then meets them as it meets a tile of neighbours.
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "base/error.h"
+#include "matrix/entry_reader.h"
+#include "transport/kernels/pair_list.h"
+#include "transport/scene_matrix_impl.h"
+
+namespace lumirank::transport {
+
+using matrix::Index;
+using matrix::Part;
+
+namespace {
+
+class SceneReader final : public matrix::EntryReader {
+ public:
+  using Account = std::function<void(const Tally&)>;
+
+  SceneReader(const PairContext& context, Account account)
+      : context_(context),
+        account_(std::move(account)),
+        slice_context_(context),
+        column_block_(slice_context_),
+        list_block_(context_),
+        list_(context_) {
+    slice_context_.rows = &slice_;
+  }
+  ~SceneReader() override { account_(tally_); }
+
+  void set_rows(std::span<const Index> rows) override {
+    const RowStore& all = *context_.rows;
+    const auto kind = [&](std::uint32_t place) { return all.plan.kind_of(all.plan.slot[rows[place]]); };
+    order_.resize(rows.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return kind(a) != kind(b) ? kind(a) < kind(b) : a < b;
+    });
+    TilePlan& plan = slice_.plan;
+    plan.runs.clear(), plan.item.clear(), plan.kind.clear(), places_.clear(), slice_.groups.clear();
+    slice_.key.clear(), slice_.two_sided.clear();
+    rows_ = rows.size();
+    for (std::size_t k = 0; k < order_.size();) {
+      const std::uint16_t run_kind = kind(order_[k]);
+      TilePlan::Run run{static_cast<std::uint32_t>(plan.item.size()), 0, run_kind};
+      for (; k < order_.size() && kind(order_[k]) == run_kind; ++k)
+        plan.item.push_back(rows[order_[k]]), places_.push_back(order_[k]);
+      run.end = static_cast<std::uint32_t>((plan.item.size() + 15) / 16 * 16);
+      plan.item.resize(run.end, kNoItem), places_.resize(run.end, kNoItem);
+      plan.runs.push_back(run);
+      plan.kind.resize(run.end / 16, run_kind);
+    }
+    plan.first_run = {0, static_cast<std::uint32_t>(plan.runs.size())};
+    copy_rows(all);
+    if (rows_ > 0) column_block_.set_row_tile(0);
+  }
+
+  void column(Index j, std::span<Rgb> out, Part part) override {
+    if (j >= context_.columns->plan.slot.size() || out.size() != rows_)
+      throw InternalError(
+          "transport::SceneReader::column needs a column of the matrix and room for its rows");
+    if (rows_ == 0) return;
+    column_block_.set_column(context_.columns->plan.slot[j]);
+    tally_ += finish(column_block_, part, rows_);
+    copy_out(column_block_, part, places_, [&](std::uint32_t to) -> Rgb& { return out[to]; });
+  }
+
+  void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+               Part part) override {
+    if (rows.size() != columns.size() || out.size() != rows.size())
+      throw InternalError("transport::SceneReader::entries: rows, columns and out differ in length");
+    for (std::size_t begin = 0; begin < rows.size(); begin += kPiece) {
+      list_.clear();
+      const std::size_t end = std::min(rows.size(), begin + kPiece);
+      for (std::size_t k = begin; k < end; ++k) list_.add(rows[k], columns[k]);
+      tally_ += list_.evaluate(list_block_, part, [&](std::uint32_t k) -> Rgb& { return out[begin + k]; });
+    }
+  }
+
+ private:
+  static constexpr std::size_t kPiece = 4096;  // pairs whose buffers stay in a core's own cache
+
+  void copy_rows(const RowStore& all) {
+    const std::vector<std::uint32_t>& items = slice_.plan.item;
+    slice_.groups.resize(items.size() / 16);
+    const auto slot_of = [&](std::size_t k) { return all.plan.slot[items[k]]; };
+    for (std::size_t g = 0; g < slice_.groups.size(); ++g) {
+      std::uint32_t slots[16], last = 0;
+      // The first of a group is never padding, the others repeat the last.
+      for (std::size_t k = 0; k < 16; ++k)
+        slots[k] = last = items[16 * g + k] == kNoItem ? last : slot_of(16 * g + k);
+      all.gather(slots, slice_.groups[g]);
+      for (int k = 0; k < 16; ++k)
+        if (items[16 * g + static_cast<std::size_t>(k)] == kNoItem)
+          slice_.groups[g].depth_max[k] = -kInfinity;
+    }
+    copy_by_slot(all.key, slice_.key, slot_of);
+    copy_by_slot(all.two_sided, slice_.two_sided, slot_of);
+  }
+  template <typename T, typename SlotOf>
+  void copy_by_slot(const std::vector<T>& from, std::vector<T>& to, SlotOf&& slot_of) {
+    if (from.empty()) return;
+    to.assign(slice_.plan.item.size(), T{0});
+    for (std::size_t k = 0; k < to.size(); ++k)
+      if (slice_.plan.item[k] != kNoItem) to[k] = from[slot_of(k)];
+  }
+
+  const PairContext& context_;
+  Account account_;
+  RowStore slice_;
+  PairContext slice_context_;
+  PairBlock column_block_, list_block_;
+  PairList list_;
+  Tally tally_;
+  std::size_t rows_ = 0;
+  std::vector<std::uint32_t> order_, places_;
+};
+
+}  // namespace
+
+std::unique_ptr<matrix::EntryReader> SceneMatrix::reader() const {
+  return std::make_unique<SceneReader>(impl_->context,
+                                       [this](const Tally& tally) { impl_->account(counters(), tally); });
+}
+
+}  // namespace lumirank::transport
