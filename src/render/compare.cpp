@@ -98,10 +98,12 @@ class Comparison {
   void make_reference() {
     const Timer timer;
     if (const std::size_t count = sampled_receivers(); count > 0) {
-      truth_ = std::make_unique<SampledTruth>(*setup_.matrix, setup_.receivers.weight, count,
-                                              settings_.base.seed, sinks_);
+      const SampledTruth::Film film{setup_.receivers.weight, setup_.receivers.sample,
+                                    static_cast<std::size_t>(settings_.base.spp)};
+      truth_ = std::make_unique<SampledTruth>(*setup_.matrix, film, count, settings_.base.seed, sinks_);
       results_.reference_kind = "all " + std::to_string(setup_.matrix->columns()) + " columns at " +
-                                std::to_string(truth_->count()) + " stratified receivers";
+                                std::to_string(truth_->rows()) + " receivers of " +
+                                std::to_string(truth_->pixels()) + " stratified pixels";
       results_.reference_seconds = timer.seconds();
       return;
     }
@@ -214,6 +216,7 @@ class Comparison {
     result.entries = static_cast<double>(counters.entries_evaluated.load());
     result.sampling_rate = result.entries / (static_cast<double>(setup_.matrix->rows()) *
                                              static_cast<double>(setup_.matrix->columns()));
+    result.numbers = estimate.trace.numbers;
     for (const auto& [key, value] : estimate.trace.numbers)
       if (key.starts_with("seconds."))
         result.phases[key.substr(8)] = value;

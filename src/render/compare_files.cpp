@@ -41,6 +41,7 @@ json to_json(const CompareRun& run) {
             {"relmse", number(e.relmse)},
             {"bias", number(e.bias)}}},
           {"phases", numbers(run.phases)},
+          {"numbers", numbers(run.numbers)},
           {"image", run.image_file},
           {"error_image", run.error_image_file}};
 }

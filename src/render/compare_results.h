@@ -24,6 +24,7 @@ struct CompareRun {
   double sampling_rate = 0;
   std::string image_file, error_image_file;  // PNG, relative to the folder of the page; empty: none
   std::map<std::string, double> phases;      // seconds
+  std::map<std::string, double> numbers;     // all that the method's trace tells
 };
 
 struct CompareResults {

@@ -21,26 +21,37 @@ struct Moments {
 
 }  // namespace
 
-SampledTruth::SampledTruth(const matrix::LightingMatrix& matrix, std::span<const Rgb> weights,
-                           std::size_t count, std::uint64_t seed, const Sinks& sinks) {
-  count = std::min(count, matrix.rows());
+SampledTruth::SampledTruth(const matrix::LightingMatrix& matrix, const Film& film, std::size_t count,
+                           std::uint64_t seed, const Sinks& sinks) {
+  const std::size_t n = matrix.rows();
+  count = std::min(count, n);
   if (count == 0)
     throw InputError("no receiver is seen, so there is nothing to compare", "look at the scene's camera");
+  const auto pixel = [&](std::size_t i) { return film.samples[i] / film.per_pixel; };
   std::vector<Rgb> row(matrix.columns());
   Rng rng(seed, Stage::benchmark, 3);
-  for (std::size_t k = 0; k < count; ++k) {
-    if (sinks.cancelled()) throw Cancelled();
-    const double at = (static_cast<double>(k) + rng.next_double()) / static_cast<double>(count);
-    const auto i =
-        std::min(matrix.rows() - 1, static_cast<std::size_t>(at * static_cast<double>(matrix.rows())));
-    matrix.row(static_cast<matrix::Index>(i), row);
-    double r = 0, g = 0, b = 0;
-    for (const Rgb& a : row) r += a.r, g += a.g, b += a.b;
-    rows_.push_back(static_cast<matrix::Index>(i));
-    weights_.push_back(weights[i]);
-    truth_.push_back(Rgb(static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)) * weights[i]);
-    sinks.report("reference", static_cast<double>(k + 1) / static_cast<double>(count));
+  const std::size_t strata = (count + film.per_pixel - 1) / film.per_pixel;
+  std::size_t next = 0;  // first row after the last pixel taken
+  for (std::size_t k = 0; k < strata; ++k) {
+    const double at = (static_cast<double>(k) + rng.next_double()) / static_cast<double>(strata);
+    auto i = std::min(n - 1, static_cast<std::size_t>(at * static_cast<double>(n)));
+    while (i > 0 && pixel(i - 1) == pixel(i)) --i;
+    if (i < next) continue;  // its pixel is known by now
+    double sum[3] = {0, 0, 0};
+    first_.push_back(static_cast<std::uint32_t>(rows_.size()));
+    for (next = i; next < n && pixel(next) == pixel(i); ++next) {
+      if (sinks.cancelled()) throw Cancelled();
+      matrix.row(static_cast<matrix::Index>(next), row);
+      const Rgb weight = film.weights[next];
+      for (const Rgb& a : row)
+        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(a[c]) * static_cast<double>(weight[c]);
+      rows_.push_back(static_cast<matrix::Index>(next));
+      weights_.push_back(weight);
+    }
+    truth_.push_back({static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])});
+    sinks.report("reference", static_cast<double>(k + 1) / static_cast<double>(strata));
   }
+  first_.push_back(static_cast<std::uint32_t>(rows_.size()));
 }
 
 SampledTruth::Error SampledTruth::error_of(std::span<const Rgb> sums) const {
@@ -50,11 +61,13 @@ SampledTruth::Error SampledTruth::error_of(std::span<const Rgb> sums) const {
   double relative_squared = 0, mean = 0;
   for (const Rgb& t : truth_) mean += static_cast<double>(t.r) + t.g + t.b;
   mean /= 3.0 * static_cast<double>(truth_.size());
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (std::size_t k = 0; k < truth_.size(); ++k) {
     Moments m;
     for (int c = 0; c < 3; ++c) {
       const double truth = truth_[k][c];
-      const double difference = static_cast<double>(sums[rows_[k]][c]) * weights_[k][c] - truth;
+      double difference = -truth;
+      for (std::uint32_t i = first_[k]; i < first_[k + 1]; ++i)
+        difference += static_cast<double>(sums[rows_[i]][c]) * static_cast<double>(weights_[i][c]);
       m.absolute += std::abs(difference), m.difference += difference, m.squared += difference * difference;
       m.total += truth, m.total_squared += truth * truth;
       relative_squared += difference * difference / (truth * truth + 1e-4 * mean * mean);
@@ -64,7 +77,7 @@ SampledTruth::Error SampledTruth::error_of(std::span<const Rgb> sums) const {
       into->total += m.total, into->total_squared += m.total_squared;
     }
   }
-  const double entries = 3.0 * static_cast<double>(rows_.size());
+  const double entries = 3.0 * static_cast<double>(truth_.size());
   Error error;
   error.metrics.relative_l1 = all.l1();
   error.metrics.relative_l2 = all.l2();

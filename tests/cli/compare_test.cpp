@@ -80,7 +80,7 @@ TEST_F(Compare, TimesAndLightsAgainstASample) {
   EXPECT_SUCCESS(outcome);
   const auto json = read_json(out_ + "/results.json");
   ASSERT_EQ(json["runs"].size(), 4u);
-  EXPECT_NE(json["reference"]["kind"].get<std::string>().find("64 stratified receivers"), std::string::npos);
+  EXPECT_NE(json["reference"]["kind"].get<std::string>().find("stratified pixels"), std::string::npos);
   EXPECT_EQ(json["runs"][0]["label"], "row-column-sampling 0.05 s");
 
   EXPECT_SUCCESS(lumirank(base_ + Arguments{"--methods", "brute-force", "--reference", "brute-force:64",
