@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "methods/brute_force/brute_force.h"
 #include "methods/instant_radiosity/instant_radiosity.h"
+#include "methods/lightslice/lightslice.h"
 #include "methods/method.h"
 #include "methods/power_sampling/power_sampling.h"
 #include "methods/row_column/row_column.h"
@@ -10,7 +11,7 @@ namespace lumirank::methods {
 
 const std::vector<MethodInfo>& all_methods() {
   static const std::vector<MethodInfo> methods{brute_force_info(), instant_radiosity_info(),
-                                               power_sampling_info(), row_column_info()};
+                                               lightslice_info(), power_sampling_info(), row_column_info()};
   return methods;
 }
 

@@ -1,7 +1,8 @@
-// Every method's estimate is a sum of columns, and says of which: that sum splits a picture by light.
+// A method whose estimate is one sum of columns says of which: that sum splits a picture by light.
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <set>
 
 #include "matrix/synthetic.h"
 #include "methods/column_pass.h"
@@ -42,11 +43,22 @@ TEST_P(Combination, AlsoOfAPartThatWasCutShort) {
   expect_same_sums(m, e, "cut short");
 }
 
+// Columns of their own for receivers, pixels or slices: no one sum.
+const std::set<std::string> kLocal{"lightslice"};
+
 std::vector<std::string> names() {
   std::vector<std::string> n;
-  for (const MethodInfo& m : all_methods()) n.push_back(m.name);
+  for (const MethodInfo& m : all_methods())
+    if (!kLocal.contains(m.name)) n.push_back(m.name);
   return n;
 }
+
+TEST(LocalMethods, CombinationIsLeftEmptyWhereColumnsDifferFromRowToRow) {
+  const auto m = matrix::sparse_matrix({600, 900, 1}, 0.3);
+  for (const std::string& name : kLocal)
+    EXPECT_TRUE(find_method(name).make({})->run(m, {}).combination.empty()) << name;
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Combination, testing::ValuesIn(names()));
 
 }  // namespace

@@ -63,9 +63,8 @@ TEST(Slices, AreTheSameForAnyNumberOfThreads) {
 
 // A wall of the unit room has 1/6 of the rows. A slice of one wall covers 6/slices of its area, so a square
 // one has a diagonal of √2·√(6/slices); cut at 2:1 it has √2.5 instead of √2, and where a cell holds an edge
-// of the room it spans two walls. Twice that bounds all but those few. The 12 edges of the room
-// cross 12 / side slices if nothing is known of normals: about a half of 600 slices; a fifth shows that it
-// is.
+// of the room it spans two walls. Twice that bounds all but those few. Where nothing is known of normals the
+// 12 edges of the room cross 12/√(6/600) = 120 of 600 slices; three quarters of that would show that much is.
 TEST(Slices, AreCompactAndKeepWallsApart) {
   constexpr std::size_t kRows = 60000, kMost = 100;
   const Room room(kRows);
@@ -83,7 +82,7 @@ TEST(Slices, AreCompactAndKeepWallsApart) {
     of_one_wall += normals.size() == 1;
   }
   EXPECT_GE(compact, slices.count() * 95 / 100);
-  EXPECT_GE(of_one_wall, slices.count() * 4 / 5);
+  EXPECT_GE(of_one_wall, slices.count() * 85 / 100);
 }
 
 // The two sides of a sheet: at the same places, so only normals tell them apart.

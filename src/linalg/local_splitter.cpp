@@ -1,0 +1,186 @@
+#include "linalg/local_splitter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lumirank::linalg {
+
+namespace {
+
+// Costs below this share of (Σ‖x‖)² are rounding of the coordinates (16 bits where they come from ShortRows).
+constexpr double kZeroCost = 1e-6;
+// Clusters without cost are split only when none with cost is left.
+constexpr double kParallel = 1e-12;
+
+template <std::size_t Lanes>
+float dot(const float* a, const float* b, std::size_t n) {
+  float parts[Lanes] = {};
+  for (std::size_t d = 0; d < n; d += Lanes)
+    for (std::size_t k = 0; k < Lanes; ++k) parts[k] += a[d + k] * b[d + k];
+  for (std::size_t width = Lanes / 2; width > 0; width /= 2)
+    for (std::size_t k = 0; k < width; ++k) parts[k] += parts[k + width];
+  return parts[0];
+}
+
+// sum[0 … n): coordinates; sum[n]: weight.
+template <std::size_t Lanes>
+void add_to(double* sum, const float* x, float norm, std::size_t n) {
+  for (std::size_t d = 0; d < n; d += Lanes)
+    for (std::size_t k = 0; k < Lanes; ++k) sum[d + k] += static_cast<double>(x[d + k]);
+  sum[n] += static_cast<double>(norm);
+}
+
+double cost_of(const double* sum, std::size_t n) {
+  double squares = 0;
+  for (std::size_t d = 0; d < n; ++d) squares += sum[d] * sum[d];
+  return std::max(0.0, sum[n] * sum[n] - squares);
+}
+
+}  // namespace
+
+void LocalSplitter::clear(std::size_t dimension) {
+  dimension_ = dimension;
+  padded_ = (dimension + kLanes - 1) / kLanes * kLanes;
+  x_.clear(), norms_.clear(), ids_.clear(), nodes_.clear(), queue_.clear();
+  line_.assign(padded_, 0.0f);
+  bins_.assign((kBins + 2) * (padded_ + 1), 0.0);
+  open_ = 0;
+}
+
+void LocalSplitter::begin_cluster() { finish_cluster(); }
+
+void LocalSplitter::finish_cluster() {
+  const auto end = static_cast<std::uint32_t>(ids_.size());
+  if (end == open_) return;
+  nodes_.push_back({open_, end, 0});
+  measure(nodes_.back());
+  enqueue(static_cast<std::uint32_t>(nodes_.size() - 1));
+  open_ = end;
+}
+
+void LocalSplitter::add(std::uint32_t id, const float* x) {
+  const std::size_t at = x_.size();
+  x_.resize(at + padded_, 0.0f);
+  std::copy(x, x + dimension_, x_.begin() + static_cast<std::ptrdiff_t>(at));
+  ids_.push_back(id);
+  norms_.push_back(std::sqrt(dot<kLanes>(&x_[at], &x_[at], padded_)));
+}
+
+void LocalSplitter::measure(Node& node) {
+  double* sum = bins_.data();
+  std::fill(sum, sum + padded_ + 1, 0.0);
+  for (std::size_t k = node.begin; k < node.end; ++k) add_to<kLanes>(sum, point(k), norms_[k], padded_);
+  node.cost = node.end - node.begin > 1 ? cost_of(sum, padded_) : 0;
+  const double whole = sum[padded_] * sum[padded_];
+  if (node.cost <= kZeroCost * whole) node.cost = 0;
+}
+
+void LocalSplitter::enqueue(std::uint32_t n) {
+  const Node& node = nodes_[n];
+  if (node.end - node.begin < 2) return;
+  double priority = node.cost;
+  if (priority == 0) {
+    double weight = 0;
+    for (std::size_t k = node.begin; k < node.end; ++k) weight += static_cast<double>(norms_[k]);
+    priority = kParallel * weight * weight;
+  }
+  queue_.push_back({priority, n});
+  std::push_heap(queue_.begin(), queue_.end());
+}
+
+// From the heaviest member towards the one that costs most together with it: ‖a‖‖x‖ − a·x.
+void LocalSplitter::choose_line(const Node& node) {
+  std::size_t heaviest = node.begin;
+  for (std::size_t k = node.begin; k < node.end; ++k)
+    if (norms_[k] > norms_[heaviest]) heaviest = k;
+  const float* a = point(heaviest);
+  std::size_t farthest = node.begin;
+  float most = -1;
+  for (std::size_t k = node.begin; k < node.end; ++k) {
+    const float cost = norms_[heaviest] * norms_[k] - dot<kLanes>(a, point(k), padded_);
+    if (cost > most && k != heaviest) most = cost, farthest = k;
+  }
+  const float *b = point(farthest), na = 1 / norms_[heaviest], nb = 1 / norms_[farthest];
+  for (std::size_t d = 0; d < padded_; ++d) line_[d] = a[d] * na - b[d] * nb;
+}
+
+void LocalSplitter::swap_points(std::size_t a, std::size_t b) {
+  std::swap_ranges(x_.begin() + static_cast<std::ptrdiff_t>(a * padded_),
+                   x_.begin() + static_cast<std::ptrdiff_t>((a + 1) * padded_),
+                   x_.begin() + static_cast<std::ptrdiff_t>(b * padded_));
+  std::swap(ids_[a], ids_[b]);
+  std::swap(norms_[a], norms_[b]);
+  std::swap(keys_[a], keys_[b]);
+}
+
+std::uint32_t LocalSplitter::cut(const Node& node) {
+  choose_line(node);
+  keys_.resize(ids_.size());
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (std::size_t k = node.begin; k < node.end; ++k) {
+    keys_[k] = dot<kLanes>(line_.data(), point(k), padded_) / norms_[k];
+    low = std::min(low, keys_[k]), high = std::max(high, keys_[k]);
+  }
+  const std::uint32_t middle = node.begin + (node.end - node.begin) / 2;
+  if (!(high > low)) return middle;
+
+  const std::size_t stride = padded_ + 1;
+  std::fill(bins_.begin(), bins_.end(), 0.0);
+  const float scale = static_cast<float>(kBins) / (high - low) * 0.99999f;
+  const auto bin_of = [&](float key) {
+    return std::min(static_cast<std::size_t>((key - low) * scale), kBins - 1);
+  };
+  double *left = bins_.data() + kBins * stride, *right = left + stride;
+  for (std::size_t k = node.begin; k < node.end; ++k)
+    add_to<kLanes>(bins_.data() + bin_of(keys_[k]) * stride, point(k), norms_[k], padded_);
+  for (std::size_t b = 0; b < kBins; ++b)
+    for (std::size_t d = 0; d < stride; ++d) right[d] += bins_[b * stride + d];
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t bins_left = 1;
+  for (std::size_t b = 0; b + 1 < kBins; ++b) {
+    for (std::size_t d = 0; d < stride; ++d)
+      left[d] += bins_[b * stride + d], right[d] -= bins_[b * stride + d];
+    const double cost = cost_of(left, padded_) + cost_of(right, padded_);
+    if (cost < least) least = cost, bins_left = b + 1;
+  }
+  std::size_t a = node.begin, z = node.end;
+  while (a < z) {
+    if (bin_of(keys_[a]) < bins_left)
+      ++a;
+    else
+      swap_points(a, --z);
+  }
+  // The ends of the range lie in the first and the last bin.
+  return a > node.begin && a < node.end ? static_cast<std::uint32_t>(a) : middle;
+}
+
+void LocalSplitter::split_to(std::size_t clusters) {
+  finish_cluster();
+  while (nodes_.size() < clusters && !queue_.empty()) {
+    std::pop_heap(queue_.begin(), queue_.end());
+    const std::uint32_t n = queue_.back().node;
+    queue_.pop_back();
+    const Node whole = nodes_[n];
+    const std::uint32_t at = cut(whole);
+    nodes_[n] = {whole.begin, at, 0};
+    nodes_.push_back({at, whole.end, 0});
+    for (const std::uint32_t m : {n, static_cast<std::uint32_t>(nodes_.size() - 1)}) {
+      measure(nodes_[m]);
+      enqueue(m);
+    }
+  }
+}
+
+double LocalSplitter::cost() const {
+  double sum = 0;
+  for (const Node& node : nodes_) sum += node.cost;
+  return sum;
+}
+
+std::size_t LocalSplitter::memory_bytes() const {
+  return (x_.capacity() + norms_.capacity() + keys_.capacity()) * sizeof(float) +
+         ids_.capacity() * sizeof(std::uint32_t);
+}
+
+}  // namespace lumirank::linalg

@@ -1,0 +1,81 @@
+// LightSlice: its estimate's expectation, and that it ends at the exact sums.
+#include <gtest/gtest.h>
+
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/method.h"
+#include "methods/statistics.h"
+
+namespace lumirank::methods {
+namespace {
+
+using Settings = std::map<std::string, std::string>;
+
+Estimate run(const matrix::DenseMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
+  RunOptions options;
+  options.seed = seed;
+  return find_method("lightslice").make(settings)->run(m, options);
+}
+
+// The mean over seeds of the relative error.
+double mean_error(const matrix::DenseMatrix& m, const Settings& settings) {
+  double sum = 0;
+  constexpr std::uint64_t kSeeds = 8;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
+    sum += relative_l1_difference(run(m, settings, seed).sums, m.exact_sums());
+  return sum / kSeeds;
+}
+
+TEST(LightSlice, ConvergesToAllColumns) {
+  const auto m = matrix::sparse_matrix({600, 400, 1}, 0.4);
+  double last = 1e9;
+  for (const char* columns : {"25", "100", "300"}) {
+    const double error = mean_error(m, {{"slice-rows", "50"}, {"columns", columns}});
+    EXPECT_LT(error, last) << columns;
+    last = error;
+  }
+  // Each entry is rounded when it is added: 400 additions.
+  EXPECT_LT(mean_error(m, {{"slice-rows", "50"}, {"columns", "400"}}), 400 * 0x1p-24);
+}
+
+// Columns within a slice of a smooth matrix are nearly parallel where those of the whole matrix are not.
+TEST(LightSlice, AdaptsToSlices) {
+  const auto m = matrix::low_rank_matrix({800, 400, 1}, 12);
+  const double whole = mean_error(m, {{"slice-rows", "800"}, {"neighbours", "1"}, {"columns", "20"}});
+  const double sliced = mean_error(m, {{"slice-rows", "50"}, {"neighbours", "4"}, {"columns", "20"}});
+  EXPECT_LT(sliced, 0.5 * whole);
+}
+
+// 11 two-sided t-tests with 149 degrees of freedom at a joint confidence of 99.9 %: 4.0, as in
+// test_unbiased.cpp.
+TEST(LightSlice, IsUnbiasedWithScalarColourAndZeroColumnsSampled) {
+  for (const auto& m :
+       {matrix::low_rank_matrix({200, 300, 1}, 8), matrix::sparse_matrix({200, 300, 1}, 0.3)}) {
+    test::UnbiasednessTest t(m.exact_sums(), 10);
+    for (std::uint64_t seed = 1; seed <= 150; ++seed)
+      t.add(run(m,
+                {{"columns", "40"},
+                 {"slice-rows", "40"},
+                 {"neighbours", "3"},
+                 {"colour", "scalar"},
+                 {"zero-columns", "sample"},
+                 {"zero-share", "0.3"}},
+                seed)
+                .sums);
+    EXPECT_LT(t.largest_t(), 4.0);
+  }
+}
+
+TEST(LightSlice, StatesWhatItCost) {
+  const auto m = matrix::low_rank_matrix({400, 900, 1}, 5);
+  const Estimate e = run(m, {{"slice-rows", "100"}, {"columns", "30"}});
+  const auto& n = e.trace.numbers;
+  EXPECT_EQ(n.at("slices"), 4);
+  EXPECT_EQ(n.at("columns"), 30);
+  // 4 whole rows, and 30 of 900 columns.
+  EXPECT_DOUBLE_EQ(n.at("sampling_rate"), 4.0 / 400 + 30.0 / 900);
+  EXPECT_DOUBLE_EQ(static_cast<double>(m.counters().entries_evaluated), n.at("sampling_rate") * 400 * 900);
+}
+
+}  // namespace
+}  // namespace lumirank::methods
