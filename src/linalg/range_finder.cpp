@@ -1,0 +1,107 @@
+#include "linalg/range_finder.h"
+
+// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialised variables.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "linalg/blas.h"
+
+namespace lumirank::linalg {
+
+namespace {
+
+constexpr std::size_t kBlock = 16;
+constexpr std::size_t kMost = 24;
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMost>;
+using Vector = Eigen::Map<Eigen::VectorXf>;
+
+Vector vector(float* v, std::size_t n) { return {v, static_cast<Eigen::Index>(n)}; }
+
+}  // namespace
+
+void orthonormalise(std::span<float> vectors, std::size_t k, std::size_t n) {
+  for (std::size_t a = 0; a < k; ++a) {
+    Vector va = vector(&vectors[a * n], n);
+    const float before = va.norm();
+    for (int pass = 0; pass < 2; ++pass)
+      for (std::size_t b = 0; b < a; ++b) {
+        const Vector vb = vector(&vectors[b * n], n);
+        va -= va.dot(vb) * vb;
+      }
+    const float after = va.norm();
+    if (after > 1e-5f * before && after > 0)
+      va /= after;
+    else
+      va.setZero();
+  }
+}
+
+RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t most,
+                      std::uint64_t seed, const RangeSpace& space) {
+  RangeFound found;
+  const std::size_t s = std::min({most, kMost, rows, columns}), m = rows;
+  if (s == 0) return found;
+  float* const x = space.x.data();
+  std::fill_n(x, s * m, 0.0f);
+  double energy = 0;
+  for (std::size_t j = 0; j < columns; ++j) {
+    const std::uint64_t bits = hash_ids(seed, Stage::projection, 0x52414e47, j);
+    const float sign = bits & 1 ? 1.0f : -1.0f;
+    const Eigen::Map<const Eigen::VectorXf> column(&d[j * m], static_cast<Eigen::Index>(m));
+    vector(x + (j < s ? j : (bits >> 8) % s) * m, m) += sign * column;
+    energy += static_cast<double>(column.squaredNorm());
+  }
+  found.norm = std::sqrt(energy);
+  if (!(energy > 0)) return found;
+  orthonormalise(space.x, s, m);
+
+  Small gram = Small::Zero(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(s));
+  float* const gathered = space.gathered.data();
+  float* const y = space.y.data();
+  std::fill_n(gathered, s * m, 0.0f);
+  for (std::size_t begin = 0; begin < columns; begin += kBlock) {
+    const std::size_t n = std::min(kBlock, columns - begin);
+    gemm({n, s, m, false, true}, &d[begin * m], m, x, m, y, s);
+    gemm({s, m, n, true, false, 1.0f}, y, s, &d[begin * m], m, gathered, m);
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t a = 0; a < s; ++a)
+        for (std::size_t b = 0; b < s; ++b)
+          gram(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) +=
+              static_cast<double>(y[j * s + a] * y[j * s + b]);
+  }
+  const Eigen::SelfAdjointEigenSolver<Small> eigen(gram);  // ascending
+  const auto& squares = eigen.eigenvalues();
+  double inside = 0;
+  for (Eigen::Index a = 0; a < squares.size(); ++a) inside += std::max(squares[a], 0.0);
+  const double least = static_cast<double>(std::min(rows, columns)),
+               larger = static_cast<double>(std::max(rows, columns));
+  const double outside = std::max(energy - inside, 1e-10 * energy);
+  const double directions = std::max(least - static_cast<double>(s), 1.0);
+  const double edge =
+      outside / directions * (1 + std::sqrt(least / larger)) * (1 + std::sqrt(least / larger));
+  for (std::size_t a = 0; a < s; ++a) {
+    const double square = std::max(squares[squares.size() - 1 - static_cast<Eigen::Index>(a)], 0.0);
+    space.values[a] = std::sqrt(square);
+    if (a == 0 || square > edge) found.rank = a + 1;
+  }
+  found.values = s;
+  // The power step, turned to the leading directions.
+  for (std::size_t a = 0; a < found.rank; ++a) {
+    Vector xa = vector(x + a * m, m);
+    xa.setZero();
+    for (std::size_t b = 0; b < s; ++b)
+      xa += static_cast<float>(eigen.eigenvectors()(static_cast<Eigen::Index>(b),
+                                                    squares.size() - 1 - static_cast<Eigen::Index>(a))) *
+            vector(gathered + b * m, m);
+  }
+  orthonormalise(space.x, found.rank, m);
+  return found;
+}
+
+}  // namespace lumirank::linalg

@@ -1,0 +1,100 @@
+#include "linalg/visibility_predictors.h"
+
+// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialised variables.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace lumirank::linalg {
+
+float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> by_row) {
+  int found = 0, visible = 0;
+  for (const std::uint32_t i : nearest)
+    if (i != SampledNeighbours::kNone) ++found, visible += by_row[i];
+  return found > 0 ? static_cast<float>(visible) / static_cast<float>(found) : 0.5f;
+}
+
+void nearest_probabilities(std::span<const SampledNeighbours::Few> nearest,
+                           std::span<const std::uint8_t> by_row, std::span<float> out) {
+  // With three samples or more, every point has three neighbours.
+  if (nearest.empty() || nearest[0].back() == SampledNeighbours::kNone) {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = nearest_probability(nearest[i], by_row);
+    return;
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto& n = nearest[i];
+    out[i] = static_cast<float>(by_row[n[0]] + by_row[n[1]] + by_row[n[2]]) / 3.0f;
+  }
+}
+
+SeparatingPlane SeparatingPlane::fit(std::span<const Vec3f> points, const ColumnSamples& samples) {
+  Eigen::Matrix4f square = Eigen::Matrix4f::Zero();
+  Eigen::Vector4f right = Eigen::Vector4f::Zero();
+  for (std::size_t k = 0; k < samples.rows.size(); ++k) {
+    const Vec3f p = points[samples.rows[k]];
+    const Eigen::Vector4f x(p.x, p.y, p.z, 1);
+    square.noalias() += x * x.transpose();
+    right += samples.visible[k] ? x : Eigen::Vector4f(-x);
+  }
+  SeparatingPlane plane;
+  if (samples.rows.empty()) return plane;
+  square.diagonal().array() += 1e-3f * square.trace() / 4;
+  const Eigen::Vector4f w = square.ldlt().solve(right);
+  for (int a = 0; a < 4; ++a) plane.w[static_cast<std::size_t>(a)] = w[a];
+  return plane;
+}
+
+void SeparatingPlane::probabilities(std::span<const Vec3f> points, std::span<float> out) const {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = probability(points[i]);
+}
+
+void BayesCounts::reset(std::size_t rows, std::size_t columns) {
+  stretches_ = (rows + kStretch - 1) / kStretch;
+  columns_ = columns;
+  seen_.assign(2 * stretches_ * columns_, 0);
+}
+
+void BayesCounts::add(std::size_t column, const ColumnSamples& samples) {
+  std::uint16_t* const seen = &seen_[2 * stretches_ * column];
+  for (std::size_t k = 0; k < samples.rows.size(); ++k)
+    ++seen[2 * (samples.rows[k] / kStretch) + (samples.visible[k] ? 1 : 0)];
+}
+
+void BayesCounts::probabilities(std::size_t column, std::span<float> out) const {
+  // The five columns around it, fewer at the ends.
+  const std::size_t begin = column < kColumns / 2 ? 0 : column - kColumns / 2;
+  const std::size_t end = std::min(columns_, column + kColumns / 2 + 1);
+  const auto at = [&](std::size_t j, std::size_t b, std::size_t v) {
+    return static_cast<float>(seen_[2 * (stretches_ * j + b) + v]);
+  };
+  float all[2] = {0, 0};
+  for (std::size_t j = begin; j < end; ++j)
+    for (std::size_t b = 0; b < stretches_; ++b) all[0] += at(j, b, 0), all[1] += at(j, b, 1);
+  const auto b_count = static_cast<float>(stretches_);
+  for (std::size_t b = 0; b < stretches_; ++b) {
+    float likely[2];
+    for (std::size_t v = 0; v < 2; ++v) {
+      float here = 0;
+      for (std::size_t j = begin; j < end; ++j) here += at(j, b, v);
+      // The denominator of P(v) is the same for both.
+      likely[v] = (all[v] + 1) * (here + 1) / (all[v] + b_count);
+    }
+    out[b] = likely[1] / (likely[0] + likely[1]);
+  }
+}
+
+void draw_visibility(std::span<const float> probability, std::uint32_t key, std::span<std::uint8_t> visible) {
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    // A 32-bit mix with full avalanche (the finaliser of MurmurHash3).
+    auto x = static_cast<std::uint32_t>(i) * 0x9e3779b9u ^ key;
+    x = (x ^ (x >> 16)) * 0x85ebca6bu;
+    x = (x ^ (x >> 13)) * 0xc2b2ae35u;
+    x ^= x >> 16;
+    visible[i] = static_cast<float>(static_cast<std::int32_t>(x >> 8)) * 0x1p-24f < probability[i] ? 1 : 0;
+  }
+}
+
+}  // namespace lumirank::linalg
