@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "methods/brute_force/brute_force.h"
 #include "methods/instant_radiosity/instant_radiosity.h"
+#include "methods/lightcuts/lightcuts.h"
 #include "methods/lightslice/lightslice.h"
 #include "methods/method.h"
 #include "methods/power_sampling/power_sampling.h"
@@ -10,8 +11,9 @@
 namespace lumirank::methods {
 
 const std::vector<MethodInfo>& all_methods() {
-  static const std::vector<MethodInfo> methods{brute_force_info(), instant_radiosity_info(),
-                                               lightslice_info(), power_sampling_info(), row_column_info()};
+  static const std::vector<MethodInfo> methods{brute_force_info(),    instant_radiosity_info(),
+                                               power_sampling_info(), row_column_info(),
+                                               lightcuts_info(),      lightslice_info()};
   return methods;
 }
 

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/lightcuts/cut.h"
+
+namespace lumirank::methods {
+namespace {
+
+using matrix::DenseMatrix;
+using matrix::Index;
+
+std::vector<DenseMatrix> matrices() {
+  std::vector<DenseMatrix> m;
+  m.push_back(matrix::low_rank_matrix({120, 300, 1}, 6, 3));
+  m.push_back(matrix::sparse_matrix({120, 300, 2}, 0.3));
+  m.push_back(matrix::recess_matrix({120, 300, 3}));
+  return m;
+}
+
+TEST(Lightcuts, WithoutBoundAndLimitEqualsBruteForce) {
+  for (const DenseMatrix& m : matrices()) {
+    const Estimate e =
+        find_method("lightcuts").make({{"error-bound", "0"}, {"most-nodes", "1000000"}})->run(m, {});
+    // Sums of 300 floats in another order.
+    EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 1e-6);
+  }
+}
+
+TEST(Lightcuts, ErrorFallsToNothingAsCutsGrow) {
+  for (const DenseMatrix& m : matrices()) {
+    std::vector<double> errors;
+    for (const char* nodes : {"5", "75", "1000"}) {
+      const Estimate e =
+          find_method("lightcuts").make({{"error-bound", "0"}, {"most-nodes", nodes}})->run(m, {});
+      errors.push_back(relative_difference(e.sums, m.exact_sums()));
+      EXPECT_LE(e.trace.numbers.at("columns_max"), std::stod(nodes));
+    }
+    EXPECT_GT(errors[0], errors[1]);
+    EXPECT_GT(errors[1], errors[2]);
+    EXPECT_LT(errors[2], 1e-6);
+  }
+}
+
+// What refining one node after another would reach is reached by rounds as well: every node on the cut has a
+// bound below the threshold, or the cut is full.
+TEST(Lightcuts, CutsEndWhereBoundsAreSmallOrTheLimitIsReached) {
+  const DenseMatrix m = matrix::low_rank_matrix({60, 800, 1}, 6);
+  const LightTree tree(m, 1);
+  const auto reader = m.reader();
+  const auto bounds = m.row_bounds();
+  for (const std::size_t per_round : {1u, 7u, 32u})
+    for (const std::size_t most : {40u, 100000u}) {
+      std::vector<Cut> cuts;
+      for (Index row = 0; row < 5; ++row) {
+        cuts.emplace_back(tree, CutLimits{0.02, most, per_round});
+        cuts.back().begin(row, *bounds);
+      }
+      CutRounds rounds;
+      rounds.finish(cuts, *reader);
+      for (const Cut& cut : cuts) {
+        const float limit = 0.02f * luminance(cut.total());
+        std::size_t on_cut = 0, columns = 0;
+        float greatest = 0;
+        for (const CutNode& n : cut.nodes()) {
+          EXPECT_EQ(n.entry, m.at(cut.row(), tree.representative(n.node)));
+          if (n.children != 0) continue;
+          ++on_cut, columns += tree.columns(n.node).size();
+          if (!tree.is_leaf(n.node))
+            greatest = std::max(greatest, luminance(bounds->bound(tree.set(n.node))));
+        }
+        EXPECT_EQ(on_cut, cut.size());
+        EXPECT_EQ(columns, tree.leaves());  // it is a cut
+        EXPECT_LE(on_cut, most);
+        if (on_cut < most) {
+          EXPECT_LE(greatest, 1.00001f * limit);
+        }
+      }
+    }
+}
+
+}  // namespace
+}  // namespace lumirank::methods
