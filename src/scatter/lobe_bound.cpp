@@ -1,0 +1,274 @@
+// The geometry of bounds: which angles a cone of directions leaves open. What lobes make of them is in
+// lobe_bound_terms.cpp.
+#include "scatter/lobe_bound.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scatter/charlie_sheen.h"
+#include "scatter/coat.h"
+#include "scatter/lobe.h"
+#include "scatter/lobe_bound_terms.h"
+
+namespace lumirank::scatter {
+namespace {
+
+constexpr float kGrazing = 1e-6f;  // as in eval_f()
+// Evaluation in floats, and in lanes with their own exponentials.
+constexpr float kRounding = 1.0005f;
+
+// Cosines of directions within `angle` of one at angle theta from the normal; false if all are behind.
+bool cosines(float theta, float angle, float& lo, float& hi) {
+  const float least = theta - angle - kAngleSlack, most = theta + angle + kAngleSlack;
+  if (least >= kPi / 2) return false;
+  hi = least <= 0 ? 1.0f : std::cos(least);
+  lo = most >= kPi / 2 ? 0.0f : std::cos(most);
+  return true;
+}
+
+float angle_of(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); }
+// Of unit vectors; precise near 0.
+float angle_between(Vec3f a, Vec3f b) { return 2 * std::asin(std::min(1.0f, 0.5f * length(a - b))); }
+
+// Precise near the fibre too.
+float latitude(Vec3f w, Vec3f fibre) { return std::atan2(dot(w, fibre), length(cross(w, fibre))); }
+
+// Where w is on the side of wo and within `angle` of a.
+AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, float angle, float cos_lo, float cos_hi) {
+  AngleRange r;
+  r.cos_lo = cos_lo, r.cos_hi = cos_hi;
+  const Vec3f h = t.wo + a;
+  const float hz = dot(h, n), half = angle_of(0.5f * length(h)) + 0.5f * angle + kAngleSlack;
+  // Above the horizon |wo + w| is no less than the sum of the cosines.
+  const float least = 0.5f * (t.cos_o + cos_lo);
+  float half_lo = half < kPi / 2 ? std::cos(half) : 0.0f;
+  r.half_lo = std::max(half_lo, least);
+  if (dot(a, n) >= 0) half_lo = r.half_lo;
+  if (half_lo > 1e-6f) {
+    const float tilt = std::atan2(length(h - n * hz), hz);
+    const float turn = 0.5f * (angle + kAngleSlack) / half_lo + kAngleSlack;
+    r.tilt_lo = std::clamp(tilt - turn, 0.0f, kPi / 2), r.tilt_hi = std::min(kPi / 2, tilt + turn);
+  }
+  r.off_mirror = std::max(0.0f, angle_between(a, n * (2 * t.cos_o) - t.wo) - angle - kAngleSlack);
+  return r;
+}
+
+// Where w is on the side of wo, between two angles from its mirror direction.
+AngleRange ring(const LobeTerm& t, float from, float to) {
+  AngleRange r;
+  const float theta = angle_of(t.cos_o);
+  const float least = std::max({0.0f, theta - to - kAngleSlack, from - theta - kAngleSlack});
+  const float most = theta + to + kAngleSlack;
+  r.cos_hi = std::cos(std::min(least, kPi / 2)), r.cos_lo = most < kPi / 2 ? std::cos(most) : 0.0f;
+  const float half = theta + 0.5f * to + kAngleSlack;
+  r.half_lo = std::max(half < kPi / 2 ? std::cos(half) : 0.0f, 0.5f * (t.cos_o + r.cos_lo));
+  // Tilting the half vector by δ turns w by 2δ at most.
+  r.tilt_lo = std::max(0.0f, 0.5f * from - kAngleSlack);
+  r.off_mirror = std::max(0.0f, from - kAngleSlack);
+  return r;
+}
+
+// About how far a lobe reaches from its mirror direction.
+float width_of(const LobeTerm& t) {
+  switch (t.lobe->kind) {
+    case LobeKind::phong:
+      return std::sqrt(2 / (t.lobe->alpha_u + 2));
+    case LobeKind::sheen:
+    case LobeKind::charlie_sheen:
+      return 1;
+    default:
+      return std::clamp(t.widest, 1e-4f, 1.0f);
+  }
+}
+
+// Bounds under a coat: `inside` are the angles there, the cosines those outside.
+Rgb under_coat(const LobeTerm& t, const AngleRange& inside, float cos_hi, Slant slant) {
+  Rgb most = term_bound(t, inside, Slant::none);
+  if (slant == Slant::none) return most;
+  most *= cos_hi;
+  // In a denser layer the cosine inside is the larger one.
+  if (t.lobe->coat.bend >= 1) {
+    const Rgb other = term_bound(t, inside, Slant::cosine);
+    for (int c = 0; c < 3; ++c) most[c] = std::min(most[c], other[c]);
+  }
+  return most;
+}
+
+}  // namespace
+
+ClosureBound::ClosureBound(const Closure& closure, Vec3f wo, bool adjoint)
+    : ClosureBound({closure.lobes, static_cast<std::size_t>(closure.count)}, {}, closure.frame.n,
+                   closure.frame.s, wo, dot(closure.frame.n, wo) > 0, adjoint) {}
+
+ClosureBound::ClosureBound(std::span<const Lobe> lobes, std::span<const Rgb> colors, Vec3f n, Vec3f tangent,
+                           Vec3f wo, bool outside, bool adjoint)
+    : n_(n), wo_(wo), outside_(outside) {
+  for (const Lobe& lobe : lobes) fibre_ = fibre_ || is_hair(lobe.kind);
+  if (fibre_) {
+    n_ = tangent;
+    cos_o_ = length(cross(n_, wo));
+  } else {
+    if (dot(n_, wo) < 0) n_ = -n_;
+    cos_o_ = dot(n_, wo);
+  }
+  if (!(cos_o_ > kGrazing)) return;
+  for (std::size_t k = 0; k < lobes.size(); ++k)
+    if (!is_delta(lobes[k].kind)) add(lobes[k], colors.empty() ? lobes[k].color : colors[k], adjoint);
+}
+
+void ClosureBound::add(const Lobe& lobe, Rgb color, bool adjoint) {
+  LobeTerm t;
+  t.lobe = &lobe, t.wo = wo_, t.cos_o = cos_o_, t.roughness = lobe_roughness(lobe);
+  t.eta = view_from(lobe, outside_).eta;
+  t.widest = std::max(lobe.alpha_u, lobe.alpha_v), t.narrowest = std::min(lobe.alpha_u, lobe.alpha_v);
+  // Of a grazing cosine few digits are left.
+  Rgb factor(kRounding * (1 + 4e-7f / cos_o_));
+  // And what a power makes of a cosine's last digit.
+  if (lobe.kind == LobeKind::phong || lobe.kind == LobeKind::hair_specular)
+    factor *= 1 + 6e-7f * lobe.alpha_u;
+  if (lobe.coat) {
+    const Coat& coat = lobe.coat;
+    const bool once = transmits(lobe.kind);
+    if (!once) {
+      const float inside = coat_cosine(coat, cos_o_);
+      if (!(inside > 0)) return;
+      t.wo = wo_ * (1 / coat.bend) + n_ * (inside - cos_o_ / coat.bend), t.cos_o = inside;
+      factor *= 1 / (coat.bend * coat.bend);
+    }
+    if (!once || outside_) factor *= coat_passage(coat, cos_o_);
+    // At w it is crossed straight through at the least.
+    if (!once || !outside_)
+      for (int c = 0; c < 3; ++c) factor[c] *= std::exp(-coat.depth[c]);
+  }
+  if (lobe.veil) factor *= veil_factor(lobe.veil, t.cos_o);
+  // Radiance is that much denser on the far side; see microfacet_transmit_value().
+  if (adjoint && lobe.kind == LobeKind::microfacet_transmit) factor *= t.eta * t.eta;
+  factor *= factor_of_wo(lobe, t.cos_o, t.narrowest);
+  t.scale = color * factor;
+  if (lobe.kind == LobeKind::microfacet_reflect) t.at_normal = lobe_fresnel({lobe, t.eta, outside_}, 1);
+  if (lobe.kind == LobeKind::oren_nayar) t.at_normal = lobe.conductor_eta * factor;
+  if (is_black(t.scale) && is_black(t.at_normal)) return;
+  terms_[static_cast<std::size_t>(count_++)] = t;
+}
+
+float ClosureBound::crossed(const LobeTerm& t, float cos_lo) const {
+  const Coat& coat = t.lobe->coat;
+  if (!coat || !(coat.trapped > 0) || (transmits(t.lobe->kind) && outside_)) return 1;
+  return coat_return(coat, coat_cosine(coat, cos_lo));
+}
+
+Rgb ClosureBound::on_fibre(const LobeTerm& t, const DirectionCone& cone, Slant slant) const {
+  const float about = latitude(cone.axis, n_);
+  return fibre_term_bound(t, latitude(wo_, n_), std::max(-kPi / 2, about - cone.angle - kAngleSlack),
+                          std::min(kPi / 2, about + cone.angle + kAngleSlack), slant);
+}
+
+Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, float cos_lo, float cos_hi,
+                            Slant slant) const {
+  const Coat& coat = t.lobe->coat;
+  if (!coat) {
+    if (!needs_cosine_only(t.lobe->kind))
+      return term_bound(t, range_about(n_, t, cone.axis, cone.angle, cos_lo, cos_hi), slant);
+    AngleRange r;
+    r.cos_lo = cos_lo, r.cos_hi = cos_hi;
+    return term_bound(t, r, slant);
+  }
+  const float inside_lo = coat_cosine(coat, cos_lo), inside_hi = coat_cosine(coat, cos_hi);
+  const float cosine = dot(cone.axis, n_);
+  AngleRange r;
+  if (coat.bend >= 1 && cosine > 0) {
+    // Refraction into the denser medium brings directions closer together by its index at least.
+    const Vec3f a = cone.axis * (1 / coat.bend) + n_ * (coat_cosine(coat, cosine) - cosine / coat.bend);
+    r = range_about(n_, t, a, cone.angle / coat.bend + kAngleSlack, inside_lo, inside_hi);
+  } else {
+    r.cos_lo = inside_lo, r.cos_hi = inside_hi, r.half_lo = 0.5f * (t.cos_o + inside_lo);
+  }
+  return under_coat(t, r, cos_hi, slant) * crossed(t, cos_lo);
+}
+
+Rgb ClosureBound::refracted(const LobeTerm& t, const DirectionCone& cone, float cos_lo, float cos_hi,
+                            Slant slant) const {
+  AngleRange r;
+  r.cos_lo = cos_lo, r.cos_hi = cos_hi;
+  // The half vector of refraction, wo + eta·w, is in a ball about that of the axis. Its length to the square
+  // is the Jacobian's denominator; nothing below 1e-16 is answered.
+  const Vec3f h = t.wo + cone.axis * t.eta;
+  const float len = length(h), reach = t.eta * (cone.angle + kAngleSlack) + kAngleSlack, hz = dot(h, n_);
+  if (reach < len)
+    r.tilt_lo =
+        std::max(0.0f, std::atan2(length(h - n_ * hz), std::abs(hz)) - std::asin(reach / len) - kAngleSlack);
+  const float least = std::max({len - reach, std::abs(t.eta - 1) - kAngleSlack, 1e-8f});
+  return term_bound(t, r, slant) * (crossed(t, cos_lo) / (least * least));
+}
+
+Rgb ClosureBound::through_sheet(const LobeTerm& t, const DirectionCone& cone, float cos_lo, float cos_hi,
+                                Slant slant) const {
+  AngleRange r;
+  r.cos_lo = cos_lo, r.cos_hi = cos_hi;
+  if (!needs_cosine_only(t.lobe->kind))
+    r = range_about(n_, t, cone.axis - n_ * (2 * dot(cone.axis, n_)), cone.angle, cos_lo, cos_hi);
+  return term_bound(t, r, slant) * crossed(t, cos_lo);
+}
+
+Rgb ClosureBound::within(const DirectionCone& cone, Slant slant, float sharp) const {
+  Rgb sum(0);
+  const float theta = angle_of(dot(cone.axis, n_));
+  float lo = 0, hi = 0, behind_lo = 0, behind_hi = 0;
+  const bool before = !fibre_ && cosines(theta, cone.angle, lo, hi);
+  const bool behind = !fibre_ && cosines(kPi - theta, cone.angle, behind_lo, behind_hi);
+  for (int k = 0; k < count_; ++k) {
+    const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
+    if (t.roughness < sharp) continue;
+    if (fibre_) {
+      sum += on_fibre(t, cone, slant);
+    } else if (!shines_through(t.lobe->kind)) {
+      if (before) sum += reflected(t, cone, lo, hi, slant);
+    } else if (behind) {
+      sum += t.lobe->kind == LobeKind::microfacet_transmit
+                 ? refracted(t, cone, behind_lo, behind_hi, slant)
+                 : through_sheet(t, cone, behind_lo, behind_hi, slant);
+    }
+  }
+  return sum;
+}
+
+Rgb ClosureBound::in_rings(const LobeTerm& t, Slant slant) const {
+  const Coat& coat = t.lobe->coat;
+  const bool within = coat && !transmits(t.lobe->kind);
+  Rgb most(0);
+  float from = 0;
+  for (float to = width_of(t); from < kPi; to *= 2) {
+    if (to > 2) to = kPi;
+    const AngleRange r = ring(t, from, to);
+    float cos_lo = r.cos_lo, cos_hi = r.cos_hi;
+    if (within) {
+      const auto outside = [&](float c) {
+        return std::sqrt(std::max(0.0f, 1 - square(coat.bend) * (1 - c * c)));
+      };
+      cos_lo = outside(cos_lo), cos_hi = std::min(1.0f, outside(cos_hi) + 1e-6f);
+    }
+    const Rgb here =
+        (within ? under_coat(t, r, cos_hi, slant) : term_bound(t, r, slant)) * crossed(t, cos_lo);
+    for (int c = 0; c < 3; ++c) most[c] = std::max(most[c], here[c]);
+    from = to;
+  }
+  return most;
+}
+
+Rgb ClosureBound::anywhere(Slant slant, float sharp) const {
+  Rgb sum(0);
+  for (int k = 0; k < count_; ++k) {
+    const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
+    if (t.roughness < sharp) continue;
+    if (fibre_) {
+      sum += on_fibre(t, {n_, kPi}, slant);
+    } else if (t.lobe->kind == LobeKind::microfacet_transmit) {
+      sum += refracted(t, {-n_, kPi}, 0, 1, slant);
+    } else {
+      sum += in_rings(t, slant);
+    }
+  }
+  return sum;
+}
+
+}  // namespace lumirank::scatter
