@@ -34,9 +34,12 @@ enum class Emission : std::uint8_t {
 struct ColumnSet {
   Emission emission = Emission::omni;
   bool spherical = false;
-  Bounds3f box;      // positions; not used if directional
-  Cone cone;         // oriented: normals; directional: directions towards the light
-  float radius = 0;  // of the largest sphere
+  // All of them stand for emitters: rows may take part of such light from elsewhere, where it is not in the
+  // entries.
+  bool direct = false;
+  Bounds3f box;                        // positions; not used if directional
+  Cone cone;                           // oriented: normals; directional: directions towards the light
+  float radius = 0, least_radius = 0;  // of the largest and the smallest sphere
   // Sum over the columns of the greatest radiant intensity that each has in any direction, before the cosine
   // (directional: irradiance).
   Rgb intensity{0};
@@ -53,7 +56,7 @@ class RowBounds {
   // The rows of which the following questions ask. Costs O(rows); keeps its buffers.
   virtual void set_rows(std::span<const Index> rows) = 0;
   // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i. Finite unless a row may lie in the
-  // set's box and nothing is clamped.
+  // set's box and nothing is clamped (nor spherical).
   virtual Rgb bound(const ColumnSet& set) const = 0;
 };
 

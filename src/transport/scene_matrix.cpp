@@ -103,6 +103,7 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
     row_pixel[i] = receivers.film[receivers.sample[i]];
     row_weight[i] = mean(receivers.weight[i]);
   }
+  peaks = light_peaks(lights);
   const float radius = world.bounds().radius();
   column_power.resize(lights.size());
   column_group.resize(lights.size(), 0);
@@ -244,7 +245,7 @@ std::size_t SceneMatrix::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return impl_->rows.memory_bytes() + impl_->columns.memory_bytes() + bytes(impl_->row_pixel) +
          bytes(impl_->row_weight) + bytes(impl_->column_power) + bytes(impl_->column_group) +
-         bytes(impl_->column_indirect);
+         bytes(impl_->column_indirect) + bytes(impl_->peaks);
 }
 
 }  // namespace lumirank::transport

@@ -1,7 +1,7 @@
-// What columns can add to rows at most, from places, normals and materials.
+// What columns can send at most.
 #include <algorithm>
-#include <limits>
 
+#include "transport/row_bounds.h"
 #include "transport/scene_matrix_impl.h"
 
 namespace lumirank::transport {
@@ -12,84 +12,94 @@ using matrix::Index;
 
 namespace {
 
-// Places and reflectances of lambertian receivers; others are only known to be bounded by clamping.
-class SceneRowBounds final : public matrix::RowBounds {
- public:
-  explicit SceneRowBounds(const Receivers& receivers) : receivers_(receivers) {}
+// Integrals of spherical lights are taken by uniform samples of the cone and by some that follow the lobes of
+// either end, in the balance heuristic: a sample counts no more than one of the cone alone would, so the
+// estimate is below the cone's solid angle times the greatest integrand times all samples per sample of the
+// cone. At most one follows either lobe where only one end has a sharp one, and at most three each where both
+// have, beside at least one in the cone: twice, or 2·3.5 = 7 times.
+constexpr float kLobeSamples = 2;
 
-  void set_rows(std::span<const Index> rows) override {
-    box_ = {};
-    reflectance_ = Rgb(0);
-    for (const Index i : rows) {
-      box_.extend(receivers_.position[i]);
-      const bool matt = receivers_.closure[i] == Receivers::kLambertian;
-      for (int c = 0; c < 3; ++c)
-        reflectance_[c] = std::max(
-            reflectance_[c], matt ? receivers_.albedo[i][c] * kInvPi : std::numeric_limits<float>::max());
-    }
-  }
-
-  Rgb bound(const ColumnSet& set) const override {
-    float geometry = 1;
-    if (set.emission != Emission::directional) {
-      const Vec3f gap = max(max(set.box.lo - box_.hi, box_.lo - set.box.hi), Vec3f{});
-      const float d = length(gap) - set.radius;
-      geometry = d > 0 ? 1 / square(d) : kInfinity;
-    }
-    Rgb bound;
-    for (int c = 0; c < 3; ++c) {
-      const float most =
-          reflectance_[c] > 0 && set.intensity[c] > 0 ? reflectance_[c] * set.intensity[c] * geometry : 0;
-      bound[c] = std::min(most, set.ceiling[c]);
-    }
-    return bound;
-  }
-
- private:
-  const Receivers& receivers_;
-  Bounds3f box_;
-  Rgb reflectance_;
-};
+bool has_sharp_lobe(const VirtualLights& lights, Index j) {
+  const auto lobes = lights.closures.lobes(lights.closures.recipe(lights.closure[j]));
+  return std::any_of(lobes.begin(), lobes.end(),
+                     [](const scatter::Lobe& lobe) { return scatter::lobe_roughness(lobe) < 0.5f; });
+}
 
 }  // namespace
 
 ColumnSet SceneMatrix::column_set(Index j) const {
   const VirtualLights& lights = impl_->lights;
+  const float clamp = impl_->context.clamp;
   ColumnSet set;
   set.box.extend(lights.position[j]);
   set.cone = {lights.ng[j], 1};
+  set.direct = lights.depth[j] == 0;
   set.intensity = lights.power[j];
   switch (lights.kind[j]) {
     case LightKind::omni:
-    case LightKind::spot:
-      break;
+      return set;
+    case LightKind::spot: {
+      const SpotShape& spot = lights.spots[lights.closure[j]];
+      if (spot.profile) set.intensity *= spot.profile->highest();
+      return set;
+    }
     case LightKind::directional:
       set.emission = Emission::directional;
       set.cone.axis = -lights.normal[j];
-      break;
+      return set;
     case LightKind::oriented:
       set.emission = Emission::oriented;
-      break;
+      set.cone.axis = lights.normal[j];
+      // a·G·π f_x ≤ X, so f_x·G ≤ X/(a·π).
+      if (lights.area[j] > 0 && clamp < kInfinity)
+        set.ceiling = set.intensity * (1.00001f * clamp * kInvPi / lights.area[j]);
+      return set;
     case LightKind::surface:
-      if (lights.closure[j] == VirtualLights::kLambertian) {
-        set.emission = Emission::oriented;
-        set.intensity = lights.power[j] * lights.albedo[j] * kInvPi;
-      } else {
-        set.intensity = Rgb(std::numeric_limits<float>::max());
-      }
-      if (lights.spherical() && lights.radius[j] > 0) set.spherical = true, set.radius = lights.radius[j];
       break;
   }
-  if (lights.area[j] > 0 && impl_->context.clamp < kInfinity && set.emission == Emission::oriented) {
-    const Rgb radiance = lights.kind[j] == LightKind::surface ? lights.albedo[j] * kInvPi : Rgb(kInvPi);
-    set.ceiling =
-        set.intensity * (impl_->context.clamp / (lights.area[j] * square(kPi) * max_component(radiance)));
+  const bool matt = lights.closure[j] == VirtualLights::kLambertian;
+  const bool sphere = lights.spherical();
+  if (!sphere && lights.area[j] > 0 && clamp < kInfinity) {
+    // a·G·(π f_x)(π f_y) ≤ X with the largest channels of f_x and f_y.
+    const float most = 1.00001f * clamp * kInvPi * kInvPi / lights.area[j];
+    set.ceiling = set.intensity * most;
+    if (matt && max_component(lights.albedo[j]) > 0)
+      set.ceiling *= lights.albedo[j] * (1 / max_component(lights.albedo[j]));
+  }
+  if (matt) {
+    set.emission = Emission::oriented;
+    set.intensity *= lights.albedo[j] * kInvPi;
+  } else {
+    const LightPeak& peak = impl_->peaks[lights.closure[j]];
+    // Near a disc the cosine does not count.
+    const bool disc = sphere && impl_->settings.spheres.indicator == SphereRules::Indicator::disc;
+    const bool oriented =
+        peak.one_sided && (disc || max_component(peak.alone) <= 4 * max_component(peak.slanted));
+    if (oriented) set.emission = Emission::oriented;
+    set.intensity *= oriented || disc ? peak.alone : peak.slanted;
+  }
+  if (sphere) {
+    set.spherical = true;
+    set.radius = set.least_radius = lights.radius[j];
+    const SphereRules& rules = impl_->settings.spheres;
+    if (rules.strategies == SphereRules::Strategies::all) {
+      if (rules.samples == SphereRules::Samples::cone) {
+        set.intensity *= 3;  // as many of each kind
+      } else if (!matt && has_sharp_lobe(lights, j)) {
+        set.intensity *= kLobeSamples;
+      }
+    }
+    // The light of a disc lies on the part of it that the receiver's own plane does not hide: of one-sided
+    // receivers at least half, and no less than what the light sees.
+    const float hidden = std::min(lights.hidden[j], impl_->context.has_two_sided ? 1.0f : 0.5f);
+    set.intensity *= 1 / std::max(1 - hidden, 1e-6f);
   }
   return set;
 }
 
 std::unique_ptr<matrix::RowBounds> SceneMatrix::row_bounds() const {
-  return std::make_unique<SceneRowBounds>(impl_->receivers);
+  return std::make_unique<SceneRowBounds>(
+      impl_->receivers, BoundRules{impl_->settings.spheres, impl_->settings.traced_direct_below});
 }
 
 }  // namespace lumirank::transport

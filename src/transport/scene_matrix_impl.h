@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "transport/kernels/pair_block.h"
+#include "transport/light_peaks.h"
 #include "transport/scene_matrix.h"
 
 namespace lumirank::transport {
@@ -28,6 +29,7 @@ struct SceneMatrix::Impl {
   std::vector<std::uint16_t> column_group;
   std::vector<std::uint8_t> column_indirect;
   std::vector<Rgb> column_emitted;
+  std::vector<LightPeak> peaks;  // by closure of the lights
 
   // Work space of one task at a time; kept for the next one.
   class Lease {
