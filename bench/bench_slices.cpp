@@ -1,0 +1,118 @@
+// What entries cost by the way they are asked for, in nanoseconds of one core: whole columns, the columns of
+// slices, of these E alone, and single visibilities here and there in a slice. The last is what sampling a
+// slice costs per ray, the third what knowing E everywhere costs: a method that predicts visibility pays if
+// both together, and its own arithmetic, are less than the second.
+//
+//   bench_slices [scene file]
+//   environment: BENCH_LIGHTS (100000), BENCH_COLUMNS (100), BENCH_WIDTH (800), BENCH_HEIGHT (600), BENCH_SPP
+//   (4), BENCH_SHARE (3: per cent of a slice's entries that are single), BENCH_ROUNDS (5)
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <string>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "matrix/entry_reader.h"
+#include "methods/slices/slices.h"
+#include "scenedesc/readers.h"
+#include "transport/receivers.h"
+#include "transport/scene_matrix.h"
+#include "transport/virtual_lights.h"
+#include "world/world.h"
+
+namespace {
+
+using namespace lumirank;
+using matrix::Index;
+using matrix::Part;
+
+int setting(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::atoi(text) : otherwise;
+}
+
+// Each slice on one thread.
+void for_slices(const matrix::LightingMatrix& matrix, const methods::Slices& slices,
+                const std::function<void(matrix::EntryReader&, std::span<const Index>)>& body) {
+  parallel_for(slices.count(), 1, [&](std::size_t s, std::size_t) {
+    const auto reader = matrix.reader();
+    body(*reader, slices.slice(s));
+  });
+}
+
+void run(const std::string& file) {
+  scenedesc::SceneDesc desc = scenedesc::read_scene(file);
+  desc.sensors.at(0).film.width = setting("BENCH_WIDTH", 800);
+  desc.sensors.at(0).film.height = setting("BENCH_HEIGHT", 600);
+  std::vector<scenedesc::Warning> warnings;
+  const world::World world = world::World::build(desc, {}, warnings);
+  const transport::Receivers receivers =
+      transport::trace_receivers(world, world::Camera(desc.sensors.at(0)), {1, setting("BENCH_SPP", 4)});
+  transport::LightSettings light_settings;
+  light_settings.count = static_cast<std::size_t>(setting("BENCH_LIGHTS", 100000));
+  light_settings.receivers = &receivers;
+  const transport::VirtualLights lights = transport::trace_virtual_lights(world, light_settings);
+  const transport::SceneMatrix matrix(world, receivers, lights, {});
+  const methods::Slices slices = methods::make_slices(matrix.row_features(), matrix.rows());
+
+  Rng rng(1, Stage::benchmark);
+  std::vector<matrix::ScaledColumn> columns(static_cast<std::size_t>(setting("BENCH_COLUMNS", 100)));
+  for (auto& c : columns) c.column = static_cast<Index>(rng.next_below(lights.size()));
+  std::vector<Rgb> sums(matrix.rows());
+
+  const auto slice_columns = [&](Part part) {
+    for_slices(matrix, slices, [&](matrix::EntryReader& reader, std::span<const Index> rows) {
+      std::vector<Rgb> out(rows.size());
+      reader.set_rows(rows);
+      for (const auto& c : columns) reader.column(c.column, out, part);
+    });
+  };
+  const auto singles = [&] {
+    for_slices(matrix, slices, [&](matrix::EntryReader& reader, std::span<const Index> rows) {
+      Rng random(2, Stage::benchmark, rows.front());
+      const std::size_t each =
+          std::max<std::size_t>(1, rows.size() * static_cast<std::size_t>(setting("BENCH_SHARE", 3)) / 100);
+      std::vector<Index> i, j;
+      for (const auto& c : columns)
+        for (std::size_t k = 0; k < each; ++k)
+          i.push_back(rows[random.next_below(rows.size())]), j.push_back(c.column);
+      std::vector<Rgb> out(i.size());
+      reader.entries(i, j, out, Part::visibility);
+    });
+  };
+  const struct {
+    const char* name;
+    std::function<void()> go;
+  } ways[] = {{"whole columns", [&] { matrix.accumulate(columns, sums, {}); }},
+              {"columns of slices", [&] { slice_columns(Part::value); }},
+              {"columns of slices, E alone", [&] { slice_columns(Part::unoccluded); }},
+              {"single visibilities in slices", singles}};
+  std::printf("%s: %zu receivers in %zu slices, %zu lights, %zu columns\n", file.c_str(), matrix.rows(),
+              slices.count(), lights.size(), columns.size());
+  auto& counters = matrix.counters();
+  for (const auto& way : ways) {
+    double best_entry = 1e30, best_ray = 1e30, culled = 0;
+    for (int round = 0; round < setting("BENCH_ROUNDS", 5); ++round) {
+      counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;
+      const std::clock_t start = std::clock();  // of all threads: others' programs do not count
+      way.go();
+      const double ns = 1e9 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+      best_entry = std::min(best_entry, ns / static_cast<double>(counters.entries_evaluated));
+      if (counters.rays_shadow > 0)
+        best_ray = std::min(best_ray, ns / static_cast<double>(counters.rays_shadow));
+      culled = static_cast<double>(counters.entries_culled) / static_cast<double>(counters.entries_evaluated);
+    }
+    std::printf("%-32s %7.1f ns per entry", way.name, best_entry);
+    if (best_ray < 1e30) std::printf(", %7.1f ns per ray", best_ray);
+    std::printf(", %.0f %% culled\n", 100 * culled);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  run(argc > 1 ? argv[1] : std::string(LUMIRANK_EXAMPLES) + "/interior.xml");
+}
