@@ -5,7 +5,8 @@
 //
 //   bench_slices [scene file]
 //   environment: BENCH_LIGHTS (100000), BENCH_COLUMNS (100), BENCH_WIDTH (800), BENCH_HEIGHT (600), BENCH_SPP
-//   (4), BENCH_SHARE (3: per cent of a slice's entries that are single), BENCH_ROUNDS (5)
+//   (4), BENCH_SHARE (3: per cent of a slice's entries that are single), BENCH_ROUNDS (5),
+//   BENCH_ONLY (0: all ways)
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -75,12 +76,14 @@ void run(const std::string& file) {
       Rng random(2, Stage::benchmark, rows.front());
       const std::size_t each =
           std::max<std::size_t>(1, rows.size() * static_cast<std::size_t>(setting("BENCH_SHARE", 3)) / 100);
-      std::vector<Index> i, j;
+      std::vector<std::uint32_t> i;
+      std::vector<Index> j;
       for (const auto& c : columns)
         for (std::size_t k = 0; k < each; ++k)
-          i.push_back(rows[random.next_below(rows.size())]), j.push_back(c.column);
+          i.push_back(static_cast<std::uint32_t>(random.next_below(rows.size()))), j.push_back(c.column);
       std::vector<Rgb> out(i.size());
-      reader.entries(i, j, out, Part::visibility);
+      reader.set_rows(rows);
+      reader.entries_at(i, j, out, Part::visibility);
     });
   };
   const struct {
@@ -93,7 +96,9 @@ void run(const std::string& file) {
   std::printf("%s: %zu receivers in %zu slices, %zu lights, %zu columns\n", file.c_str(), matrix.rows(),
               slices.count(), lights.size(), columns.size());
   auto& counters = matrix.counters();
+  int number = 0;
   for (const auto& way : ways) {
+    if (const int only = setting("BENCH_ONLY", 0); ++number != only && only != 0) continue;
     double best_entry = 1e30, best_ray = 1e30, culled = 0;
     for (int round = 0; round < setting("BENCH_ROUNDS", 5); ++round) {
       counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;

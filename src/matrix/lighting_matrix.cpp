@@ -12,6 +12,12 @@ class ForwardingReader final : public EntryReader {
   void column(Index j, std::span<Rgb> out, Part part) override {
     matrix_.block(rows_, std::span(&j, 1), out, part);
   }
+  void entries_at(std::span<const std::uint32_t> places, std::span<const Index> columns, std::span<Rgb> out,
+                  Part part) override {
+    listed_.clear();
+    for (const std::uint32_t place : places) listed_.push_back(rows_[place]);
+    matrix_.entries(listed_, columns, out, part);
+  }
   void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                Part part) override {
     matrix_.entries(rows, columns, out, part);
@@ -19,7 +25,7 @@ class ForwardingReader final : public EntryReader {
 
  private:
   const LightingMatrix& matrix_;
-  std::vector<Index> rows_;
+  std::vector<Index> rows_, listed_;
 };
 
 }  // namespace

@@ -19,9 +19,10 @@ void SceneMatrix::entries(std::span<const Index> row_ids, std::span<const Index>
                           std::span<Rgb> out, Part part) const {
   if (row_ids.size() != column_ids.size() || out.size() != row_ids.size())
     throw InternalError("transport::SceneMatrix::entries: rows, columns and out differ in length");
+  const auto &rows = impl_->rows.plan.slot, &columns = impl_->columns.plan.slot;
   const Tally tally = parallel_sum(row_ids.size(), kPiece, Tally{}, [&](std::size_t begin, std::size_t end) {
     PairList list(impl_->context);
-    for (std::size_t k = begin; k < end; ++k) list.add(row_ids[k], column_ids[k]);
+    for (std::size_t k = begin; k < end; ++k) list.add(rows[row_ids[k]], columns[column_ids[k]]);
     Impl::Lease block(*impl_);
     return list.evaluate(*block, part, [&](std::uint32_t k) -> Rgb& { return out[begin + k]; });
   });
@@ -32,6 +33,7 @@ void SceneMatrix::block(std::span<const Index> row_ids, std::span<const Index> c
                         Part part) const {
   if (out.size() != row_ids.size() * column_ids.size())
     throw InternalError("transport::SceneMatrix::block: out is not rows × columns");
+  const auto &rows = impl_->rows.plan.slot, &columns = impl_->columns.plan.slot;
   // Along the longer side, so that rays of a packet share an end.
   const bool by_column = row_ids.size() >= column_ids.size();
   const std::size_t across = by_column ? row_ids.size() : column_ids.size();
@@ -41,7 +43,8 @@ void SceneMatrix::block(std::span<const Index> row_ids, std::span<const Index> c
       return by_column ? std::pair(along, line) : std::pair(line, along);
     };
     PairList list(impl_->context);
-    for (std::size_t k = begin; k < end; ++k) list.add(row_ids[place(k).first], column_ids[place(k).second]);
+    for (std::size_t k = begin; k < end; ++k)
+      list.add(rows[row_ids[place(k).first]], columns[column_ids[place(k).second]]);
     Impl::Lease block(*impl_);
     return list.evaluate(*block, part, [&](std::uint32_t k) -> Rgb& {
       const auto [a, b] = place(begin + k);

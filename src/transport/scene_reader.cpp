@@ -26,7 +26,9 @@ class SceneReader final : public matrix::EntryReader {
         account_(std::move(account)),
         slice_context_(context),
         column_block_(slice_context_),
+        slice_list_block_(slice_context_),
         list_block_(context_),
+        slice_list_(slice_context_),
         list_(context_) {
     slice_context_.rows = &slice_;
   }
@@ -54,6 +56,9 @@ class SceneReader final : public matrix::EntryReader {
       plan.runs.push_back(run);
       plan.kind.resize(run.end / 16, run_kind);
     }
+    plan.slot.resize(rows_);
+    for (std::uint32_t slot = 0; slot < places_.size(); ++slot)
+      if (places_[slot] != kNoItem) plan.slot[places_[slot]] = slot;
     plan.first_run = {0, static_cast<std::uint32_t>(plan.runs.size())};
     copy_rows(all);
     if (rows_ > 0) column_block_.set_row_tile(0);
@@ -69,20 +74,37 @@ class SceneReader final : public matrix::EntryReader {
     copy_out(column_block_, part, places_, [&](std::uint32_t to) -> Rgb& { return out[to]; });
   }
 
+  void entries_at(std::span<const std::uint32_t> places, std::span<const Index> columns, std::span<Rgb> out,
+                  Part part) override {
+    list_entries(slice_list_, slice_list_block_, slice_.plan.slot, {places, columns, out}, part);
+  }
   void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                Part part) override {
-    if (rows.size() != columns.size() || out.size() != rows.size())
-      throw InternalError("transport::SceneReader::entries: rows, columns and out differ in length");
-    for (std::size_t begin = 0; begin < rows.size(); begin += kPiece) {
-      list_.clear();
-      const std::size_t end = std::min(rows.size(), begin + kPiece);
-      for (std::size_t k = begin; k < end; ++k) list_.add(rows[k], columns[k]);
-      tally_ += list_.evaluate(list_block_, part, [&](std::uint32_t k) -> Rgb& { return out[begin + k]; });
-    }
+    list_entries(list_, list_block_, context_.rows->plan.slot, {rows, columns, out}, part);
   }
 
  private:
   static constexpr std::size_t kPiece = 4096;  // pairs whose buffers stay in a core's own cache
+
+  struct Asked {
+    std::span<const std::uint32_t> rows;
+    std::span<const Index> columns;
+    std::span<Rgb> out;
+  };
+  // row_slots: of what `rows` counts.
+  void list_entries(PairList& list, PairBlock& block, std::span<const std::uint32_t> row_slots,
+                    const Asked& asked, Part part) {
+    if (asked.rows.size() != asked.columns.size() || asked.out.size() != asked.rows.size())
+      throw InternalError("transport::SceneReader: rows, columns and out of a list differ in length");
+    const std::vector<std::uint32_t>& column_slots = context_.columns->plan.slot;
+    for (std::size_t begin = 0; begin < asked.rows.size(); begin += kPiece) {
+      list.clear();
+      const std::size_t end = std::min(asked.rows.size(), begin + kPiece);
+      for (std::size_t k = begin; k < end; ++k)
+        list.add(row_slots[asked.rows[k]], column_slots[asked.columns[k]]);
+      tally_ += list.evaluate(block, part, [&](std::uint32_t k) -> Rgb& { return asked.out[begin + k]; });
+    }
+  }
 
   void copy_rows(const RowStore& all) {
     const std::vector<std::uint32_t>& items = slice_.plan.item;
@@ -113,8 +135,8 @@ class SceneReader final : public matrix::EntryReader {
   Account account_;
   RowStore slice_;
   PairContext slice_context_;
-  PairBlock column_block_, list_block_;
-  PairList list_;
+  PairBlock column_block_, slice_list_block_, list_block_;
+  PairList slice_list_, list_;
   Tally tally_;
   std::size_t rows_ = 0;
   std::vector<std::uint32_t> order_, places_;

@@ -48,6 +48,15 @@ TEST_P(SceneReader, GivesTheMatrixOwnEntries) {
           asked += count;
           for (std::size_t a = 0; a < count; ++a) same(out[a], rows[a], j);
         }
+        if (count == 0) continue;
+        std::vector<std::uint32_t> places(1000);
+        std::vector<Index> js(places.size());
+        for (std::uint32_t& place : places) place = static_cast<std::uint32_t>(rng.next_below(count));
+        for (Index& j : js) j = static_cast<Index>(rng.next_below(kColumns));
+        std::vector<Rgb> some(places.size());
+        reader->entries_at(places, js, some, part);
+        asked += some.size();
+        for (std::size_t k = 0; k < some.size(); ++k) same(some[k], rows[places[k]], js[k]);
       }
       std::vector<Index> is(6000), js(is.size());
       for (Index& i : is) i = static_cast<Index>(rng.next_below(kRows));

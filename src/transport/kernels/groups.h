@@ -82,6 +82,9 @@ struct GroupStore {
   }
   // 16 slots from anywhere.
   void gather(const std::uint32_t slots[16], Group& out) const {
+    bool same = true;
+    for (int lane = 1; lane < 16; ++lane) same &= slots[lane] == slots[0];
+    if (same) return splat(slots[0], out);
     float* to = reinterpret_cast<float*>(&out);
     for (int lane = 0; lane < 16; ++lane) {
       const float* from = at(slots[lane]);

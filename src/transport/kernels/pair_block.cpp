@@ -24,6 +24,12 @@ PairResult evaluate(const RowGroup& r, const ColumnGroup& c, const PairExtras& e
   }
 }
 
+// Between these a pair that is not culled has E ≠ 0: black ends are culled by their depths.
+template <std::uint16_t row_kind, ColumnKind column_kind>
+constexpr bool kNeverBlack = row_kind == kRowLambertian &&
+                             (column_kind == kColumnOmni || column_kind == kColumnFacing ||
+                              column_kind == kColumnDirectional);
+
 }  // namespace
 
 // The loops over groups, compiled for each class of receiver and light: `cull` finds the survivors, `shade`
@@ -38,6 +44,7 @@ struct PairBlockKernels {
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
   static void shade_column(PairBlock& b, std::size_t begin, std::size_t end, PairExtras extras) {
+    if (kNeverBlack<row_kind, column_kind> && !b.values_wanted_) return;
     const RowGroup* rows = b.context_.rows->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g) {
       if (b.visible_[g] == 0) continue;
@@ -58,6 +65,7 @@ struct PairBlockKernels {
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
   static void shade_row(PairBlock& b, std::size_t begin, std::size_t end, PairExtras extras) {
+    if (kNeverBlack<row_kind, column_kind> && !b.values_wanted_) return;
     const ColumnGroup* columns = b.context_.columns->groups.data() + b.first_slot_ / 16;
     for (std::size_t g = begin; g < end; ++g) {
       if (b.visible_[g] == 0) continue;
@@ -99,6 +107,7 @@ struct PairBlockKernels {
 
   template <std::uint16_t row_kind, ColumnKind column_kind>
   static void shade_list(PairBlock& b, std::size_t g) {
+    if (kNeverBlack<row_kind, column_kind> && !b.values_wanted_) return;
     const PairContext& context = b.context_;
     Listed listed;
     listed.gather<column_kind>(b, g);

@@ -69,8 +69,9 @@ class PairBlock {
                 std::span<const std::uint16_t> used);
 
   // Shoots the survivors' rays and evaluates what they reach: afterwards visible(group) tells which lanes are
-  // unblocked and not zero, and e is theirs, transmittance of smooth surfaces included.
-  void trace();
+  // unblocked and not zero, and e is theirs, transmittance of smooth surfaces included. Without `values`, e
+  // is not to be read, and what can be told without it is not evaluated.
+  void trace(bool values = true);
   // Takes all survivors as visible.
   void skip_visibility();
 
@@ -123,7 +124,8 @@ class PairBlock {
   std::array<const SpotShape*, 16> fixed_spots_;
   std::uint16_t fixed_kind_ = 0;
   std::array<std::uint32_t, 16> fixed_items_, fixed_keys_;  // spherical lights only
-  float bound_ = kInfinity;                                 // of the pairs at hand, beside X
+  bool values_wanted_ = true;
+  float bound_ = kInfinity;  // of the pairs at hand, beside X
   ScatterArena tile_arena_, partner_arena_;
   std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
   std::vector<const SpotShape*> tile_spots_;

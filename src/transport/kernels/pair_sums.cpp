@@ -79,7 +79,7 @@ Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs) {
     block.skip_visibility();
     return tally;
   }
-  block.trace();
+  block.trace(part == matrix::Part::value);
   tally.rays = block.survivors();
   if (part == matrix::Part::value) {
     tally.value = block.visible_energy();

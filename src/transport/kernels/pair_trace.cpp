@@ -114,7 +114,8 @@ void PairBlock::shade_through() {
       e_[3 * (a.place / 16) + c][a.place % 16] *= a.through[static_cast<int>(c)];
 }
 
-void PairBlock::trace() {
+void PairBlock::trace(bool values) {
+  values_wanted_ = values;
   attenuations_.clear();
   geometry::ShadowPacket packet;
   const std::size_t packets = (survivors_ + 15) / 16;
@@ -122,7 +123,7 @@ void PairBlock::trace() {
     const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
     fill(packet, 16 * p, count);
     packet_bits_[p] = context_.rays->visible16(packet);
-    if (context_.has_smooth && packet_bits_[p] != 0) {
+    if (context_.has_smooth && values && packet_bits_[p] != 0) {
       // What is hidden need not be attenuated.
       for (int k = 0; k < count; ++k)
         if (!(packet_bits_[p] >> k & 1)) packet.valid[k] = 0;
@@ -146,6 +147,7 @@ void PairBlock::trace() {
 }
 
 void PairBlock::skip_visibility() {
+  values_wanted_ = true;
   attenuations_.clear();
   std::copy_n(alive_.begin(), groups_, visible_.begin());
   if (context_.has_smooth) {
