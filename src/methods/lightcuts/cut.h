@@ -18,7 +18,7 @@ struct CutLimits {
   std::size_t most_nodes = 1000;  // of a cut
   // Nodes refined in one round. They are those that refining one after another would take first, as far as
   // the round's own entries do not change the order.
-  std::size_t per_round = 32;
+  std::size_t per_round = 8;
 };
 
 // What a cut is made of, and every node above it: a tree of its own, the roots first. Children follow their

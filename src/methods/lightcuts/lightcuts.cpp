@@ -1,5 +1,10 @@
 // Lightcuts (Walter et al. 2005): for every receiver a cut of its own through the light tree, refined until
-// no node's bound exceeds 2 % of the receiver's total.
+// no node's bound exceeds 2 % of the receiver's total; and between such cuts, reconstruction cuts.
+//
+// Our deviations: cuts are refined in rounds of a few nodes and beside those of neighbours (cut.h). Bounds
+// and totals are compared by luminance. Receivers between cuts are reconstructed in blocks of 4×4 pixels with
+// as many further cuts as their surfaces need; an interpolated node is shaded anew by its representative's
+// unoccluded entry, where the paper keeps a directional light for the purpose (reconstruction.h).
 #include "methods/lightcuts/lightcuts.h"
 
 #include <algorithm>
@@ -7,7 +12,7 @@
 
 #include "methods/known_rows.h"
 #include "methods/light_tree/light_tree.h"
-#include "methods/lightcuts/cut.h"
+#include "methods/lightcuts/block_painter.h"
 #include "methods/parameters.h"
 #include "methods/unit_pass.h"
 
@@ -17,9 +22,13 @@ namespace {
 
 using matrix::Index;
 
+enum class Reconstruction { on, off };
+
 struct LightcutsSettings {
   double error_bound = 0.02;
   std::size_t most_nodes = 1000;
+  Reconstruction reconstruction = Reconstruction::on;
+  double agreement = 0.005;
 };
 
 const Fields<LightcutsSettings> kFields{
@@ -28,18 +37,63 @@ const Fields<LightcutsSettings> kFields{
                                      "receiver's total. 0 with no limit of nodes is brute force."},
                                     &LightcutsSettings::error_bound, 0, 1),
     count_field<LightcutsSettings>({"most-nodes", "nodes", "Of a receiver's cut; time is in proportion."},
-                                   &LightcutsSettings::most_nodes, 1)};
-
-// Receivers whose cuts are refined side by side: neighbours, which ask for like entries.
-constexpr std::size_t kTogether = 4;
+                                   &LightcutsSettings::most_nodes, 1),
+    choice_field<LightcutsSettings>(
+        {"reconstruction", "",
+         "on: few receivers have a cut of their own; what cuts in the neighbourhood agree in is "
+         "interpolated between them. off: every receiver has its own; many times slower."},
+        &LightcutsSettings::reconstruction, {"on", "off"}),
+    number_field<LightcutsSettings>({"agreement", "",
+                                     "Cuts agree in a node when they differ in it by less than this share of "
+                                     "the receiver's total."},
+                                    &LightcutsSettings::agreement, 0, 1)};
 
 struct Workspace {
+  Workspace(const matrix::LightingMatrix& matrix, const LightTree& tree, const LightcutsSettings& settings)
+      : reader(matrix.reader()),
+        cuts(matrix, tree, {settings.error_bound, settings.most_nodes}),
+        painter(matrix, tree, settings.agreement) {}
   std::unique_ptr<matrix::EntryReader> reader;
-  std::vector<std::unique_ptr<matrix::RowBounds>> bounds;  // one for each cut at hand
-  std::vector<Cut> cuts;
-  CutRounds rounds;
-  std::uint64_t nodes = 0, bounds_computed = 0, most_nodes = 0;
+  ReceiverCuts cuts;
+  BlockPainter painter;
 };
+using Pool = WorkspacePool<Workspace>;
+
+// Stretches of rows, which are kept in an order in which neighbours lie close.
+UnitRows stretches(std::size_t rows) {
+  std::vector<Index> all(rows);
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<std::uint32_t> first;
+  for (std::size_t i = 0; i < rows; i += ReceiverCuts::kTogether)
+    first.push_back(static_cast<std::uint32_t>(i));
+  first.push_back(static_cast<std::uint32_t>(rows));
+  return {std::move(all), std::move(first)};
+}
+
+void write_costs(const Pool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
+  double cuts = 0, nodes = 0, most = 0, bounds = 0, entries = 0, interpolated = 0;
+  auto& numbers = trace.numbers;
+  pool.for_each([&](const Workspace& w) {
+    cuts += static_cast<double>(w.cuts.cuts_made()), nodes += static_cast<double>(w.cuts.nodes());
+    most = std::max(most, static_cast<double>(w.cuts.most_nodes()));
+    bounds += static_cast<double>(w.cuts.bounds_computed());
+    entries += static_cast<double>(w.cuts.rounds().entries() + w.painter.shaded());
+    interpolated += static_cast<double>(w.painter.interpolated());
+    numbers["cpu_seconds.bounds"] += w.cuts.rounds().seconds_cuts();
+    numbers["cpu_seconds.entries"] += w.cuts.rounds().seconds_entries();
+    numbers["cpu_seconds.reconstruction"] += w.painter.seconds();
+  });
+  const auto per = [](double what, double of) { return of > 0 ? what / of : 0.0; };
+  const auto rows = static_cast<double>(matrix.rows()), columns = static_cast<double>(matrix.columns());
+  numbers["rows"] = 0;
+  numbers["columns"] = per(entries, rows);
+  numbers["columns_max"] = most;
+  numbers["cuts"] = cuts;
+  numbers["cut_nodes"] = per(nodes, cuts);
+  numbers["bounds"] = per(bounds, rows);
+  numbers["interpolated"] = per(interpolated, rows);
+  numbers["sampling_rate"] = columns > 0 ? per(entries, rows * columns) : 1.0;
+}
 
 class Lightcuts final : public Method {
  public:
@@ -48,76 +102,37 @@ class Lightcuts final : public Method {
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
     const Timer timer;
     const LightTree tree(matrix, options.seed);
-    const double seconds_tree = timer.seconds();
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
-    auto& numbers = estimate.trace.numbers;
-    double entries = 0;
+    estimate.trace.numbers["seconds.tree"] = timer.seconds();
     {
-      WorkspacePool<Workspace> pool([&] {
-        auto w = std::make_unique<Workspace>();
-        w->reader = matrix.reader();
-        for (std::size_t k = 0; k < kTogether; ++k) {
-          w->bounds.push_back(matrix.row_bounds());
-          w->cuts.emplace_back(tree, CutLimits{settings_.error_bound, settings_.most_nodes});
-        }
-        return w;
-      });
-      const UnitRows units = stretches(matrix.rows());
-      const UnitResult pass =
-          run_units(units, {options, timer, options.time_seconds, "columns"}, estimate.sums, pool,
-                    [&](std::size_t unit, Workspace& w) { cut_all(units[unit], w, estimate.sums); });
+      Pool pool([&] { return std::make_unique<Workspace>(matrix, tree, settings_); });
+      const UnitControl control{options, timer, options.time_seconds, "columns"};
+      const UnitResult pass = run_pass(matrix, control, pool, estimate.sums);
       note_stop(pass, estimate);
-      numbers["seconds.columns"] = pass.seconds;
-      write_costs(pool, matrix, numbers);
-      entries = numbers["columns"];
+      estimate.trace.numbers["seconds.columns"] = pass.seconds;
+      write_costs(pool, matrix, estimate.trace);
     }
-    numbers["seconds.tree"] = seconds_tree;
-    if (!estimate.interrupted) look_at_rows(matrix, options, estimate.sums, entries, estimate.trace);
+    if (!estimate.interrupted)
+      look_at_rows(matrix, options, estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
     if (options.on_estimate) options.on_estimate(estimate.sums);
     return estimate;
   }
 
  private:
-  static UnitRows stretches(std::size_t rows) {
-    std::vector<Index> all(rows);
-    std::iota(all.begin(), all.end(), 0u);
-    std::vector<std::uint32_t> first;
-    for (std::size_t i = 0; i < rows; i += kTogether) first.push_back(static_cast<std::uint32_t>(i));
-    first.push_back(static_cast<std::uint32_t>(rows));
-    return {std::move(all), std::move(first)};
-  }
-
-  static void cut_all(std::span<const Index> rows, Workspace& w, std::span<Rgb> sums) {
-    const std::span<Cut> cuts = std::span(w.cuts).first(rows.size());
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      w.bounds[k]->set_rows(rows.subspan(k, 1));
-      cuts[k].begin(rows[k], *w.bounds[k]);
+  UnitResult run_pass(const matrix::LightingMatrix& matrix, const UnitControl& control, Pool& pool,
+                      std::span<Rgb> sums) const {
+    const bool image = matrix.rows() > 0 && !matrix.row_features().pixel.empty();
+    if (settings_.reconstruction == Reconstruction::on && image) {
+      const ImageBlocks blocks(matrix);
+      return run_units(blocks.units(), control, sums, pool, [&](std::size_t unit, Workspace& w) {
+        w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
+      });
     }
-    w.rounds.finish(cuts, *w.reader);
-    for (const Cut& cut : cuts) {
-      sums[cut.row()] = cut.total();
-      w.nodes += cut.size(), w.bounds_computed += cut.bounds_computed();
-      w.most_nodes = std::max<std::uint64_t>(w.most_nodes, cut.size());
-    }
-  }
-
-  static void write_costs(const WorkspacePool<Workspace>& pool, const matrix::LightingMatrix& matrix,
-                          std::map<std::string, double>& numbers) {
-    const auto rows = std::max(1.0, static_cast<double>(matrix.rows()));
-    double nodes = 0, most = 0, bounds = 0, entries = 0;
-    pool.for_each([&](const Workspace& w) {
-      nodes += static_cast<double>(w.nodes), most = std::max(most, static_cast<double>(w.most_nodes));
-      bounds += static_cast<double>(w.bounds_computed), entries += static_cast<double>(w.rounds.entries());
-      numbers["cpu_seconds.cuts"] += w.rounds.seconds_cuts();
-      numbers["cpu_seconds.entries"] += w.rounds.seconds_entries();
+    const UnitRows units = stretches(matrix.rows());
+    return run_units(units, control, sums, pool, [&](std::size_t unit, Workspace& w) {
+      w.cuts.cut(units[unit], *w.reader, [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
     });
-    numbers["rows"] = 0;
-    numbers["columns"] = nodes / rows;
-    numbers["columns_max"] = most;
-    numbers["bounds"] = bounds / rows;
-    const auto columns = static_cast<double>(matrix.columns());
-    numbers["sampling_rate"] = columns > 0 ? entries / rows / columns : 1.0;
   }
 
   LightcutsSettings settings_;
