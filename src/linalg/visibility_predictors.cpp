@@ -10,23 +10,31 @@
 
 namespace lumirank::linalg {
 
-float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> by_row) {
-  int found = 0, visible = 0;
+namespace {
+float share_visible(int sum) {
+  return sum >= seen::kHidden ? static_cast<float>(sum & 15) / static_cast<float>(sum >> 4) : 0.5f;
+}
+}  // namespace
+
+float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> seen_by_row) {
+  int sum = 0;
   for (const std::uint32_t i : nearest)
-    if (i != SampledNeighbours::kNone) ++found, visible += by_row[i];
-  return found > 0 ? static_cast<float>(visible) / static_cast<float>(found) : 0.5f;
+    if (i != SampledNeighbours::kNone) sum += seen_by_row[i];
+  return share_visible(sum);
 }
 
 void nearest_probabilities(std::span<const SampledNeighbours::Few> nearest,
-                           std::span<const std::uint8_t> by_row, std::span<float> out) {
+                           std::span<const std::uint8_t> seen_by_row, std::span<float> out) {
   // With three samples or more, every point has three neighbours.
   if (nearest.empty() || nearest[0].back() == SampledNeighbours::kNone) {
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = nearest_probability(nearest[i], by_row);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = nearest_probability(nearest[i], seen_by_row);
     return;
   }
+  std::array<float, 3 * seen::kVisible + 1> share;
+  for (std::size_t s = 0; s < share.size(); ++s) share[s] = share_visible(static_cast<int>(s));
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto& n = nearest[i];
-    out[i] = static_cast<float>(by_row[n[0]] + by_row[n[1]] + by_row[n[2]]) / 3.0f;
+    out[i] = share[static_cast<std::size_t>(seen_by_row[n[0]] + seen_by_row[n[1]] + seen_by_row[n[2]])];
   }
 }
 

@@ -19,11 +19,17 @@ struct ColumnSamples {
   std::span<const std::uint8_t> visible;
 };
 
+// What a byte says of a row's visibility. A sum of up to 15 of them tells how many are known (its upper four
+// bits) and how many are visible (its lower).
+namespace seen {
+inline constexpr std::uint8_t kUnknown = 0, kHidden = 16, kVisible = 17;
+}
+
 // k nearest neighbours: one of the nearest sampled points, drawn at random, has the answer; so the
-// probability is their mean. `by_row` holds the samples' visibility at their rows. ½ without samples.
+// probability is the mean of those that are known, ½ if none is.
+float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> seen_by_row);
 void nearest_probabilities(std::span<const SampledNeighbours::Few> nearest,
-                           std::span<const std::uint8_t> by_row, std::span<float> out);
-float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> by_row);
+                           std::span<const std::uint8_t> seen_by_row, std::span<float> out);
 
 // A plane through space between what is lit and what is not: least squares of ±1 over homogeneous
 // coordinates, with 10⁻³ of their mean square as regularisation, because points may all lie in a plane.

@@ -130,4 +130,65 @@ DenseMatrix recess_matrix(const SyntheticSize& size) {
   return m;
 }
 
+namespace {
+struct Occluder {
+  Vec3f centre;
+  float radius;
+  bool round;
+};
+
+bool blocks(const Occluder& o, Vec3f from, Vec3f to) {
+  const float t = (o.centre.z - from.z) / (to.z - from.z);
+  const float x = from.x + t * (to.x - from.x) - o.centre.x, y = from.y + t * (to.y - from.y) - o.centre.y;
+  return o.round ? x * x + y * y < o.radius * o.radius : std::max(std::abs(x), std::abs(y)) < o.radius;
+}
+}  // namespace
+
+DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
+  const auto pixel = square_pixels(size.rows);
+  const float width = image_width(pixel);
+  std::vector<Vec3f> receivers(size.rows), lamps(size.columns);
+  std::vector<Rgb> colour(size.columns);
+  std::vector<float> power(size.columns);
+  for (std::size_t i = 0; i < size.rows; ++i) {
+    Rng rng(size.seed, Stage::test, 7, i);
+    const Vec2f jitter = rng.next_2d();
+    receivers[i] = {(pixel[i].x - 0.5f + jitter.x) / width, (pixel[i].y - 0.5f + jitter.y) / width, 0};
+  }
+  for (std::size_t j = 0; j < size.columns; ++j) {
+    Rng rng(size.seed, Stage::test, 8, j);
+    const Vec2f place = rng.next_2d();
+    lamps[j] = {place.x, place.y, 1};
+    colour[j] = bright_colour(rng) * log_uniform(rng, 0.5f, 2.0f);
+    power[j] = luminance(colour[j]);
+  }
+  std::vector<Occluder> in_the_way;
+  for (std::size_t k = 0; k < occluders; ++k) {
+    Rng rng(size.seed, Stage::test, 9, k);
+    const Vec2f place = rng.next_2d();
+    in_the_way.push_back(
+        {{place.x, place.y, 0.2f + 0.6f * rng.next_float()}, 0.05f + 0.1f * rng.next_float(), k % 2 == 0});
+  }
+  std::vector<Rgb> entries(size.rows * size.columns);
+  std::vector<std::uint8_t> visible(size.rows * size.columns);
+  for (std::size_t i = 0; i < size.rows; ++i)
+    for (std::size_t j = 0; j < size.columns; ++j) {
+      const Vec3f to = lamps[j] - receivers[i];
+      const float d2 = length_squared(to);
+      entries[i * size.columns + j] = colour[j] * (to.z * to.z / (d2 * d2) * kInvPi);
+      bool seen = true;
+      for (const Occluder& o : in_the_way) seen = seen && !blocks(o, receivers[i], lamps[j]);
+      visible[i * size.columns + j] = seen;
+    }
+  DenseMatrix m(size.rows, size.columns, std::move(entries), std::move(visible));
+  m.pixel = pixel;
+  m.row_position = receivers;
+  m.row_normal.assign(size.rows, {0, 0, 1});
+  m.column_position = lamps;
+  m.column_normal.assign(size.columns, {0, 0, -1});
+  m.power = power;
+  m.emitted = colour;
+  return m;
+}
+
 }  // namespace lumirank::matrix

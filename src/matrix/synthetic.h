@@ -31,4 +31,9 @@ DenseMatrix sparse_matrix(const SyntheticSize& size, double share);
 // column lights a few rows of its own, strongly, so columns look alike on most sampled rows.
 DenseMatrix recess_matrix(const SyntheticSize& size);
 
+// A room with shadows: receivers on the floor of a unit cube (2 per pixel of a square image), small lamps on
+// its ceiling that shine downwards, between them `occluders` horizontal discs and squares in mid-air.
+// Visibility is apart from the unoccluded part; rows and columns have places, normals, powers and colours.
+DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders);
+
 }  // namespace lumirank::matrix

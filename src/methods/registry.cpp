@@ -7,13 +7,14 @@
 #include "methods/method.h"
 #include "methods/power_sampling/power_sampling.h"
 #include "methods/row_column/row_column.h"
+#include "methods/sampling_recovery/sampling_recovery.h"
 
 namespace lumirank::methods {
 
 const std::vector<MethodInfo>& all_methods() {
-  static const std::vector<MethodInfo> methods{brute_force_info(),    instant_radiosity_info(),
-                                               power_sampling_info(), row_column_info(),
-                                               lightcuts_info(),      lightslice_info()};
+  static const std::vector<MethodInfo> methods{
+      brute_force_info(), instant_radiosity_info(), power_sampling_info(),   row_column_info(),
+      lightcuts_info(),   lightslice_info(),        sampling_recovery_info()};
   return methods;
 }
 

@@ -84,10 +84,21 @@ TEST(Hilbert, FewerSamplesThanNeighbours) {
   std::vector<float> p(10);
   nearest_probabilities(neighbours.of(), by_row, p);
   EXPECT_EQ(p, std::vector<float>(10, 0.5f));
-  sampled[4] = by_row[4] = 1;
+  sampled[4] = 1;
+  by_row[4] = seen::kVisible;
   neighbours.find(curves, sampled);
   nearest_probabilities(neighbours.of(), by_row, p);
   EXPECT_EQ(p, std::vector<float>(10, 1.0f));
+  // What is sampled elsewhere but unknown here does not count.
+  sampled[2] = sampled[7] = sampled[8] = 1;
+  by_row[7] = seen::kHidden;
+  neighbours.find(curves, sampled);
+  nearest_probabilities(neighbours.of(), by_row, p);
+  for (std::size_t i = 0; i < 10; ++i) {
+    int known = 0, visible = 0;
+    for (const std::uint32_t n : neighbours.of()[i]) known += by_row[n] > 0, visible += n == 4;
+    EXPECT_FLOAT_EQ(p[i], known > 0 ? static_cast<float>(visible) / static_cast<float>(known) : 0.5f);
+  }
 }
 
 // The shadow of a half plane: both kinds must be right where it is clear. The plane of least squares through

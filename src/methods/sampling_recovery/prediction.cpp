@@ -1,0 +1,174 @@
+#include "methods/sampling_recovery/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace lumirank::methods {
+
+using linalg::Entry;
+using linalg::SeparatingPlane;
+namespace seen = linalg::seen;
+
+namespace {
+constexpr std::size_t kRoundsWithoutPrediction = 5;
+}
+
+PredictionTally& PredictionTally::operator+=(const PredictionTally& o) {
+  for (std::size_t k = 0; k < chosen.size(); ++k) chosen[k] += o.chosen[k];
+  failed += o.failed;
+  error += o.error;
+  rounds += o.rounds;
+  return *this;
+}
+
+// Samples begin … end − 1 of the column's pattern, where they are known, into sample_rows_ and
+// sample_visible_.
+void Prediction::gather_samples(SliceEntries& entries, const Column& column, std::size_t begin,
+                                std::size_t end) {
+  const auto order = entries.patterns().order(entries.slot(column.slot).pattern);
+  const auto known = entries.seen(column.slot);
+  sample_rows_.clear();
+  sample_visible_.clear();
+  for (std::size_t k = begin; k < end; ++k) {
+    if (known[order[k]] == seen::kUnknown) continue;
+    sample_rows_.push_back(order[k]);
+    sample_visible_.push_back(known[order[k]] == seen::kVisible ? 1 : 0);
+  }
+}
+
+// Tests what was trained on the first samples of column c by those that came since. True if the best
+// predictor is good enough.
+bool Prediction::validate(const RecoverySettings& settings, std::size_t c, SliceEntries& entries) {
+  using Predictors = RecoverySettings::Predictors;
+  Column& column = columns_[c];
+  const SliceEntries::Slot& slot = entries.slot(column.slot);
+  const auto order = entries.patterns().order(slot.pattern);
+  const auto known = entries.seen(column.slot);
+  const auto neighbours =
+      entries.patterns().nearest_of_next(slot.pattern, column.trained, slot.sampled - column.trained);
+  gather_samples(entries, column, 0, column.trained);
+  const SeparatingPlane fitted =
+      SeparatingPlane::fit(entries.rows().points(), {sample_rows_, sample_visible_});
+  counts_.probabilities(c, stretch_probability_);
+  std::array<float, 3> wrong{};
+  float tests = 0;
+  for (std::size_t k = column.trained; k < slot.sampled; ++k) {
+    const std::uint32_t row = order[k];
+    if (known[row] == seen::kUnknown) continue;
+    const float v = known[row] == seen::kVisible ? 1.0f : 0.0f;
+    wrong[nearest] += std::abs(v - linalg::nearest_probability(neighbours[k - column.trained], known));
+    wrong[plane] += std::abs(v - fitted.probability(entries.rows().points()[row]));
+    wrong[bayes] += std::abs(v - stretch_probability_[row / linalg::BayesCounts::kStretch]);
+    ++tests;
+  }
+  const bool whole = slot.sampled == order.size();
+  if (tests == 0) return whole;
+  if (settings.predictors == Predictors::all)
+    column.best = static_cast<Kind>(std::min_element(wrong.begin(), wrong.end()) - wrong.begin());
+  else
+    column.best = static_cast<Kind>(static_cast<std::size_t>(settings.predictors) - 1);
+  column.error = wrong[column.best] / tests;
+  return whole || static_cast<double>(column.error) < settings.prediction_error;
+}
+
+// Fills probability_ by the column's predictor, trained on all its samples.
+void Prediction::predict(std::size_t c, SliceEntries& entries) {
+  const Column& column = columns_[c];
+  const SliceEntries::Slot& slot = entries.slot(column.slot);
+  switch (column.best) {
+    case nearest:
+      linalg::nearest_probabilities(entries.patterns().nearest(slot.pattern, slot.sampled),
+                                    entries.seen(column.slot), probability_);
+      break;
+    case plane:
+      gather_samples(entries, column, 0, slot.sampled);
+      SeparatingPlane::fit(entries.rows().points(), {sample_rows_, sample_visible_})
+          .probabilities(entries.rows().points(), probability_);
+      break;
+    case bayes:
+      counts_.probabilities(c, stretch_probability_);
+      for (std::size_t i = 0; i < probability_.size(); ++i)
+        probability_[i] = stretch_probability_[i / linalg::BayesCounts::kStretch];
+      break;
+  }
+}
+
+void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::span<const float> e,
+                      SliceEntries& entries, std::span<Entry> state) {
+  const std::size_t rows = entries.rows().size();
+  probability_.resize(rows);
+  drawn_.resize(rows);
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const auto known = entries.seen(columns_[c].slot);
+    if (!settings.prediction) {
+      std::ranges::fill(drawn_, std::uint8_t{1});
+    } else if (entries.slot(columns_[c].slot).sampled < rows) {
+      predict(c, entries);
+      if (settings.draw == RecoverySettings::Draw::likely)
+        for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability_[i] > 0.5f ? 1 : 0;
+      else
+        linalg::draw_visibility(
+            probability_, static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
+            drawn_);
+    }
+    const float* const reach = &e[c * rows];
+    Entry* const out = &state[c * rows];
+    for (std::size_t i = 0; i < rows; ++i) {
+      const Entry guess = drawn_[i] ? Entry::predicted_visible : Entry::predicted_hidden;
+      const Entry told = known[i] != seen::kUnknown ? Entry::exact : guess;
+      out[i] = reach[i] > 0 ? told : Entry::free;
+    }
+  }
+}
+
+void Prediction::run(const RecoverySettings& settings, std::span<const SliceCut::Cluster> clusters,
+                     std::span<const float> e, std::uint64_t key, SliceEntries& entries,
+                     std::span<Entry> state) {
+  const std::size_t rows = entries.rows().size();
+  const auto samples =
+      static_cast<std::size_t>(std::max(4.0, std::ceil(settings.rho * static_cast<double>(rows))));
+  tally_ = {};
+  counts_.reset(rows, clusters.size());
+  stretch_probability_.resize(counts_.stretches());
+  columns_.clear();
+  active_.clear();
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    columns_.push_back({clusters[c].slot});
+    Column& column = columns_.back();
+    column.trained = entries.slot(column.slot).sampled;
+    gather_samples(entries, column, 0, column.trained);
+    counts_.add(c, {sample_rows_, sample_visible_});
+    active_.push_back(static_cast<std::uint32_t>(c));
+  }
+  const std::size_t rounds = settings.prediction ? settings.rounds : kRoundsWithoutPrediction;
+  for (std::size_t round = 0; round < rounds && !active_.empty(); ++round) {
+    for (const std::uint32_t c : active_) entries.ask_next(columns_[c].slot, samples);
+    entries.look();
+    tally_.rounds += active_.size();
+    still_active_.clear();
+    if (settings.prediction) {
+      for (const std::uint32_t c : active_)
+        if (!validate(settings, c, entries)) still_active_.push_back(c);
+    } else {
+      still_active_ = active_;
+    }
+    // All have been tested on what this round brought; now they learn from it.
+    for (const std::uint32_t c : active_) {
+      Column& column = columns_[c];
+      gather_samples(entries, column, column.trained, entries.slot(column.slot).sampled);
+      counts_.add(c, {sample_rows_, sample_visible_});
+      column.trained = entries.slot(column.slot).sampled;
+    }
+    std::swap(active_, still_active_);
+  }
+  if (settings.prediction) {
+    tally_.failed = active_.size();
+    for (const Column& column : columns_)
+      ++tally_.chosen[column.best], tally_.error += static_cast<double>(column.error);
+  }
+  fill(settings, key, e, entries, state);
+}
+
+}  // namespace lumirank::methods

@@ -1,0 +1,110 @@
+#include "methods/sampling_recovery/sampling_recovery.h"
+
+#include <algorithm>
+
+#include "base/random.h"
+#include "base/timer.h"
+#include "methods/known_rows.h"
+#include "methods/sampling_recovery/settings.h"
+#include "methods/sampling_recovery/slice_recovery.h"
+#include "methods/slices/slices.h"
+#include "methods/unit_pass.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+void write_tally(const RecoveryTally& t, Trace& trace) {
+  auto& numbers = trace.numbers;
+  for (std::size_t k = 0; k < t.seconds.size(); ++k)
+    numbers[std::string("cpu_seconds.") + RecoveryTally::kSteps[k]] = t.seconds[k];
+  const auto number = [](std::uint64_t n) { return static_cast<double>(n); };
+  const double slices = number(t.slices), entries = number(t.entries);
+  numbers["columns"] = ratio(number(t.columns), slices);
+  numbers["columns_max"] = number(t.columns_most);
+  numbers["sampling_rate"] = entries > 0 ? number(t.sampled) / entries : 1.0;
+  numbers["corrected"] = ratio(number(t.corrected), entries);
+  numbers["samples_per_row"] = ratio(number(t.sampled), number(t.rows));
+  numbers["rank"] = ratio(number(t.rank), slices);
+  numbers["iterations"] = ratio(number(t.iterations), slices);
+  numbers["converged"] = ratio(number(t.converged), slices);
+  for (std::size_t k = 0; k < t.converged_after.size(); ++k)
+    if (t.converged_after[k] > 0)
+      numbers["converged_after." + std::to_string(k)] = number(t.converged_after[k]) / slices;
+  for (std::size_t k = 0; k < t.residual.size(); ++k)
+    numbers["residual." + std::to_string(k + 1)] = t.residual[k] / slices;
+  const char* const names[] = {"nearest", "plane", "bayes"};
+  for (std::size_t k = 0; k < 3; ++k)
+    numbers[std::string("predictor.") + names[k]] = ratio(number(t.prediction.chosen[k]), number(t.columns));
+  numbers["predictor.failed"] = ratio(number(t.prediction.failed), number(t.columns));
+  numbers["prediction_error"] = ratio(t.prediction.error, number(t.columns));
+  numbers["rounds"] = ratio(number(t.prediction.rounds), number(t.columns));
+}
+
+class SamplingRecovery final : public Method {
+ public:
+  explicit SamplingRecovery(const RecoverySettings& settings) : settings_(settings) {}
+
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    const Timer timer;
+    Estimate estimate;
+    estimate.sums.assign(matrix.rows(), Rgb(0));
+    auto& numbers = estimate.trace.numbers;
+    const LightTree tree(matrix, options.seed);
+    numbers["seconds.tree"] = timer.seconds();
+    const Slices slices = make_slices(matrix.row_features(), matrix.rows(), most_receivers(matrix));
+    numbers["seconds.slices"] = timer.seconds() - numbers["seconds.tree"];
+    numbers["slices"] = static_cast<double>(slices.count());
+    numbers["rows"] = 0;
+
+    WorkspacePool<SliceRecovery> pool(
+        [&] { return std::make_unique<SliceRecovery>(settings_, tree, matrix); });
+    UnitResult result;
+    const UnitRows units(slices.rows, slices.first);
+    result = run_units(units, {options, timer, options.time_seconds, "slices"}, estimate.sums, pool,
+                       [&](std::size_t s, SliceRecovery& slice) {
+                         slice.run(slices.slice(s), hash_ids(options.seed, Stage::method, 0x5245434f, s),
+                                   estimate.sums);
+                       });
+    RecoveryTally tally;
+    pool.for_each([&](const SliceRecovery& slice) { tally += slice.tally(); });
+    numbers["seconds.columns"] = result.seconds;
+    write_tally(tally, estimate.trace);
+    note_stop(result, estimate);
+    if (!estimate.interrupted) {
+      look_at_rows(matrix, options, estimate.sums,
+                   ratio(static_cast<double>(tally.shades), static_cast<double>(matrix.rows())),
+                   estimate.trace);
+      if (options.on_estimate) options.on_estimate(estimate.sums);
+    }
+    return estimate;
+  }
+
+ private:
+  // Slices are cut by receivers, of which a pixel has several.
+  std::size_t most_receivers(const matrix::LightingMatrix& matrix) const {
+    const std::size_t pixels = UnitRows::pixels(matrix).size();
+    const std::size_t per_pixel = pixels > 0 ? (matrix.rows() + pixels / 2) / pixels : 1;
+    return settings_.slice_rows * std::max<std::size_t>(per_pixel, 1);
+  }
+
+  RecoverySettings settings_;
+};
+
+}  // namespace
+
+MethodInfo sampling_recovery_info() {
+  const std::string name = "sampling-recovery";
+  return {name,
+          "Samples few visibilities of every slice of receivers and recovers the others.",
+          "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering",
+          parameters_of(recovery_fields()),
+          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
+            return std::make_unique<SamplingRecovery>(read_settings(name, recovery_fields(), settings));
+          },
+          [](const SettingsMap&) -> std::size_t { return 0; }};
+}
+
+}  // namespace lumirank::methods

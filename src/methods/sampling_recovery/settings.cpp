@@ -1,0 +1,66 @@
+#include "methods/sampling_recovery/settings.h"
+
+namespace lumirank::methods {
+
+const Fields<RecoverySettings>& recovery_fields() {
+  using S = RecoverySettings;
+  const std::vector<std::string> off_on{"off", "on"};
+  static const Fields<S> fields{
+      count_field<S>(
+          {"slice-rows", "pixels",
+           "Most pixels of a slice, whose columns are chosen and recovered together. Larger slices "
+           "share their columns' choice among more pixels, and have a higher rank."},
+          &S::slice_rows, 1),
+      count_field<S>({"initial-columns", "columns",
+                      "Clusters of lights that a slice begins with, by bounds without visibility."},
+                     &S::initial_columns, 1),
+      count_field<S>({"most-columns", "columns", "Where splitting ends at the latest."}, &S::most_columns, 1),
+      choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
+                      &S::splitting, off_on),
+      number_field<S>({"alpha", "of all clusters' greatest contributions",
+                       "Clusters above this share are split; 0: all, down to single lights."},
+                      &S::alpha, 0, 1),
+      choice_field<S>(
+          {"sparse-visibility", "", "Whether clusters that a few shadow rays do not see are left unsplit."},
+          &S::sparse_visibility, off_on),
+      number_field<S>({"rho", "of a column's entries",
+                       "How many visibilities are sampled at a time: for splitting, and in each round of "
+                       "prediction; at least four. 1: all."},
+                      &S::rho, 0, 1),
+      choice_field<S>({"prediction", "",
+                       "Whether visibilities in between are predicted. off: they are taken as visible, after "
+                       "five rounds of samples."},
+                      &S::prediction, off_on),
+      choice_field<S>({"predictors", "", "Which may be chosen for a column."}, &S::predictors,
+                      {"all", "nearest", "plane", "bayes"}),
+      choice_field<S>(
+          {"draw", "",
+           "random: predictions are drawn by their probability, so that errors have no structure; "
+           "likely: the likelier one."},
+          &S::draw, {"random", "likely"}),
+      number_field<S>({"prediction-error", "of the new samples",
+                       "A column is sampled on until its best predictor is wrong at less than this share of "
+                       "the samples that it has not seen."},
+                      &S::prediction_error, 0, 1),
+      count_field<S>({"rounds", "rounds", "Of sampling and validation, at most."}, &S::rounds, 1),
+      choice_field<S>({"separation", "",
+                       "Whether the predicted matrix is separated into one of low rank and sparse errors."},
+                      &S::separation, off_on),
+      choice_field<S>({"constraint", "",
+                       "Whether the separation uses that an error is all of an entry or nothing (equation "
+                       "12)."},
+                      &S::constraint, off_on),
+      choice_field<S>({"fit", "",
+                       "all: predictions count, and may be sparsely wrong; exact: the sampled entries alone, "
+                       "as the paper prints it."},
+                      &S::fit, {"all", "exact"}),
+      count_field<S>({"rank", "", "Of the recovered matrix, at most (and at most 24)."}, &S::rank, 1),
+      count_field<S>({"iterations", "", "Of the separation, at most."}, &S::iterations, 1),
+      choice_field<S>(
+          {"correction", "", "Whether entries are sampled where the separation's errors are dense."},
+          &S::correction, off_on),
+      number_field<S>({"density", "of entries", "What counts as dense there."}, &S::density, 0, 1)};
+  return fields;
+}
+
+}  // namespace lumirank::methods

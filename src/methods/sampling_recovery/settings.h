@@ -1,0 +1,32 @@
+// What a user can set of matrix sampling and recovery; the defaults are those of the paper (section 7.1).
+#pragma once
+
+#include "linalg/separation.h"
+#include "methods/parameters.h"
+
+namespace lumirank::methods {
+
+struct RecoverySettings {
+  std::size_t slice_rows = 1024;
+  // Columns of a slice.
+  std::size_t initial_columns = 200, most_columns = 2000;
+  bool splitting = true, sparse_visibility = true;
+  double alpha = 0.02;
+  // Visibility.
+  double rho = 0.01;
+  bool prediction = true;
+  enum class Predictors { all, nearest, plane, bayes } predictors = Predictors::all;
+  enum class Draw { random, likely } draw = Draw::random;
+  double prediction_error = 0.1;
+  std::size_t rounds = 20;
+  // Recovery.
+  bool separation = true, constraint = true;
+  linalg::SeparationSettings::Fit fit = linalg::SeparationSettings::Fit::all;
+  std::size_t rank = 16, iterations = 20;
+  bool correction = true;
+  double density = 0.2;
+};
+
+const Fields<RecoverySettings>& recovery_fields();
+
+}  // namespace lumirank::methods

@@ -1,0 +1,159 @@
+#include "methods/sampling_recovery/slice_cut.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/timer.h"
+
+namespace lumirank::methods {
+
+using matrix::Index;
+using Node = LightTree::Node;
+
+namespace {
+
+// A cluster's neighbours are the clusters below an ancestor of it that has up to four times its power (the
+// supplement with the paper's own range search was not at hand), of these the nearest eight on either side.
+constexpr float kNeighbourPower = 4;
+constexpr std::size_t kReach = 8;
+
+}  // namespace
+
+std::uint32_t SliceCut::place(Node node) const {
+  return static_cast<std::uint32_t>(tree_.columns(node).data() - tree_.order().data());
+}
+
+void SliceCut::initial_cut(std::size_t count, std::span<const Index> receivers) {
+  bounds_->set_rows(receivers);
+  const auto less = [](const Bounded& a, const Bounded& b) {
+    if (a.bound != b.bound) return a.bound < b.bound;
+    return a.power != b.power ? a.power < b.power : a.node < b.node;
+  };
+  const auto push = [&](Node node) {
+    heap_.push_back({mean(bounds_->bound(tree_.set(node))), tree_.power(node), node});
+    std::push_heap(heap_.begin(), heap_.end(), less);
+  };
+  heap_.clear();
+  clusters_.clear();
+  for (const Node root : tree_.roots()) push(root);
+  // Single lights are done; what cannot light the slice at all is left whole.
+  while (!heap_.empty() && heap_.size() + clusters_.size() < count) {
+    std::pop_heap(heap_.begin(), heap_.end(), less);
+    const Bounded top = heap_.back();
+    heap_.pop_back();
+    if (tree_.is_leaf(top.node) || top.bound <= 0) {
+      clusters_.push_back({top.node, kNoSlot, {}});
+      continue;
+    }
+    push(tree_.left(top.node));
+    push(tree_.right(top.node));
+  }
+  for (const Bounded& b : heap_) clusters_.push_back({b.node, kNoSlot, {}});
+  std::sort(clusters_.begin(), clusters_.end(),
+            [&](const Cluster& a, const Cluster& b) { return place(a.node) < place(b.node); });
+}
+
+void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries) {
+  const bool look = settings.splitting && settings.sparse_visibility;
+  const auto samples = static_cast<std::size_t>(
+      std::max(4.0, std::ceil(settings.rho * static_cast<double>(entries.rows().size()))));
+  for (Cluster& c : clusters_) {
+    if (c.slot != kNoSlot) continue;
+    c.column = tree_.scaled(c.node);
+    c.slot = static_cast<std::uint32_t>(entries.add(c.column.column));
+    if (look) entries.ask_next(c.slot, samples);
+  }
+  if (look) entries.look();
+}
+
+// Equation 7: Γ = (greatest M·G among the neighbours) · (whether any sample of theirs is visible) · power.
+void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& entries) {
+  const std::size_t n = clusters_.size();
+  most_.resize(n);
+  contribution_.resize(n);
+  for (std::size_t c = 0; c < n; ++c) {
+    const float power = mean(tree_.emitted(clusters_[c].node));
+    const float scaled = mean(clusters_[c].column.scale) * entries.slot(clusters_[c].slot).most;
+    most_[c] = power > 0 ? scaled / power : 0;
+  }
+  for (std::size_t c = 0; c < n; ++c) {
+    const Node node = clusters_[c].node;
+    const float power = mean(tree_.emitted(node));
+    Node above = node;
+    for (Node p = tree_.parent(node);
+         p != LightTree::kNone && tree_.power(p) <= kNeighbourPower * tree_.power(node); p = tree_.parent(p))
+      above = p;
+    const std::uint32_t begin = place(above),
+                        end = begin + static_cast<std::uint32_t>(tree_.columns(above).size());
+    float most = 0;
+    bool visible = !settings.sparse_visibility;
+    const auto take = [&](std::size_t k) {
+      const std::uint32_t at = place(clusters_[k].node);
+      if (at < begin || at >= end) return false;
+      most = std::max(most, most_[k]);
+      visible |= entries.slot(clusters_[k].slot).any_visible;
+      return true;
+    };
+    for (std::size_t k = c; k < std::min(n, c + kReach + 1) && take(k); ++k) {
+    }
+    for (std::size_t k = c; k > 0 && c - k < kReach && take(k - 1); --k) {
+    }
+    contribution_[c] = visible ? most * power : 0;
+  }
+}
+
+// Splits what is above the threshold of equation 8, the greatest first while there is room. False if nothing
+// was.
+bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
+  double sum = 0;
+  for (const float g : contribution_) sum += static_cast<double>(g);
+  const double threshold = settings.alpha * sum;
+  candidates_.clear();
+  for (std::size_t c = 0; c < clusters_.size(); ++c)
+    if (!tree_.is_leaf(clusters_[c].node) &&
+        (settings.alpha == 0 || static_cast<double>(contribution_[c]) > threshold))
+      candidates_.push_back(static_cast<std::uint32_t>(c));
+  if (candidates_.empty() || clusters_.size() >= settings.most_columns) return false;
+  const std::size_t room = settings.most_columns - clusters_.size();
+  if (candidates_.size() > room) {
+    std::sort(candidates_.begin(), candidates_.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return contribution_[a] != contribution_[b] ? contribution_[a] > contribution_[b] : a < b;
+    });
+    candidates_.resize(room);
+    std::sort(candidates_.begin(), candidates_.end());
+  }
+  next_.clear();
+  std::size_t candidate = 0;
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    const Cluster& whole = clusters_[c];
+    if (candidate == candidates_.size() || candidates_[candidate] != c) {
+      next_.push_back(whole);
+      continue;
+    }
+    ++candidate;
+    for (const Node child : {tree_.left(whole.node), tree_.right(whole.node)}) {
+      Cluster part{child, kNoSlot, tree_.scaled(child)};
+      if (part.column.column == entries.slot(whole.slot).column) part.slot = whole.slot;
+      next_.push_back(part);
+    }
+  }
+  std::swap(clusters_, next_);
+  std::sort(clusters_.begin(), clusters_.end(),
+            [&](const Cluster& a, const Cluster& b) { return place(a.node) < place(b.node); });
+  return true;
+}
+
+void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
+  const Timer timer;
+  initial_cut(std::min(settings.initial_columns, settings.most_columns), entries.rows().receivers());
+  seconds_of_bounds_ = timer.seconds();
+  add_slots(settings, entries);
+  if (!settings.splitting) return;
+  contributions(settings, entries);
+  while (split(settings, entries)) {
+    add_slots(settings, entries);
+    contributions(settings, entries);
+  }
+}
+
+}  // namespace lumirank::methods

@@ -1,0 +1,60 @@
+// Which clusters of lights a slice's reduced matrix has: first a cut by bounds, then splitting by the
+// greatest contribution (Huo et al. 2015, section 4.2 and algorithm 1).
+//
+// Where we deviate: the paper splits node after node and looks again at the neighbours of each; here all
+// clusters above the threshold are split together, then all contributions and the threshold are taken anew,
+// until nothing is above it. The result does not depend on an order, and costs O(log) rounds.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "matrix/entry_bounds.h"
+#include "methods/light_tree/light_tree.h"
+#include "methods/sampling_recovery/settings.h"
+#include "methods/sampling_recovery/slice_entries.h"
+
+namespace lumirank::methods {
+
+class SliceCut {
+ public:
+  struct Cluster {
+    LightTree::Node node;
+    std::uint32_t slot;  // of its representative
+    matrix::ScaledColumn column;
+  };
+
+  SliceCut(const LightTree& tree, const matrix::LightingMatrix& matrix)
+      : tree_(tree), bounds_(matrix.row_bounds()) {}
+
+  // Evaluates the clusters' representatives in `entries`, and samples them for sparse visibility.
+  void choose(const RecoverySettings& settings, SliceEntries& entries);
+  // In the order of the tree: neighbours are near.
+  std::span<const Cluster> clusters() const { return clusters_; }
+  // What the cut by bounds took of the last choose().
+  double seconds_of_bounds() const { return seconds_of_bounds_; }
+
+ private:
+  void initial_cut(std::size_t count, std::span<const matrix::Index> receivers);
+  void add_slots(const RecoverySettings& settings, SliceEntries& entries);
+  void contributions(const RecoverySettings& settings, SliceEntries& entries);
+  bool split(const RecoverySettings& settings, SliceEntries& entries);
+  std::uint32_t place(LightTree::Node node) const;
+
+  static constexpr std::uint32_t kNoSlot = 0xffffffffu;
+  struct Bounded {
+    float bound, power;
+    LightTree::Node node;
+  };
+
+  const LightTree& tree_;
+  std::unique_ptr<matrix::RowBounds> bounds_;
+  std::vector<Bounded> heap_;
+  std::vector<Cluster> clusters_, next_;
+  double seconds_of_bounds_ = 0;
+  std::vector<float> most_;                // M·G: greatest entry over power, by cluster
+  std::vector<float> contribution_;        // Γ, by cluster
+  std::vector<std::uint32_t> candidates_;  // clusters above the threshold
+};
+
+}  // namespace lumirank::methods

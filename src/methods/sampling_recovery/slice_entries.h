@@ -1,0 +1,72 @@
+// What is known of a slice's entries: for every column that was looked at, its unoccluded contributions to
+// all receivers, and the visibilities that were sampled.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "linalg/visibility_predictors.h"
+#include "matrix/entry_reader.h"
+#include "methods/sampling_recovery/sample_patterns.h"
+#include "methods/sampling_recovery/slice_rows.h"
+
+namespace lumirank::methods {
+
+class SliceEntries {
+ public:
+  struct Slot {
+    matrix::Index column;
+    std::uint32_t pattern;
+    std::uint32_t sampled;  // the first of the pattern's rows are known where the column reaches them
+    float most;             // greatest mean of r, g, b of an unoccluded entry
+    bool any_visible;       // among the samples
+  };
+
+  explicit SliceEntries(const matrix::LightingMatrix& matrix)
+      : features_(matrix.row_features()), reader_(matrix.reader()) {}
+
+  // Forgets all columns.
+  void start(std::span<const matrix::Index> slice, std::uint64_t key);
+  const SliceRows& rows() const { return rows_; }
+  SamplePatterns& patterns() { return patterns_; }
+
+  // Evaluates a column without visibility; the number of its slot.
+  std::size_t add(matrix::Index column);
+  Slot& slot(std::size_t s) { return slots_[s]; }
+  std::span<const Rgb> shades(std::size_t s) const {  // per receiver
+    return std::span(shades_).subspan(s * rows_.receivers().size(), rows_.receivers().size());
+  }
+  // Per row: linalg::seen.
+  std::span<std::uint8_t> seen(std::size_t s) {
+    return std::span(seen_).subspan(s * rows_.size(), rows_.size());
+  }
+  // The mean over a row's receivers of the mean of r, g, b of their entries times `scale`.
+  void scalars(std::size_t s, Rgb scale, std::span<float> out) const;
+
+  // Asks for an entry: one of the row's receivers that the column reaches, at random, is looked from. False
+  // if it reaches none. Answered by look().
+  bool ask(std::size_t s, std::size_t row);
+  // Asks for the next `count` rows of the slot's pattern.
+  void ask_next(std::size_t s, std::size_t count);
+  void look();
+  std::size_t looked() const { return looked_; }  // entries, since start()
+
+ private:
+  matrix::RowFeatures features_;
+  std::unique_ptr<matrix::EntryReader> reader_;
+  SliceRows rows_;
+  SamplePatterns patterns_;
+  std::uint64_t key_ = 0;
+  std::size_t looked_ = 0;
+  std::vector<Slot> slots_;
+  std::vector<Rgb> shades_, answers_;
+  std::vector<std::uint8_t> seen_;
+  struct Request {
+    std::uint32_t slot, row;
+  };
+  std::vector<Request> requests_;
+  std::vector<matrix::Index> asked_rows_, asked_columns_;
+};
+
+}  // namespace lumirank::methods

@@ -1,0 +1,155 @@
+#include "methods/sampling_recovery/slice_recovery.h"
+
+#include <algorithm>
+
+#include "base/timer.h"
+
+namespace lumirank::methods {
+
+using linalg::Entry;
+using matrix::Index;
+namespace seen = linalg::seen;
+
+RecoveryTally& RecoveryTally::operator+=(const RecoveryTally& o) {
+  for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k] += o.seconds[k];
+  slices += o.slices, rows += o.rows, columns += o.columns;
+  columns_most = std::max(columns_most, o.columns_most);
+  shades += o.shades, entries += o.entries, sampled += o.sampled, corrected += o.corrected;
+  rank += o.rank, iterations += o.iterations, converged += o.converged;
+  converged_after.resize(std::max(converged_after.size(), o.converged_after.size()));
+  for (std::size_t k = 0; k < o.converged_after.size(); ++k) converged_after[k] += o.converged_after[k];
+  residual.resize(std::max(residual.size(), o.residual.size()));
+  for (std::size_t k = 0; k < o.residual.size(); ++k) residual[k] += o.residual[k];
+  prediction += o.prediction;
+  return *this;
+}
+
+// The scalar reduced matrix, as if all were visible.
+void SliceRecovery::assemble() {
+  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  e_.resize(rows * columns);
+  for (std::size_t c = 0; c < columns; ++c)
+    entries_.scalars(clusters()[c].slot, clusters()[c].column.scale, std::span(e_).subspan(c * rows, rows));
+}
+
+void SliceRecovery::separate() {
+  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  d_.resize(rows * columns);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const auto known = entries_.seen(clusters()[c].slot);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::size_t at = c * rows + i;
+      const bool visible =
+          state_[at] == Entry::exact ? known[i] == seen::kVisible : state_[at] == Entry::predicted_visible;
+      d_[at] = visible ? e_[at] : 0.0f;
+    }
+  }
+  if (!settings_.separation) return;
+  linalg::SeparationSettings s;
+  s.most_rank = settings_.rank;
+  s.iterations = settings_.iterations;
+  s.constraint = settings_.constraint;
+  s.fit = settings_.fit;
+  separation_.run({rows, columns, d_, state_, e_}, s);
+  tally_.rank += separation_.rank();
+  tally_.iterations += separation_.iterations();
+  tally_.converged += separation_.converged() ? 1 : 0;
+  const auto history = separation_.residuals();
+  if (tally_.converged_after.size() <= settings_.iterations)
+    tally_.converged_after.resize(settings_.iterations + 1);
+  tally_.residual.resize(std::max(tally_.residual.size(), settings_.iterations));
+  ++tally_.converged_after[history.size()];
+  for (std::size_t k = 0; k < settings_.iterations && !history.empty(); ++k)
+    tally_.residual[k] += history[std::min(k, history.size() - 1)];
+}
+
+// Looks where the separation's errors are dense (section 6.2).
+void SliceRecovery::correct() {
+  if (!settings_.separation || !settings_.correction) return;
+  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  density_.build(separation_.sparse(), rows, columns);
+  const auto density = density_.density();
+  asked_.clear();
+  for (std::size_t c = 0; c < columns; ++c)
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::size_t at = c * rows + i;
+      const bool guessed = state_[at] == Entry::predicted_visible || state_[at] == Entry::predicted_hidden;
+      if (guessed && static_cast<double>(density[at]) > settings_.density &&
+          entries_.ask(clusters()[c].slot, i))
+        asked_.push_back(static_cast<std::uint32_t>(at));
+    }
+  entries_.look();
+  for (const std::uint32_t at : asked_) state_[at] = Entry::exact;
+  tally_.corrected += asked_.size();
+}
+
+// What is known, and for the rest L/E, or the prediction itself without separation.
+void SliceRecovery::recover_visibility() {
+  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  visibility_.resize(rows * columns);
+  const auto low_rank = settings_.separation ? separation_.low_rank() : std::span<const float>(d_);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const auto known = entries_.seen(clusters()[c].slot);
+    const float *const e = &e_[c * rows], *const l = &low_rank[c * rows];
+    const Entry* const state = &state_[c * rows];
+    float* const out = &visibility_[c * rows];
+    for (std::size_t i = 0; i < rows; ++i) {
+      const float exact = known[i] == seen::kVisible ? 1.0f : 0.0f;
+      const float share = l[i] / std::max(e[i], 1e-37f);
+      const float recovered = share < 0 ? 0.0f : share > 1 ? 1.0f : share;
+      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? 0.0f : recovered;
+    }
+  }
+}
+
+// Every receiver gets its own unoccluded contributions times its row's visibility.
+void SliceRecovery::gather(std::span<Rgb> sums) {
+  const SliceRows& rows = entries_.rows();
+  gathered_.assign(rows.receivers().size(), Rgb(0));
+  for (std::size_t c = 0; c < clusters().size(); ++c) {
+    const auto shades = entries_.shades(clusters()[c].slot);
+    const Rgb scale = clusters()[c].column.scale;
+    const float* const visibility = &visibility_[c * rows.size()];
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Rgb share = scale * visibility[r];
+      for (std::uint32_t k = rows.begin(r); k < rows.end(r); ++k) gathered_[k] += share * shades[k];
+    }
+  }
+  for (std::size_t k = 0; k < gathered_.size(); ++k) sums[rows.receivers()[k]] = gathered_[k];
+}
+
+void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::span<Rgb> sums) {
+  const Timer timer;
+  double last = 0;
+  const auto done = [&](std::size_t step) {
+    const double now = timer.seconds();
+    tally_.seconds[step] += now - last;
+    last = now;
+  };
+  entries_.start(slice, key);
+  cut_.choose(settings_, entries_);
+  done(1);
+  assemble();
+  state_.resize(e_.size());
+  prediction_.run(settings_, clusters(), e_, key, entries_, state_);
+  done(2);
+  separate();
+  done(3);
+  correct();
+  done(4);
+  recover_visibility();
+  gather(sums);
+  done(5);
+  tally_.seconds[0] += cut_.seconds_of_bounds();
+  tally_.seconds[1] -= cut_.seconds_of_bounds();
+  ++tally_.slices;
+  tally_.rows += entries_.rows().size();
+  tally_.columns += clusters().size();
+  tally_.columns_most = std::max<std::uint64_t>(tally_.columns_most, clusters().size());
+  tally_.shades += clusters().size() * slice.size();
+  tally_.entries += e_.size();
+  tally_.sampled += entries_.looked();
+  tally_.prediction += prediction_.tally();
+}
+
+}  // namespace lumirank::methods

@@ -1,0 +1,77 @@
+// One slice from its clusters to the sums of its receivers: reduced matrix, sampled and predicted visibility,
+// separation, correction, gathering (Huo et al. 2015, sections 4 to 6).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "linalg/density_map.h"
+#include "linalg/separation.h"
+#include "methods/sampling_recovery/prediction.h"
+#include "methods/sampling_recovery/settings.h"
+#include "methods/sampling_recovery/slice_cut.h"
+#include "methods/sampling_recovery/slice_entries.h"
+
+namespace lumirank::methods {
+
+// Sums over slices.
+struct RecoveryTally {
+  static constexpr std::array<const char*, 6> kSteps{"cut",        "splitting",  "prediction",
+                                                     "separation", "correction", "gather"};
+  std::array<double, kSteps.size()> seconds{};
+  std::uint64_t slices = 0, rows = 0, columns = 0, columns_most = 0;
+  std::uint64_t shades = 0;     // unoccluded entries, per receiver
+  std::uint64_t entries = 0;    // of the reduced matrices
+  std::uint64_t sampled = 0;    // of these, exactly evaluated visibilities; with those of splitting
+  std::uint64_t corrected = 0;  // of these, by correction
+  std::uint64_t rank = 0, iterations = 0, converged = 0;
+  std::vector<std::uint64_t> converged_after;  // slices by the number of their iterations
+  std::vector<double> residual;  // Σ over slices after each iteration; converged ones keep theirs
+  PredictionTally prediction;
+
+  RecoveryTally& operator+=(const RecoveryTally& o);
+};
+
+// Work space of one thread.
+class SliceRecovery {
+ public:
+  SliceRecovery(const RecoverySettings& settings, const LightTree& tree, const matrix::LightingMatrix& matrix)
+      : settings_(settings), entries_(matrix), cut_(tree, matrix) {}
+
+  // Writes the sums of the slice's receivers. Random numbers are keyed by `key`.
+  void run(std::span<const matrix::Index> slice, std::uint64_t key, std::span<Rgb> sums);
+
+  // Of the last slice, for those who look into it: column after column, rows × columns.
+  const SliceEntries& entries() const { return entries_; }
+  std::span<const SliceCut::Cluster> clusters() const { return cut_.clusters(); }
+  std::span<const float> unoccluded() const { return e_; }
+  std::span<const float> predicted() const { return d_; }
+  std::span<const linalg::Entry> states() const { return state_; }  // after correction
+  const linalg::Separation& separation() const { return separation_; }
+  const linalg::DensityMap& density() const { return density_; }
+  std::span<const float> visibility() const { return visibility_; }  // recovered, 0 … 1
+
+  const RecoveryTally& tally() const { return tally_; }
+
+ private:
+  void assemble();
+  void separate();
+  void correct();
+  void recover_visibility();
+  void gather(std::span<Rgb> sums);
+
+  RecoverySettings settings_;
+  SliceEntries entries_;
+  SliceCut cut_;
+  Prediction prediction_;
+  linalg::Separation separation_;
+  linalg::DensityMap density_;
+  std::vector<float> e_, d_, visibility_;
+  std::vector<linalg::Entry> state_;
+  std::vector<std::uint32_t> asked_;  // entries that correction asked for
+  std::vector<Rgb> gathered_;
+  RecoveryTally tally_;
+};
+
+}  // namespace lumirank::methods

@@ -1,0 +1,70 @@
+#include "methods/sampling_recovery/slice_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lumirank::methods {
+
+using matrix::Index;
+
+void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index> slice) {
+  const bool with_pixels = !features.pixel.empty();
+  const bool with_places = !features.position.empty();
+  placed_.clear();
+  for (const Index i : slice) {
+    if (with_pixels)
+      placed_.push_back({static_cast<std::int32_t>(std::floor(features.pixel[i].x)),
+                         static_cast<std::int32_t>(std::floor(features.pixel[i].y)), i});
+    else
+      placed_.push_back({static_cast<std::int32_t>(i), 0, i});
+  }
+  std::sort(placed_.begin(), placed_.end(), [](const Placed& a, const Placed& b) {
+    return a.y != b.y ? a.y < b.y : a.x != b.x ? a.x < b.x : a.receiver < b.receiver;
+  });
+  group_first_.clear();
+  group_points_.clear();
+  Vec3f normal{}, centre{};
+  for (std::size_t k = 0; k < placed_.size();) {
+    group_first_.push_back(static_cast<std::uint32_t>(k));
+    const Placed& pixel = placed_[k];
+    Vec3f sum{};
+    float count = 0;
+    for (; k < placed_.size() && placed_[k].x == pixel.x && placed_[k].y == pixel.y; ++k, ++count) {
+      const Index i = placed_[k].receiver;
+      sum = sum + (with_places ? features.position[i] : Vec3f{static_cast<float>(i), 0, 0});
+      if (!features.normal.empty()) normal = normal + features.normal[i];
+    }
+    group_points_.push_back(sum / count);
+    centre = centre + group_points_.back();
+  }
+  const std::size_t rows = group_points_.size();
+  group_first_.push_back(static_cast<std::uint32_t>(placed_.size()));
+  centre = centre / std::max(static_cast<float>(rows), 1.0f);
+  double spread = 0;
+  for (Vec3f& p : group_points_) {
+    p = p - centre;
+    spread += static_cast<double>(length_squared(p));
+  }
+  const auto unit =
+      static_cast<float>(std::sqrt(std::max(spread, 1e-30) / std::max(static_cast<double>(rows), 1.0)));
+  for (Vec3f& p : group_points_) p = p / unit;
+  plane_.resize(rows);
+  linalg::tangent_coordinates(group_points_, normal, plane_);
+  curves_.build(plane_);
+
+  receivers_.clear();
+  first_.assign(1, 0);
+  points_.resize(rows);
+  ordered_plane_.resize(rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const std::uint32_t g = curves_.order(0)[r];
+    points_[r] = group_points_[g];
+    ordered_plane_[r] = plane_[g];
+    for (std::uint32_t k = group_first_[g]; k < group_first_[g + 1]; ++k)
+      receivers_.push_back(placed_[k].receiver);
+    first_.push_back(static_cast<std::uint32_t>(receivers_.size()));
+  }
+  curves_.build(ordered_plane_);
+}
+
+}  // namespace lumirank::methods
