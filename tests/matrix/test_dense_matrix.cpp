@@ -15,6 +15,7 @@ std::vector<DenseMatrix> all_synthetic() {
   all.push_back(low_rank_matrix({60, 45, 2}, 4, 3));
   all.push_back(sparse_matrix({60, 45, 3}, 0.2));
   all.push_back(recess_matrix({60, 45, 4}));
+  all.push_back(occluded_matrix({60, 45, 5}, 6));
   return all;
 }
 
