@@ -4,25 +4,49 @@
 
 namespace lumirank::matrix {
 
+namespace {
+
+// What rounding an axis and a cosine to floats may cost, as a cosine. As an angle it is the less the blunter
+// the cone, so that many joins one after the other cost no more than a few.
+constexpr double kRounding = 4e-7;
+
+struct Vec3d {
+  double x, y, z;
+};
+Vec3d unit(Vec3f v) {
+  const double x = v.x, y = v.y, z = v.z, size = std::sqrt(x * x + y * y + z * z);
+  return {x / size, y / size, z / size};
+}
+double angle(float cosine) { return std::acos(std::clamp(static_cast<double>(cosine), -1.0, 1.0)); }
+// Precise for nearly equal vectors as well.
+double angle(Vec3d a, Vec3d b) {
+  const double x = a.y * b.z - a.z * b.y, y = a.z * b.x - a.x * b.z, z = a.x * b.y - a.y * b.x;
+  return std::atan2(std::sqrt(x * x + y * y + z * z), a.x * b.x + a.y * b.y + a.z * b.z);
+}
+
+}  // namespace
+
 Cone join(const Cone& a, const Cone& b) {
   if (a.cosine <= -1 || b.cosine <= -1) return {a.axis, -1};
-  const auto angle = [](float cosine) {
-    return std::acos(std::clamp(static_cast<double>(cosine), -1.0, 1.0));
-  };
-  const double spread_a = angle(a.cosine), spread_b = angle(b.cosine), between = angle(dot(a.axis, b.axis));
+  if (a.axis == b.axis) return {a.axis, std::min(a.cosine, b.cosine)};
+  const Vec3d u = unit(a.axis), v = unit(b.axis);
+  const double spread_a = angle(a.cosine), spread_b = angle(b.cosine), between = angle(u, v);
   if (between + spread_b <= spread_a) return a;
   if (between + spread_a <= spread_b) return b;
-  constexpr double kRounding = 1e-3;  // of axes and cosines in floats, near 0 where cosines are blunt
-  const double spread = 0.5 * (spread_a + spread_b + between) + kRounding;
-  if (spread >= static_cast<double>(kPi)) return {a.axis, -1};
+  const double spread = 0.5 * (spread_a + spread_b + between);
+  constexpr double kHalfTurn = 3.14159265358979324;
+  if (spread >= kHalfTurn) return {a.axis, -1};
   // Turn from axis a towards b until both lie within `spread`.
-  const double turn = spread - kRounding - spread_a, sine = std::sin(between);
-  const double u = sine > 1e-6 ? std::sin(between - turn) / sine : 1.0,
-               v = sine > 1e-6 ? std::sin(turn) / sine : 0.0;
-  const Vec3f axis = a.axis * static_cast<float>(u) + b.axis * static_cast<float>(v);
-  const float size = length(axis);
-  if (!(size > 1e-3f)) return {a.axis, -1};
-  return {axis / size, static_cast<float>(std::cos(spread))};
+  const double turn = spread - spread_a, sine = std::sin(between);
+  if (!(sine > 1e-9)) {
+    // Opposite axes, or as good as equal ones.
+    return between > 1 ? Cone{a.axis, -1}
+                       : Cone{a.axis, static_cast<float>(std::cos(2 * spread) - kRounding)};
+  }
+  const double p = std::sin(between - turn) / sine, q = std::sin(turn) / sine;
+  const Vec3f axis{static_cast<float>(p * u.x + q * v.x), static_cast<float>(p * u.y + q * v.y),
+                   static_cast<float>(p * u.z + q * v.z)};
+  return {axis, std::max(-1.0f, static_cast<float>(std::cos(spread) - kRounding))};
 }
 
 ColumnSet join(const ColumnSet& a, const ColumnSet& b) {

@@ -19,7 +19,7 @@ struct Cone {
   Vec3f axis{0, 0, 1};  // unit
   float cosine = -1;    // of that angle; -1: all directions
 };
-// A cone that holds both; the least one, but for rounding to the safe side.
+// A cone that holds both; the least one, but for rounding to the safe side (4e-7 of the cosine).
 Cone join(const Cone& a, const Cone& b);
 
 // How a column sends light. Columns that differ in it, or of which only one is spherical, do not share a

@@ -32,7 +32,6 @@ ColumnSet SceneMatrix::column_set(Index j) const {
   const float clamp = impl_->context.clamp;
   ColumnSet set;
   set.box.extend(lights.position[j]);
-  set.cone = {lights.ng[j], 1};
   set.direct = lights.depth[j] == 0;
   set.intensity = lights.power[j];
   switch (lights.kind[j]) {
@@ -45,11 +44,11 @@ ColumnSet SceneMatrix::column_set(Index j) const {
     }
     case LightKind::directional:
       set.emission = Emission::directional;
-      set.cone.axis = -lights.normal[j];
+      set.cone = {-lights.normal[j], 1};
       return set;
     case LightKind::oriented:
       set.emission = Emission::oriented;
-      set.cone.axis = lights.normal[j];
+      set.cone = {lights.normal[j], 1};
       // a·G·π f_x ≤ X, so f_x·G ≤ X/(a·π).
       if (lights.area[j] > 0 && clamp < kInfinity)
         set.ceiling = set.intensity * (1.00001f * clamp * kInvPi / lights.area[j]);
@@ -67,7 +66,7 @@ ColumnSet SceneMatrix::column_set(Index j) const {
       set.ceiling *= lights.albedo[j] * (1 / max_component(lights.albedo[j]));
   }
   if (matt) {
-    set.emission = Emission::oriented;
+    set.emission = Emission::oriented, set.cone = {lights.ng[j], 1};
     set.intensity *= lights.albedo[j] * kInvPi;
   } else {
     const LightPeak& peak = impl_->peaks[lights.closure[j]];
@@ -75,7 +74,7 @@ ColumnSet SceneMatrix::column_set(Index j) const {
     const bool disc = sphere && impl_->settings.spheres.indicator == SphereRules::Indicator::disc;
     const bool oriented =
         peak.one_sided && (disc || max_component(peak.alone) <= 4 * max_component(peak.slanted));
-    if (oriented) set.emission = Emission::oriented;
+    if (oriented) set.emission = Emission::oriented, set.cone = {lights.ng[j], 1};
     set.intensity *= oriented || disc ? peak.alone : peak.slanted;
   }
   if (sphere) {
