@@ -137,18 +137,21 @@ void CutRounds::finish(std::span<Cut> cuts, matrix::EntryReader& reader) {
     seconds += now - last;
     last = now;
   };
+  rows_.clear();
+  for (const Cut& cut : cuts) rows_.push_back(cut.row());
+  reader.set_rows(rows_);
   for (;;) {
-    rows_.clear(), columns_.clear(), ends_.clear();
+    places_.clear(), columns_.clear(), ends_.clear();
     bool any = false;
-    for (Cut& cut : cuts) {
-      any = cut.ask(columns_) || any;
-      rows_.resize(columns_.size(), cut.row());
+    for (std::uint32_t k = 0; k < cuts.size(); ++k) {
+      any = cuts[k].ask(columns_) || any;
+      places_.resize(columns_.size(), k);
       ends_.push_back(static_cast<std::uint32_t>(columns_.size()));
     }
     lap(seconds_cuts_);
     if (!any) return;
     values_.resize(columns_.size());
-    reader.entries(rows_, columns_, values_);
+    reader.entries_at(places_, columns_, values_);
     entries_ += columns_.size();
     lap(seconds_entries_);
     std::uint32_t from = 0;

@@ -87,6 +87,7 @@ class CutRounds {
 
  private:
   std::vector<matrix::Index> rows_, columns_;
+  std::vector<std::uint32_t> places_;
   std::vector<Rgb> values_;
   std::vector<std::uint32_t> ends_;
   double seconds_entries_ = 0, seconds_cuts_ = 0;
