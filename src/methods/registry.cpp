@@ -5,6 +5,7 @@
 #include "methods/lightcuts/lightcuts.h"
 #include "methods/lightslice/lightslice.h"
 #include "methods/method.h"
+#include "methods/multidimensional_lightcuts/multidimensional_lightcuts.h"
 #include "methods/power_sampling/power_sampling.h"
 #include "methods/row_column/row_column.h"
 #include "methods/sampling_recovery/sampling_recovery.h"
@@ -13,8 +14,8 @@ namespace lumirank::methods {
 
 const std::vector<MethodInfo>& all_methods() {
   static const std::vector<MethodInfo> methods{
-      brute_force_info(), instant_radiosity_info(), power_sampling_info(),   row_column_info(),
-      lightcuts_info(),   lightslice_info(),        sampling_recovery_info()};
+      brute_force_info(), instant_radiosity_info(),          power_sampling_info(), row_column_info(),
+      lightcuts_info(),   multidimensional_lightcuts_info(), lightslice_info(),     sampling_recovery_info()};
   return methods;
 }
 

@@ -1,0 +1,199 @@
+// Multidimensional lightcuts (Walter et al. 2006): the receivers of a pixel are a tree as the lights are, and
+// a cut goes through pairs of their nodes, until no pair's bound exceeds 2 % of the pixel's sum. Where the
+// receivers of a pixel are alike, one of them answers for all.
+//
+// Our deviations: bounds and sums are compared by luminance. A pair is refined on the side whose node is
+// larger in place and direction. A pixel's receivers weigh what they weigh in the picture; the pixel's filter
+// is left to the film. Cuts are refined in rounds, several pixels side by side.
+#include "methods/multidimensional_lightcuts/multidimensional_lightcuts.h"
+
+#include <algorithm>
+
+#include "base/timer.h"
+#include "matrix/entry_reader.h"
+#include "methods/known_rows.h"
+#include "methods/multidimensional_lightcuts/pair_cut.h"
+#include "methods/parameters.h"
+#include "methods/unit_pass.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+using matrix::Index;
+
+struct MultidimensionalSettings {
+  double error_bound = 0.02;
+  std::size_t most_pairs = 2000;
+};
+
+const Fields<MultidimensionalSettings> kFields{
+    number_field<MultidimensionalSettings>({"error-bound", "",
+                                            "A pair is refined while its bound exceeds this share of the "
+                                            "pixel's sum. 0 with no limit of pairs is brute force."},
+                                           &MultidimensionalSettings::error_bound, 0, 1),
+    count_field<MultidimensionalSettings>({"most-pairs", "pairs", "Of a pixel's cut; time is in proportion."},
+                                          &MultidimensionalSettings::most_pairs, 1)};
+
+// Pixels whose cuts are refined side by side: neighbours, which ask for like entries.
+constexpr std::size_t kTogether = 8;
+
+// Half the diagonal of the places of all lights.
+float extent_scale(const LightTree& lights) {
+  Bounds3f all;
+  for (const LightTree::Node root : lights.roots()) {
+    const matrix::ColumnSet set = lights.set(root);
+    if (set.emission != matrix::Emission::directional) all.extend(set.box);
+  }
+  return all.radius();
+}
+
+class Workspace {
+ public:
+  Workspace(const matrix::LightingMatrix& matrix, const LightTree& lights, std::uint64_t seed,
+            const PairLimits& limits)
+      : reader_(matrix.reader()) {
+    const float scale = extent_scale(lights);
+    for (std::size_t k = 0; k < kTogether; ++k)
+      cuts_.emplace_back(lights, GatherTree(matrix, seed, scale), limits);
+  }
+
+  // At most kTogether pixels.
+  void run(const UnitRows& pixels, std::size_t first, std::size_t count, std::span<Rgb> sums) {
+    const Timer timer;
+    double last = 0;
+    const auto lap = [&](double& seconds) {
+      const double now = timer.seconds();
+      seconds += now - last;
+      last = now;
+    };
+    rows_.clear(), first_place_.clear();
+    for (std::size_t k = 0; k < count; ++k) {
+      cuts_[k].begin(pixels[first + k]);
+      first_place_.push_back(static_cast<std::uint32_t>(rows_.size()));
+      rows_.insert(rows_.end(), cuts_[k].rows().begin(), cuts_[k].rows().end());
+    }
+    reader_->set_rows(rows_);
+    for (;;) {
+      places_.clear(), columns_.clear(), ends_.clear();
+      bool any = false;
+      for (std::size_t k = 0; k < count; ++k) {
+        any = cuts_[k].ask(first_place_[k], places_, columns_) || any;
+        ends_.push_back(static_cast<std::uint32_t>(columns_.size()));
+      }
+      lap(seconds_cuts);
+      if (!any) break;
+      values_.resize(columns_.size());
+      reader_->entries_at(places_, columns_, values_);
+      entries += static_cast<double>(columns_.size());
+      lap(seconds_entries);
+      std::uint32_t from = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        cuts_[k].take(std::span(values_).subspan(from, ends_[k] - from));
+        from = ends_[k];
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      cuts_[k].write_sums(sums);
+      ++cuts, pairs += static_cast<double>(cuts_[k].size());
+      most_pairs = std::max(most_pairs, static_cast<double>(cuts_[k].size()));
+      bounds += static_cast<double>(cuts_[k].bounds_computed());
+    }
+  }
+
+  double seconds_cuts = 0, seconds_entries = 0;
+  double entries = 0, cuts = 0, pairs = 0, most_pairs = 0, bounds = 0;  // whole numbers
+
+ private:
+  std::unique_ptr<matrix::EntryReader> reader_;
+  std::vector<PairCut> cuts_;
+  std::vector<Index> rows_, columns_;
+  std::vector<std::uint32_t> first_place_, places_, ends_;
+  std::vector<Rgb> values_;
+};
+using Pool = WorkspacePool<Workspace>;
+
+// kTogether pixels to a unit.
+UnitRows together(const UnitRows& pixels) {
+  std::vector<Index> rows;
+  std::vector<std::uint32_t> first;
+  for (std::size_t p = 0; p < pixels.size(); ++p) {
+    if (p % kTogether == 0) first.push_back(static_cast<std::uint32_t>(rows.size()));
+    rows.insert(rows.end(), pixels[p].begin(), pixels[p].end());
+  }
+  first.push_back(static_cast<std::uint32_t>(rows.size()));
+  return {std::move(rows), std::move(first)};
+}
+
+void write_costs(const Pool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
+  double cuts = 0, pairs = 0, most = 0, bounds = 0, entries = 0;
+  auto& numbers = trace.numbers;
+  numbers["cpu_seconds.bounds"] = numbers["cpu_seconds.entries"] = 0;
+  pool.for_each([&](const Workspace& w) {
+    cuts += w.cuts, pairs += w.pairs, most = std::max(most, w.most_pairs);
+    bounds += w.bounds, entries += w.entries;
+    numbers["cpu_seconds.bounds"] += w.seconds_cuts;
+    numbers["cpu_seconds.entries"] += w.seconds_entries;
+  });
+  const auto per = [](double what, double of) { return of > 0 ? what / of : 0.0; };
+  const auto rows = static_cast<double>(matrix.rows()), columns = static_cast<double>(matrix.columns());
+  numbers["rows"] = 0;
+  numbers["columns"] = per(entries, rows);
+  numbers["columns_max"] = most;
+  numbers["cuts"] = cuts;
+  numbers["cut_pairs"] = per(pairs, cuts);
+  numbers["bounds"] = per(bounds, rows);
+  numbers["sampling_rate"] = columns > 0 ? per(entries, rows * columns) : 1.0;
+}
+
+class MultidimensionalLightcuts final : public Method {
+ public:
+  explicit MultidimensionalLightcuts(const MultidimensionalSettings& settings) : settings_(settings) {}
+
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    const Timer timer;
+    const LightTree lights(matrix, options.seed);
+    Estimate estimate;
+    estimate.sums.assign(matrix.rows(), Rgb(0));
+    estimate.trace.numbers["seconds.tree"] = timer.seconds();
+    const UnitRows pixels = UnitRows::pixels(matrix);
+    {
+      Pool pool([&] {
+        return std::make_unique<Workspace>(matrix, lights, options.seed,
+                                           PairLimits{settings_.error_bound, settings_.most_pairs});
+      });
+      const UnitResult pass =
+          run_units(together(pixels), {options, timer, options.time_seconds, "columns"}, estimate.sums, pool,
+                    [&](std::size_t unit, Workspace& w) {
+                      const std::size_t first = unit * kTogether;
+                      w.run(pixels, first, std::min(kTogether, pixels.size() - first), estimate.sums);
+                    });
+      note_stop(pass, estimate);
+      estimate.trace.numbers["seconds.columns"] = pass.seconds;
+      write_costs(pool, matrix, estimate.trace);
+    }
+    if (!estimate.interrupted)
+      look_at_rows(matrix, options, estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
+    if (options.on_estimate) options.on_estimate(estimate.sums);
+    return estimate;
+  }
+
+ private:
+  MultidimensionalSettings settings_;
+};
+
+}  // namespace
+
+MethodInfo multidimensional_lightcuts_info() {
+  const std::string name = "multidimensional-lightcuts";
+  return {name,
+          "For each pixel a cut through pairs of its receivers and a tree of lights.",
+          "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
+          parameters_of(kFields),
+          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
+            return std::make_unique<MultidimensionalLightcuts>(read_settings(name, kFields, settings));
+          },
+          [](const SettingsMap&) -> std::size_t { return 0; }};
+}
+
+}  // namespace lumirank::methods
