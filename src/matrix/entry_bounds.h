@@ -49,6 +49,12 @@ struct ColumnSet {
 // Both must be of one kind (emission and spherical).
 ColumnSet join(const ColumnSet& a, const ColumnSet& b);
 
+// A bound apart from what distance makes of it.
+struct BoundParts {
+  Rgb reflected;            // bound = min(reflected · near, ceiling)
+  float near = 1, far = 1;  // factors at the least and at the greatest distance
+};
+
 // Bounds for one set of rows at a time: a receiver, the receivers of a pixel, a slice. One thread at a time.
 class RowBounds {
  public:
@@ -58,6 +64,8 @@ class RowBounds {
   // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i. Finite unless a row may lie in the
   // set's box and nothing is clamped (nor spherical).
   virtual Rgb bound(const ColumnSet& set) const = 0;
+  // The same in parts, for guesses at what a set sends rather than at what it sends at most.
+  virtual BoundParts parts(const ColumnSet& set) const { return {bound(set)}; }
 };
 
 }  // namespace lumirank::matrix

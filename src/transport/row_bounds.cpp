@@ -132,11 +132,12 @@ Rgb SceneRowBounds::scattered(const DirectionCone& cone, float cosine, bool dire
   return most;
 }
 
-Rgb SceneRowBounds::bound(const ColumnSet& set) const {
+matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
+  matrix::BoundParts parts{Rgb(0)};
   // Lobes have a roughness of 1 at most: above it, all direct light is traced.
-  if (box_.empty() || (set.direct && rules_.traced_direct_below > 1)) return Rgb(0);
+  if (box_.empty() || (set.direct && rules_.traced_direct_below > 1)) return parts;
   DirectionCone cone;
-  float geometry = 1, cosine;
+  float cosine, factor = kRounding;
   if (set.emission == Emission::directional) {
     cone.axis = set.cone.axis;
     if (!closures_.empty())
@@ -146,39 +147,47 @@ Rgb SceneRowBounds::bound(const ColumnSet& set) const {
     cosine = towards(std::min(cosine, 1.0f), normals_.cosine, normals_sine_);
   } else {
     Differences d = differences(box_, set.box);
-    const float distance2 = d.distance2;
+    const Vec3f farthest{std::abs(d.center.x) + d.half.x, std::abs(d.center.y) + d.half.y,
+                         std::abs(d.center.z) + d.half.z};
+    parts.far = 1 / std::max(length_squared(farthest), 1e-30f);
     // A sphere sends light from all of its box.
     if (set.spherical) d.half += Vec3f{set.radius, set.radius, set.radius};
-    const float radius = length(d.half);
     cosine = towards(greatest_cosine(normals_.axis, d), normals_.cosine, normals_sine_);
-    if (cosine <= 0 && closures_.empty() && !behind_) return Rgb(0);
-    if (d.far > 0) cone.axis = d.center / d.far;
-    if (!closures_.empty() && radius < d.far) cone.angle = radius > 0 ? std::asin(radius / d.far) : 0.0f;
+    if (cosine <= 0 && closures_.empty() && !behind_) return parts;
+    if (!closures_.empty()) {
+      const float radius = length(d.half);
+      if (d.far > 0) cone.axis = d.center / d.far;
+      if (radius < d.far) cone.angle = radius > 0 ? std::asin(radius / d.far) : 0.0f;
+    }
     bool slanted = set.emission == Emission::oriented;
     if (!set.spherical) {
-      geometry = distance2 > 0 ? 1 / distance2 : kInfinity;
+      parts.near = d.distance2 > 0 ? 1 / d.distance2 : kInfinity;
     } else {
-      geometry = sphere_geometry(distance2, set.radius, set.least_radius, rules_.spheres.beyond);
-      const bool near = distance2 < square(kDiscReach * set.radius) * 1.00001f;
+      parts.near = sphere_geometry(d.distance2, set.radius, set.least_radius, rules_.spheres.beyond);
+      parts.far = std::min(parts.near, parts.far);
+      const bool near = d.distance2 < square(kDiscReach * set.radius) * 1.00001f;
       if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) slanted = false;
       // The centre's distance alone says whether a row is inside, where light comes from everywhere.
-      if (distance2 <= set.radius * set.radius * 1.00001f) cone.angle = kPi, cosine = 1;
-      if (sharp_) geometry *= 3.5f;  // see SceneMatrix::column_set()
+      if (d.distance2 <= set.radius * set.radius * 1.00001f) cone.angle = kPi, cosine = 1;
+      if (sharp_) factor *= 3.5f;  // see SceneMatrix::column_set()
     }
     if (slanted) {
-      Differences back = d;
-      back.center = -d.center;
-      geometry *= std::max(
-          0.0f, towards(greatest_cosine(set.cone.axis, back), set.cone.cosine, sine_of(set.cone.cosine)));
+      d.center = -d.center;
+      const float cos_y =
+          towards(greatest_cosine(set.cone.axis, d), set.cone.cosine, sine_of(set.cone.cosine));
+      if (cos_y <= 0) return parts;
+      factor *= cos_y;
     }
   }
-  const Rgb f = scattered(cone, std::min(cosine, 1.0f), set.direct);
+  parts.reflected = scattered(cone, std::min(cosine, 1.0f), set.direct) * set.intensity * factor;
+  return parts;
+}
+
+Rgb SceneRowBounds::bound(const ColumnSet& set) const {
+  const matrix::BoundParts at = parts(set);
   Rgb bound;
-  for (int c = 0; c < 3; ++c) {
-    const float most =
-        f[c] > 0 && set.intensity[c] > 0 && geometry > 0 ? f[c] * set.intensity[c] * geometry : 0.0f;
-    bound[c] = std::min(most, set.ceiling[c]) * kRounding;
-  }
+  for (int c = 0; c < 3; ++c)
+    bound[c] = at.reflected[c] > 0 ? std::min(at.reflected[c] * at.near, set.ceiling[c] * kRounding) : 0.0f;
   return bound;
 }
 

@@ -26,6 +26,7 @@ class SceneRowBounds final : public matrix::RowBounds {
 
   void set_rows(std::span<const matrix::Index> rows) override;
   Rgb bound(const matrix::ColumnSet& set) const override;
+  matrix::BoundParts parts(const matrix::ColumnSet& set) const override;
 
  private:
   // Rows with more closures than that know only their greatest values.

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/method.h"
+#include "methods/statistics.h"
+#include "methods/stochastic_lightcuts/light_walk.h"
+
+namespace lumirank::methods {
+namespace {
+
+using matrix::DenseMatrix;
+using matrix::Index;
+
+std::vector<DenseMatrix> matrices() {
+  std::vector<DenseMatrix> m;
+  m.push_back(matrix::low_rank_matrix({120, 300, 1}, 6, 3));
+  m.push_back(matrix::sparse_matrix({120, 300, 2}, 0.3));
+  m.push_back(matrix::recess_matrix({120, 300, 3}));
+  return m;
+}
+
+Estimate run(const DenseMatrix& m, const std::map<std::string, std::string>& settings, std::uint64_t seed) {
+  RunOptions options;
+  options.seed = seed;
+  return find_method("stochastic-lightcuts").make(settings)->run(m, options);
+}
+
+// 11 two-sided t-tests of 149 degrees of freedom at a joint confidence of 99.9 %, as in test_unbiased.cpp.
+TEST(StochasticLightcuts, AreUnbiased) {
+  for (const DenseMatrix& m : matrices())
+    for (const std::map<std::string, std::string>& settings :
+         {std::map<std::string, std::string>{{"nodes", "1"}},
+          {{"nodes", "25"}},
+          {{"nodes", "120"}, {"error-bound", "0.03"}}}) {
+      test::UnbiasednessTest t(m.exact_sums(), 10);
+      for (std::uint64_t seed = 1; seed <= 150; ++seed) t.add(run(m, settings, seed).sums);
+      EXPECT_LT(t.largest_t(), 4.0);
+    }
+}
+
+TEST(StochasticLightcuts, ErrorFallsToNothingAsCutsGrow) {
+  for (const DenseMatrix& m : matrices()) {
+    std::vector<double> errors;
+    for (const char* nodes : {"5", "75", "300"}) {
+      const Estimate e = run(m, {{"nodes", nodes}}, 1);
+      errors.push_back(relative_difference(e.sums, m.exact_sums()));
+      EXPECT_LE(e.trace.numbers.at("columns_max"), std::stod(nodes));
+    }
+    EXPECT_GT(errors[0], errors[1]);
+    EXPECT_GT(errors[1], errors[2]);
+    EXPECT_LT(errors[2], 1e-6);  // sums of 300 floats in another order
+  }
+}
+
+TEST(StochasticLightcuts, AnErrorBoundSavesColumns) {
+  const DenseMatrix m = matrix::low_rank_matrix({120, 300, 1}, 6);
+  const auto columns = [&](const char* bound) {
+    return run(m, {{"nodes", "200"}, {"error-bound", bound}}, 1).trace.numbers.at("columns");
+  };
+  EXPECT_EQ(columns("0"), 200);
+  EXPECT_LT(columns("0.05"), columns("0.01"));
+  EXPECT_LT(columns("0.01"), 200);
+}
+
+// The frequencies of columns are the stated probabilities: chi-square over 20000 walks from the root with
+// limits at 99.9 %, by Wilson and Hilferty.
+TEST(StochasticLightcuts, WalksHaveTheStatedProbabilities) {
+  const DenseMatrix m = matrix::low_rank_matrix({10, 80, 4}, 6);
+  const LightTree tree(m, 1);
+  ASSERT_EQ(tree.roots().size(), 1u);
+  const auto bounds = m.row_bounds();
+  const Index row = 3;
+  bounds->set_rows({&row, 1});
+  LightWalk walk(tree);
+  walk.begin(*bounds);
+  const int walks = 20000;
+  std::vector<DrawnColumn> drawn;
+  Rng rng(1, Stage::test);
+  for (int k = 0; k < walks; ++k) walk.draw([&] { return unit_double(rng.next_bits()); }, drawn);
+  ASSERT_EQ(drawn.size(), static_cast<std::size_t>(walks));
+  std::vector<double> seen(m.columns(), 0), expected(m.columns(), 0);
+  for (const DrawnColumn& d : drawn) {
+    ++seen[d.column];
+    expected[d.column] = walks * static_cast<double>(d.probability);
+  }
+  double chi2 = 0, rare = 0, rare_seen = 0, all = 0;
+  int degrees = -1;
+  for (std::size_t j = 0; j < m.columns(); ++j) {
+    all += expected[j];
+    if (expected[j] < 10) {
+      rare += expected[j], rare_seen += seen[j];
+      continue;
+    }
+    chi2 += (seen[j] - expected[j]) * (seen[j] - expected[j]) / expected[j], ++degrees;
+  }
+  if (rare > 10) chi2 += (rare_seen - rare) * (rare_seen - rare) / rare, ++degrees;
+  EXPECT_GT(all, 0.99 * walks);
+  const double h = 2.0 / (9 * degrees), z = 3.1;
+  EXPECT_LT(chi2, degrees * std::pow(1 - h + z * std::sqrt(h), 3));
+}
+
+}  // namespace
+}  // namespace lumirank::methods
