@@ -45,7 +45,7 @@ TEST_P(Combination, AlsoOfAPartThatWasCutShort) {
 
 // Columns of their own for receivers, pixels or slices: no one sum.
 const std::set<std::string> kLocal{"lightcuts", "lightslice", "multidimensional-lightcuts",
-                                   "sampling-recovery"};
+                                   "sampling-recovery", "stochastic-lightcuts"};
 
 std::vector<std::string> names() {
   std::vector<std::string> n;
