@@ -55,7 +55,7 @@ bool SliceEntries::ask(std::size_t s, std::size_t row) {
     const std::uint32_t receiver = begin + (draw + k) % count;
     if (is_black(e[receiver])) continue;
     requests_.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(row)});
-    asked_rows_.push_back(rows_.receivers()[receiver]);
+    asked_places_.push_back(receiver);
     asked_columns_.push_back(slots_[s].column);
     return true;
   }
@@ -72,7 +72,7 @@ void SliceEntries::ask_next(std::size_t s, std::size_t count) {
 
 void SliceEntries::look() {
   answers_.resize(requests_.size());
-  reader_->entries(asked_rows_, asked_columns_, answers_, Part::visibility);
+  reader_->entries_at(asked_places_, asked_columns_, answers_, Part::visibility);
   for (std::size_t k = 0; k < requests_.size(); ++k) {
     const bool visible = answers_[k].r > 0.5f;
     seen(requests_[k].slot)[requests_[k].row] = visible ? linalg::seen::kVisible : linalg::seen::kHidden;
@@ -80,7 +80,7 @@ void SliceEntries::look() {
   }
   looked_ += requests_.size();
   requests_.clear();
-  asked_rows_.clear();
+  asked_places_.clear();
   asked_columns_.clear();
 }
 

@@ -66,7 +66,7 @@ class SliceEntries {
     std::uint32_t slot, row;
   };
   std::vector<Request> requests_;
-  std::vector<matrix::Index> asked_rows_, asked_columns_;
+  std::vector<matrix::Index> asked_places_, asked_columns_;
 };
 
 }  // namespace lumirank::methods
