@@ -67,6 +67,8 @@ void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries
 }
 
 // Equation 7: Γ = (greatest M·G among the neighbours) · (whether any sample of theirs is visible) · power.
+// Where none is, the paper's factor is 0; but hidden are only so many representatives, each one light of many.
+// By the rule of succession the next would be visible with probability 1/(number + 2).
 void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& entries) {
   const std::size_t n = clusters_.size();
   most_.resize(n);
@@ -87,18 +89,20 @@ void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& ent
                         end = begin + static_cast<std::uint32_t>(tree_.columns(above).size());
     float most = 0;
     bool visible = !settings.sparse_visibility;
+    float looked_at = 0;
     const auto take = [&](std::size_t k) {
       const std::uint32_t at = place(clusters_[k].node);
       if (at < begin || at >= end) return false;
       most = std::max(most, most_[k]);
       visible |= entries.slot(clusters_[k].slot).any_visible;
+      ++looked_at;
       return true;
     };
     for (std::size_t k = c; k < std::min(n, c + kReach + 1) && take(k); ++k) {
     }
     for (std::size_t k = c; k > 0 && c - k < kReach && take(k - 1); --k) {
     }
-    contribution_[c] = visible ? most * power : 0;
+    contribution_[c] = most * power * (visible ? 1 : 1 / (looked_at + 2));
   }
 }
 
