@@ -30,16 +30,16 @@ float inside(const std::array<float, 2 * kReach + 1>& w, std::size_t i, std::siz
 
 }  // namespace
 
-void DensityMap::build(std::span<const float> sparse, std::size_t rows, std::size_t columns) {
-  if (sparse.size() != rows * columns) throw InternalError("density map: wrong number of entries");
+void DensityMap::build(std::span<const std::uint8_t> flags, std::size_t rows, std::size_t columns) {
+  if (flags.size() != rows * columns) throw InternalError("density map: wrong number of entries");
   static const auto w = weights();
-  along_.resize(sparse.size());
-  density_.resize(sparse.size());
+  along_.resize(flags.size());
+  density_.resize(flags.size());
   line_.assign(rows + 2 * kReach, 0.0f);
   for (std::size_t j = 0; j < columns; ++j) {
-    const float* const in = &sparse[j * rows];
+    const std::uint8_t* const in = &flags[j * rows];
     float* const out = &along_[j * rows];
-    for (std::size_t i = 0; i < rows; ++i) line_[i + kReach] = in[i] != 0 ? 1.0f : 0.0f;
+    for (std::size_t i = 0; i < rows; ++i) line_[i + kReach] = in[i] ? 1.0f : 0.0f;
     for (std::size_t i = 0; i < rows; ++i) {
       float sum = 0;
       for (std::size_t k = 0; k < 2 * kReach + 1; ++k) sum += w[k] * line_[i + k];

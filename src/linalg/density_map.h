@@ -10,13 +10,13 @@
 
 namespace lumirank::linalg {
 
-// A 7 × 7 Gaussian (σ = 1.4) over the non-zeros of a matrix that lies column after column. At the borders the
-// weights inside add up to 1. Keeps its buffers.
+// A 7 × 7 Gaussian (σ = 1.4) over flags that lie column after column. At the borders the weights inside add
+// up to 1. Keeps its buffers.
 class DensityMap {
  public:
   static constexpr std::size_t kReach = 3;
 
-  void build(std::span<const float> sparse, std::size_t rows, std::size_t columns);
+  void build(std::span<const std::uint8_t> flags, std::size_t rows, std::size_t columns);
   std::span<const float> density() const { return density_; }  // 0 … 1, same layout
 
  private:

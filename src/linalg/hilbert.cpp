@@ -101,4 +101,22 @@ void SampledNeighbours::find(const HilbertCurves& curves, std::span<const std::u
     }
 }
 
+void SampledNeighbours::extend(const SampledNeighbours& before, const HilbertCurves& curves,
+                               std::span<const std::uint32_t> more) {
+  nearest_ = before.nearest_;
+  distance_ = before.distance_;
+  const auto points = curves.points();
+  const std::size_t n = points.size();
+  to_.resize(n);
+  for (const std::uint32_t sample : more) {
+    const Vec2f at = points[sample];
+    for (std::size_t i = 0; i < n; ++i) {
+      const float x = points[i].x - at.x, y = points[i].y - at.y;
+      to_[i] = x * x + y * y;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      if (to_[i] < distance_[i].back()) offer(sample, to_[i], nearest_[i], distance_[i]);
+  }
+}
+
 }  // namespace lumirank::linalg

@@ -63,35 +63,38 @@ void BayesCounts::reset(std::size_t rows, std::size_t columns) {
   stretches_ = (rows + kStretch - 1) / kStretch;
   columns_ = columns;
   seen_.assign(2 * stretches_ * columns_, 0);
+  all_.assign(2 * columns_, 0);
 }
 
 void BayesCounts::add(std::size_t column, const ColumnSamples& samples) {
   std::uint16_t* const seen = &seen_[2 * stretches_ * column];
-  for (std::size_t k = 0; k < samples.rows.size(); ++k)
-    ++seen[2 * (samples.rows[k] / kStretch) + (samples.visible[k] ? 1 : 0)];
+  for (std::size_t k = 0; k < samples.rows.size(); ++k) {
+    const std::size_t v = samples.visible[k] ? 1 : 0;
+    ++seen[2 * (samples.rows[k] / kStretch) + v];
+    ++all_[2 * column + v];
+  }
 }
 
-void BayesCounts::probabilities(std::size_t column, std::span<float> out) const {
+float BayesCounts::probability(std::size_t column, std::size_t stretch) const {
   // The five columns around it, fewer at the ends.
   const std::size_t begin = column < kColumns / 2 ? 0 : column - kColumns / 2;
   const std::size_t end = std::min(columns_, column + kColumns / 2 + 1);
-  const auto at = [&](std::size_t j, std::size_t b, std::size_t v) {
-    return static_cast<float>(seen_[2 * (stretches_ * j + b) + v]);
-  };
-  float all[2] = {0, 0};
-  for (std::size_t j = begin; j < end; ++j)
-    for (std::size_t b = 0; b < stretches_; ++b) all[0] += at(j, b, 0), all[1] += at(j, b, 1);
-  const auto b_count = static_cast<float>(stretches_);
-  for (std::size_t b = 0; b < stretches_; ++b) {
-    float likely[2];
-    for (std::size_t v = 0; v < 2; ++v) {
-      float here = 0;
-      for (std::size_t j = begin; j < end; ++j) here += at(j, b, v);
-      // The denominator of P(v) is the same for both.
-      likely[v] = (all[v] + 1) * (here + 1) / (all[v] + b_count);
+  float likely[2];
+  for (std::size_t v = 0; v < 2; ++v) {
+    std::uint32_t here = 0, all = 0;
+    for (std::size_t j = begin; j < end; ++j) {
+      here += seen_[2 * (stretches_ * j + stretch) + v];
+      all += all_[2 * j + v];
     }
-    out[b] = likely[1] / (likely[0] + likely[1]);
+    // The denominator of P(v) is the same for both.
+    likely[v] =
+        static_cast<float>(all + 1) * static_cast<float>(here + 1) / static_cast<float>(all + stretches_);
   }
+  return likely[1] / (likely[0] + likely[1]);
+}
+
+void BayesCounts::probabilities(std::size_t column, std::span<float> out) const {
+  for (std::size_t b = 0; b < stretches_; ++b) out[b] = probability(column, b);
 }
 
 void draw_visibility(std::span<const float> probability, std::uint32_t key, std::span<std::uint8_t> visible) {

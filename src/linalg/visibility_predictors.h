@@ -56,13 +56,16 @@ class BayesCounts {
 
   void reset(std::size_t rows, std::size_t columns);
   void add(std::size_t column, const ColumnSamples& samples);
-  // P(v = 1) per stretch, from the samples of the columns around `column`. out: stretches().
+  // P(v = 1) in a stretch, from the samples of the columns around `column`.
+  float probability(std::size_t column, std::size_t stretch) const;
+  // The same for all stretches.
   void probabilities(std::size_t column, std::span<float> out) const;
   std::size_t stretches() const { return stretches_; }
 
  private:
   std::size_t stretches_ = 0, columns_ = 0;
   std::vector<std::uint16_t> seen_;  // columns × stretches × {hidden, visible}
+  std::vector<std::uint32_t> all_;   // columns × {hidden, visible}
 };
 
 // visible[i] = u(i) < probability[i], u uniform by a hash of (key, i).

@@ -175,12 +175,12 @@ TEST(Separation, EmptyDarkAndTiny) {
 
 TEST(DensityMap, WeightsAddUpToOneAndFallWithDistance) {
   const std::size_t rows = 20, columns = 15;
-  std::vector<float> z(rows * columns, -0.5f);
+  std::vector<std::uint8_t> z(rows * columns, 1);
   DensityMap map;
   map.build(z, rows, columns);
   for (const float v : map.density()) EXPECT_NEAR(v, 1, 1e-5);
-  std::fill(z.begin(), z.end(), 0.0f);
-  z[7 * rows + 9] = 2;
+  std::fill(z.begin(), z.end(), std::uint8_t{0});
+  z[7 * rows + 9] = 1;
   map.build(z, rows, columns);
   double sum = 0;
   for (std::size_t j = 0; j < columns; ++j)

@@ -51,7 +51,6 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, Slice
   gather_samples(entries, column, 0, column.trained);
   const SeparatingPlane fitted =
       SeparatingPlane::fit(entries.rows().points(), {sample_rows_, sample_visible_});
-  counts_.probabilities(c, stretch_probability_);
   std::array<float, 3> wrong{};
   float tests = 0;
   for (std::size_t k = column.trained; k < slot.sampled; ++k) {
@@ -60,7 +59,7 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, Slice
     const float v = known[row] == seen::kVisible ? 1.0f : 0.0f;
     wrong[nearest] += std::abs(v - linalg::nearest_probability(neighbours[k - column.trained], known));
     wrong[plane] += std::abs(v - fitted.probability(entries.rows().points()[row]));
-    wrong[bayes] += std::abs(v - stretch_probability_[row / linalg::BayesCounts::kStretch]);
+    wrong[bayes] += std::abs(v - counts_.probability(c, row / linalg::BayesCounts::kStretch));
     ++tests;
   }
   const bool whole = slot.sampled == order.size();
@@ -70,27 +69,27 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, Slice
   else
     column.best = static_cast<Kind>(static_cast<std::size_t>(settings.predictors) - 1);
   column.error = wrong[column.best] / tests;
-  return whole || static_cast<double>(column.error) < settings.prediction_error;
+  return whole || column.error < column.allowed;
 }
 
-// Fills probability_ by the column's predictor, trained on all its samples.
-void Prediction::predict(std::size_t c, SliceEntries& entries) {
+// By the column's predictor, trained on all its samples.
+void Prediction::predict(std::size_t c, SliceEntries& entries, std::span<float> out) {
   const Column& column = columns_[c];
   const SliceEntries::Slot& slot = entries.slot(column.slot);
   switch (column.best) {
     case nearest:
       linalg::nearest_probabilities(entries.patterns().nearest(slot.pattern, slot.sampled),
-                                    entries.seen(column.slot), probability_);
+                                    entries.seen(column.slot), out);
       break;
     case plane:
       gather_samples(entries, column, 0, slot.sampled);
       SeparatingPlane::fit(entries.rows().points(), {sample_rows_, sample_visible_})
-          .probabilities(entries.rows().points(), probability_);
+          .probabilities(entries.rows().points(), out);
       break;
     case bayes:
       counts_.probabilities(c, stretch_probability_);
-      for (std::size_t i = 0; i < probability_.size(); ++i)
-        probability_[i] = stretch_probability_[i / linalg::BayesCounts::kStretch];
+      for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = stretch_probability_[i / linalg::BayesCounts::kStretch];
       break;
   }
 }
@@ -98,19 +97,21 @@ void Prediction::predict(std::size_t c, SliceEntries& entries) {
 void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::span<const float> e,
                       SliceEntries& entries, std::span<Entry> state) {
   const std::size_t rows = entries.rows().size();
-  probability_.resize(rows);
+  probabilities_.resize(rows * columns_.size());
   drawn_.resize(rows);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const auto known = entries.seen(columns_[c].slot);
+    const auto probability = std::span(probabilities_).subspan(c * rows, rows);
     if (!settings.prediction) {
+      std::ranges::fill(probability, 1.0f);
       std::ranges::fill(drawn_, std::uint8_t{1});
     } else if (entries.slot(columns_[c].slot).sampled < rows) {
-      predict(c, entries);
+      predict(c, entries, probability);
       if (settings.draw == RecoverySettings::Draw::likely)
-        for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability_[i] > 0.5f ? 1 : 0;
+        for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability[i] > 0.5f ? 1 : 0;
       else
         linalg::draw_visibility(
-            probability_, static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
+            probability, static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
             drawn_);
     }
     const float* const reach = &e[c * rows];
@@ -141,6 +142,17 @@ void Prediction::run(const RecoverySettings& settings, std::span<const SliceCut:
     gather_samples(entries, column, 0, column.trained);
     counts_.add(c, {sample_rows_, sample_visible_});
     active_.push_back(static_cast<std::uint32_t>(c));
+  }
+  // A wrong entry of a bright column costs more: so that all columns may bring as much error, the brighter
+  // ones may be wrong so much less often.
+  double sum = 0;
+  for (const float x : e) sum += static_cast<double>(x);
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    double own = 0;
+    for (std::size_t i = 0; i < rows; ++i) own += static_cast<double>(e[c * rows + i]);
+    const double brighter = sum > 0 ? own / sum * static_cast<double>(columns_.size()) : 0;
+    columns_[c].allowed =
+        static_cast<float>(settings.prediction_error / (settings.weighted ? std::max(brighter, 1.0) : 1.0));
   }
   const std::size_t rounds = settings.prediction ? settings.rounds : kRoundsWithoutPrediction;
   for (std::size_t round = 0; round < rounds && !active_.empty(); ++round) {

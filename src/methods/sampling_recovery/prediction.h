@@ -31,6 +31,8 @@ class Prediction {
   void run(const RecoverySettings& settings, std::span<const SliceCut::Cluster> clusters,
            std::span<const float> e, std::uint64_t key, SliceEntries& entries,
            std::span<linalg::Entry> state);
+  // P(visible) of every entry as predicted; samples are in `state` alone. Until the next run.
+  std::span<const float> probabilities() const { return probabilities_; }
   const PredictionTally& tally() const { return tally_; }
 
  private:
@@ -40,11 +42,12 @@ class Prediction {
     std::uint32_t trained = 0;  // samples of the pattern that predictors know
     Kind best = nearest;
     float error = 0;
+    float allowed = 0;  // error
   };
 
   void gather_samples(SliceEntries& entries, const Column& column, std::size_t begin, std::size_t end);
   bool validate(const RecoverySettings& settings, std::size_t c, SliceEntries& entries);
-  void predict(std::size_t c, SliceEntries& entries);
+  void predict(std::size_t c, SliceEntries& entries, std::span<float> out);
   void fill(const RecoverySettings& settings, std::uint64_t key, std::span<const float> e,
             SliceEntries& entries, std::span<linalg::Entry> state);
 
@@ -53,7 +56,7 @@ class Prediction {
   linalg::BayesCounts counts_;
   std::vector<std::uint32_t> sample_rows_;
   std::vector<std::uint8_t> sample_visible_, drawn_;
-  std::vector<float> probability_, stretch_probability_;
+  std::vector<float> probabilities_, stretch_probability_;
   PredictionTally tally_;
 };
 

@@ -42,9 +42,18 @@ std::span<const SamplePatterns::Few> SamplePatterns::nearest(std::size_t pattern
   const std::size_t k = p.counts.size();
   p.counts.push_back(static_cast<std::uint32_t>(count));
   if (k == p.tables.size()) p.tables.push_back(std::make_unique<linalg::SampledNeighbours>());
-  sampled_.assign(p.order.size(), 0);
-  for (std::size_t s = 0; s < count; ++s) sampled_[p.order[s]] = 1;
-  p.tables[k]->find(*curves_, sampled_);
+  // From the table of the most samples that are among these, if there is one.
+  std::size_t before = k;
+  for (std::size_t t = 0; t < k; ++t)
+    if (p.counts[t] < count && (before == k || p.counts[t] > p.counts[before])) before = t;
+  if (before < k) {
+    p.tables[k]->extend(*p.tables[before], *curves_,
+                        std::span(p.order).subspan(p.counts[before], count - p.counts[before]));
+  } else {
+    sampled_.assign(p.order.size(), 0);
+    for (std::size_t s = 0; s < count; ++s) sampled_[p.order[s]] = 1;
+    p.tables[k]->find(*curves_, sampled_);
+  }
   return p.tables[k]->of();
 }
 

@@ -25,6 +25,7 @@ void write_tally(const RecoveryTally& t, Trace& trace) {
   numbers["columns"] = ratio(number(t.columns), slices);
   numbers["columns_max"] = number(t.columns_most);
   numbers["sampling_rate"] = entries > 0 ? number(t.sampled) / entries : 1.0;
+  numbers["sampled_uncertain"] = ratio(number(t.uncertain), entries);
   numbers["corrected"] = ratio(number(t.corrected), entries);
   numbers["samples_per_row"] = ratio(number(t.sampled), number(t.rows));
   numbers["rank"] = ratio(number(t.rank), slices);

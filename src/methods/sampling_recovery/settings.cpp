@@ -36,13 +36,22 @@ const Fields<RecoverySettings>& recovery_fields() {
       choice_field<S>(
           {"draw", "",
            "random: predictions are drawn by their probability, so that errors have no structure; "
-           "likely: the likelier one."},
-          &S::draw, {"random", "likely"}),
+           "likely: the likelier one; mean: none is drawn where nothing is separated, else random."},
+          &S::draw, {"random", "likely", "mean"}),
       number_field<S>({"prediction-error", "of the new samples",
                        "A column is sampled on until its best predictor is wrong at less than this share of "
                        "the samples that it has not seen."},
                       &S::prediction_error, 0, 1),
+      choice_field<S>({"weighted", "",
+                       "Whether columns brighter than the mean may be wrong so much less often; off: all as "
+                       "often, as in the paper."},
+                      &S::weighted, off_on),
       count_field<S>({"rounds", "rounds", "Of sampling and validation, at most."}, &S::rounds, 1),
+      number_field<S>(
+          {"uncertain", "of a pixel's light",
+           "Entries whose prediction is expected to be wrong by more than this are sampled as well; "
+           "0: none, as in the paper."},
+          &S::uncertain, 0, 1),
       choice_field<S>({"separation", "",
                        "Whether the predicted matrix is separated into one of low rank and sparse errors."},
                       &S::separation, off_on),

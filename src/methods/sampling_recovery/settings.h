@@ -16,9 +16,11 @@ struct RecoverySettings {
   double rho = 0.01;
   bool prediction = true;
   enum class Predictors { all, nearest, plane, bayes } predictors = Predictors::all;
-  enum class Draw { random, likely } draw = Draw::random;
+  enum class Draw { random, likely, mean } draw = Draw::random;
   double prediction_error = 0.1;
+  bool weighted = true;
   std::size_t rounds = 20;
+  double uncertain = 0.002;
   // Recovery.
   bool separation = true, constraint = true;
   linalg::SeparationSettings::Fit fit = linalg::SeparationSettings::Fit::all;

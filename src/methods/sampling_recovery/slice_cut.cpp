@@ -67,8 +67,8 @@ void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries
 }
 
 // Equation 7: Γ = (greatest M·G among the neighbours) · (whether any sample of theirs is visible) · power.
-// Where none is, the paper's factor is 0; but hidden are only so many representatives, each one light of many.
-// By the rule of succession the next would be visible with probability 1/(number + 2).
+// Where none is, the paper's factor is 0; but hidden are only so many representatives, each one light of
+// many. By the rule of succession the next would be visible with probability 1/(number + 2).
 void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& entries) {
   const std::size_t n = clusters_.size();
   most_.resize(n);

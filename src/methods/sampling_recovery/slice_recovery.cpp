@@ -1,6 +1,7 @@
 #include "methods/sampling_recovery/slice_recovery.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/timer.h"
 
@@ -14,7 +15,8 @@ RecoveryTally& RecoveryTally::operator+=(const RecoveryTally& o) {
   for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k] += o.seconds[k];
   slices += o.slices, rows += o.rows, columns += o.columns;
   columns_most = std::max(columns_most, o.columns_most);
-  shades += o.shades, entries += o.entries, sampled += o.sampled, corrected += o.corrected;
+  shades += o.shades, entries += o.entries, sampled += o.sampled, corrected += o.corrected,
+      uncertain += o.uncertain;
   rank += o.rank, iterations += o.iterations, converged += o.converged;
   converged_after.resize(std::max(converged_after.size(), o.converged_after.size()));
   for (std::size_t k = 0; k < o.converged_after.size(); ++k) converged_after[k] += o.converged_after[k];
@@ -23,6 +25,10 @@ RecoveryTally& RecoveryTally::operator+=(const RecoveryTally& o) {
   prediction += o.prediction;
   return *this;
 }
+
+namespace {
+bool guessed(Entry e) { return e == Entry::predicted_visible || e == Entry::predicted_hidden; }
+}  // namespace
 
 // The scalar reduced matrix, as if all were visible.
 void SliceRecovery::assemble() {
@@ -33,6 +39,7 @@ void SliceRecovery::assemble() {
 }
 
 void SliceRecovery::separate() {
+  if (!settings_.separation) return;
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
   d_.resize(rows * columns);
   for (std::size_t c = 0; c < columns; ++c) {
@@ -44,7 +51,6 @@ void SliceRecovery::separate() {
       d_[at] = visible ? e_[at] : 0.0f;
     }
   }
-  if (!settings_.separation) return;
   linalg::SeparationSettings s;
   s.most_rank = settings_.rank;
   s.iterations = settings_.iterations;
@@ -63,41 +69,77 @@ void SliceRecovery::separate() {
     tally_.residual[k] += history[std::min(k, history.size() - 1)];
 }
 
-// Looks where the separation's errors are dense (section 6.2).
-void SliceRecovery::correct() {
+// Entries whose neighbourhood is full of errors that the separation found (section 6.2).
+void SliceRecovery::ask_where_dense() {
   if (!settings_.separation || !settings_.correction) return;
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
-  density_.build(separation_.sparse(), rows, columns);
+  // Z ≠ 0, up to the rounding of equation 12: an error is all of an entry or nothing, so it counts from half
+  // of one on. (What the soft threshold leaves of small differences would make five times as many entries
+  // dense.)
+  wrong_.resize(e_.size());
+  const auto z = separation_.sparse();
+  for (std::size_t at = 0; at < wrong_.size(); ++at)
+    wrong_[at] = state_[at] != Entry::free && std::abs(z[at]) > 0.5f * e_[at] ? 1 : 0;
+  density_.build(wrong_, rows, columns);
   const auto density = density_.density();
-  asked_.clear();
+  const auto least = static_cast<float>(settings_.density);
   for (std::size_t c = 0; c < columns; ++c)
     for (std::size_t i = 0; i < rows; ++i) {
       const std::size_t at = c * rows + i;
-      const bool guessed = state_[at] == Entry::predicted_visible || state_[at] == Entry::predicted_hidden;
-      if (guessed && static_cast<double>(density[at]) > settings_.density &&
+      if (guessed(state_[at]) && density[at] > least && entries_.ask(clusters()[c].slot, i))
+        asked_.push_back(static_cast<std::uint32_t>(at));
+    }
+}
+
+// Where a guess may cost much: it is expected to be wrong by 2p(1 − p)E.
+void SliceRecovery::ask_where_uncertain() {
+  if (!settings_.prediction || settings_.uncertain <= 0) return;
+  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const auto p = prediction_.probabilities();
+  row_sums_.assign(rows, 0.0f);
+  for (std::size_t c = 0; c < columns; ++c)
+    for (std::size_t i = 0; i < rows; ++i) row_sums_[i] += e_[c * rows + i] * p[c * rows + i];
+  for (float& sum : row_sums_) sum *= 0.5f * static_cast<float>(settings_.uncertain);
+  for (std::size_t c = 0; c < columns; ++c)
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::size_t at = c * rows + i;
+      if (p[at] * (1 - p[at]) * e_[at] > row_sums_[i] && guessed(state_[at]) &&
           entries_.ask(clusters()[c].slot, i))
         asked_.push_back(static_cast<std::uint32_t>(at));
     }
-  entries_.look();
-  for (const std::uint32_t at : asked_) state_[at] = Entry::exact;
-  tally_.corrected += asked_.size();
 }
 
-// What is known, and for the rest L/E, or the prediction itself without separation.
+void SliceRecovery::look() {
+  entries_.look();
+  for (const std::uint32_t at : asked_) state_[at] = Entry::exact;
+  asked_.clear();
+}
+
+// What is known, and for the rest L/E; without separation the prediction.
 void SliceRecovery::recover_visibility() {
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const bool mean = !settings_.separation && settings_.draw == RecoverySettings::Draw::mean;
   visibility_.resize(rows * columns);
-  const auto low_rank = settings_.separation ? separation_.low_rank() : std::span<const float>(d_);
+  const auto p = prediction_.probabilities();
   for (std::size_t c = 0; c < columns; ++c) {
     const auto known = entries_.seen(clusters()[c].slot);
-    const float *const e = &e_[c * rows], *const l = &low_rank[c * rows];
-    const Entry* const state = &state_[c * rows];
-    float* const out = &visibility_[c * rows];
+    const std::size_t begin = c * rows;
+    const Entry* const state = &state_[begin];
+    float* const out = &visibility_[begin];
+    if (settings_.separation) {
+      const float *const e = &e_[begin], *const l = &separation_.low_rank()[begin];
+      for (std::size_t i = 0; i < rows; ++i) {
+        const float share = l[i] / std::max(e[i], 1e-37f);
+        out[i] = share < 0 ? 0.0f : share > 1 ? 1.0f : share;
+      }
+    } else if (mean) {
+      std::copy_n(p.begin() + static_cast<std::ptrdiff_t>(begin), rows, out);
+    } else {
+      for (std::size_t i = 0; i < rows; ++i) out[i] = state[i] == Entry::predicted_visible ? 1.0f : 0.0f;
+    }
     for (std::size_t i = 0; i < rows; ++i) {
       const float exact = known[i] == seen::kVisible ? 1.0f : 0.0f;
-      const float share = l[i] / std::max(e[i], 1e-37f);
-      const float recovered = share < 0 ? 0.0f : share > 1 ? 1.0f : share;
-      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? 0.0f : recovered;
+      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? 0.0f : out[i];
     }
   }
 }
@@ -132,10 +174,15 @@ void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::sp
   assemble();
   state_.resize(e_.size());
   prediction_.run(settings_, clusters(), e_, key, entries_, state_);
+  ask_where_uncertain();
+  tally_.uncertain += asked_.size();
+  look();
   done(2);
   separate();
   done(3);
-  correct();
+  ask_where_dense();
+  tally_.corrected += asked_.size();
+  look();
   done(4);
   recover_visibility();
   gather(sums);

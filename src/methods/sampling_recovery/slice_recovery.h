@@ -24,6 +24,7 @@ struct RecoveryTally {
   std::uint64_t shades = 0;     // unoccluded entries, per receiver
   std::uint64_t entries = 0;    // of the reduced matrices
   std::uint64_t sampled = 0;    // of these, exactly evaluated visibilities; with those of splitting
+  std::uint64_t uncertain = 0;  // of these, because a guess would have cost much
   std::uint64_t corrected = 0;  // of these, by correction
   std::uint64_t rank = 0, iterations = 0, converged = 0;
   std::vector<std::uint64_t> converged_after;  // slices by the number of their iterations
@@ -57,7 +58,9 @@ class SliceRecovery {
  private:
   void assemble();
   void separate();
-  void correct();
+  void look();
+  void ask_where_dense();
+  void ask_where_uncertain();
   void recover_visibility();
   void gather(std::span<Rgb> sums);
 
@@ -69,6 +72,8 @@ class SliceRecovery {
   linalg::DensityMap density_;
   std::vector<float> e_, d_, visibility_;
   std::vector<linalg::Entry> state_;
+  std::vector<std::uint8_t> wrong_;  // by the separation
+  std::vector<float> row_sums_;
   std::vector<std::uint32_t> asked_;  // entries that correction asked for
   std::vector<Rgb> gathered_;
   RecoveryTally tally_;
