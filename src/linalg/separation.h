@@ -28,7 +28,7 @@ struct SeparationSettings {
   // … or, after four iterations, falls by less than this share of itself. 0: only the first.
   double least_progress = 0.1;
   // The soft threshold in units of the root mean square of D (the solver's 1/β).
-  double threshold = 0.2;
+  double threshold = 0.5;
   // Equation 12 of 2015: Z/E is 0 or ±1 by what was predicted, so H = 2·s·Z/E − 1 is ±1. Relaxed to the
   // Frobenius norm over the entries where Z ≠ 0 (where Z = 0 it holds by itself).
   bool constraint = true;

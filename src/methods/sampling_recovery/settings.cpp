@@ -55,6 +55,10 @@ const Fields<RecoverySettings>& recovery_fields() {
       choice_field<S>({"separation", "",
                        "Whether the predicted matrix is separated into one of low rank and sparse errors."},
                       &S::separation, off_on),
+      choice_field<S>({"separated", "",
+                       "visibility: the matrix of 0s and 1s; shading: the same times the unoccluded "
+                       "contributions, as in the paper, whose own rank then counts too."},
+                      &S::separated, {"visibility", "shading"}),
       choice_field<S>({"constraint", "",
                        "Whether the separation uses that an error is all of an entry or nothing (equation "
                        "12)."},

@@ -23,6 +23,7 @@ struct RecoverySettings {
   double uncertain = 0.002;
   // Recovery.
   bool separation = true, constraint = true;
+  enum class Separated { visibility, shading } separated = Separated::visibility;
   linalg::SeparationSettings::Fit fit = linalg::SeparationSettings::Fit::all;
   std::size_t rank = 16, iterations = 20;
   bool correction = true;

@@ -41,14 +41,18 @@ void SliceRecovery::assemble() {
 void SliceRecovery::separate() {
   if (!settings_.separation) return;
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const bool shading = settings_.separated == RecoverySettings::Separated::shading;
   d_.resize(rows * columns);
+  if (!shading) whole_.resize(rows * columns);
   for (std::size_t c = 0; c < columns; ++c) {
     const auto known = entries_.seen(clusters()[c].slot);
     for (std::size_t i = 0; i < rows; ++i) {
       const std::size_t at = c * rows + i;
       const bool visible =
           state_[at] == Entry::exact ? known[i] == seen::kVisible : state_[at] == Entry::predicted_visible;
-      d_[at] = visible ? e_[at] : 0.0f;
+      const float whole = shading ? e_[at] : e_[at] > 0 ? 1.0f : 0.0f;
+      d_[at] = visible ? whole : 0.0f;
+      if (!shading) whole_[at] = whole;
     }
   }
   linalg::SeparationSettings s;
@@ -56,7 +60,7 @@ void SliceRecovery::separate() {
   s.iterations = settings_.iterations;
   s.constraint = settings_.constraint;
   s.fit = settings_.fit;
-  separation_.run({rows, columns, d_, state_, e_}, s);
+  separation_.run({rows, columns, d_, state_, whole()}, s);
   tally_.rank += separation_.rank();
   tally_.iterations += separation_.iterations();
   tally_.converged += separation_.converged() ? 1 : 0;
@@ -79,7 +83,7 @@ void SliceRecovery::ask_where_dense() {
   wrong_.resize(e_.size());
   const auto z = separation_.sparse();
   for (std::size_t at = 0; at < wrong_.size(); ++at)
-    wrong_[at] = state_[at] != Entry::free && std::abs(z[at]) > 0.5f * e_[at] ? 1 : 0;
+    wrong_[at] = state_[at] != Entry::free && std::abs(z[at]) > 0.5f * whole()[at] ? 1 : 0;
   density_.build(wrong_, rows, columns);
   const auto density = density_.density();
   const auto least = static_cast<float>(settings_.density);
@@ -127,7 +131,7 @@ void SliceRecovery::recover_visibility() {
     const Entry* const state = &state_[begin];
     float* const out = &visibility_[begin];
     if (settings_.separation) {
-      const float *const e = &e_[begin], *const l = &separation_.low_rank()[begin];
+      const float *const e = &whole()[begin], *const l = &separation_.low_rank()[begin];
       for (std::size_t i = 0; i < rows; ++i) {
         const float share = l[i] / std::max(e[i], 1e-37f);
         out[i] = share < 0 ? 0.0f : share > 1 ? 1.0f : share;

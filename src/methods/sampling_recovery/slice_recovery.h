@@ -70,7 +70,11 @@ class SliceRecovery {
   Prediction prediction_;
   linalg::Separation separation_;
   linalg::DensityMap density_;
-  std::vector<float> e_, d_, visibility_;
+  // What a visible entry of the separated matrix would be.
+  std::span<const float> whole() const {
+    return settings_.separated == RecoverySettings::Separated::shading ? e_ : whole_;
+  }
+  std::vector<float> e_, d_, whole_, visibility_;
   std::vector<linalg::Entry> state_;
   std::vector<std::uint8_t> wrong_;  // by the separation
   std::vector<float> row_sums_;

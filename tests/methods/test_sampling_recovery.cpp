@@ -1,0 +1,177 @@
+// What sampling-recovery promises, on a room whose shadows are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "matrix/synthetic.h"
+#include "methods/column_pass.h"
+#include "methods/sampling_recovery/slice_recovery.h"
+
+namespace lumirank::methods {
+namespace {
+
+using Settings = std::map<std::string, std::string>;
+
+Estimate estimate(const matrix::LightingMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
+  RunOptions options;
+  options.seed = seed;
+  return find_method("sampling-recovery").make(settings)->run(m, options);
+}
+
+const matrix::DenseMatrix& room() {
+  static const auto m = matrix::occluded_matrix({1200, 900, 3}, 8);
+  return m;
+}
+const std::vector<Rgb>& exact() {
+  static const auto sums = room().exact_sums();
+  return sums;
+}
+
+double error(const Settings& settings) {
+  return relative_l1_difference(estimate(room(), settings).sums, exact());
+}
+
+// Every cluster down to single lights, every entry of it seen from a receiver of its pixel. With one receiver
+// per pixel (no film positions) that is brute force, up to the order of the sum.
+TEST(SamplingRecovery, AllColumnsAndAllSamplesAreBruteForce) {
+  auto m = matrix::occluded_matrix({500, 400, 4}, 6);
+  m.pixel.clear();
+  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"most-columns", "400"}});
+  EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
+  EXPECT_EQ(e.trace.numbers.at("columns"), 400);
+  EXPECT_DOUBLE_EQ(e.trace.numbers.at("sampling_rate"), 1);
+}
+
+// The error falls with the number of columns (all visibilities known), and with the number of samples (all
+// columns). 900 lamps in 100 … 900 clusters.
+TEST(SamplingRecovery, ConvergesAsTheBudgetGrows) {
+  const double coarse = error({{"alpha", "0.02"}, {"rho", "1"}, {"initial-columns", "30"}});
+  const double fine = error({{"alpha", "0.003"}, {"rho", "1"}, {"initial-columns", "30"}});
+  const double all = error({{"alpha", "0"}, {"rho", "1"}, {"initial-columns", "30"}});
+  EXPECT_LT(fine, coarse);
+  EXPECT_LT(all, fine);
+  const Settings few{{"alpha", "0"}, {"uncertain", "0"}, {"correction", "off"}, {"rounds", "1"}};
+  Settings more = few;
+  more["rounds"] = "20";
+  more["prediction-error"] = "0";
+  EXPECT_LT(error(more), error(few));
+}
+
+// At less than a fifth of the entries. Receivers of a pixel share a visibility here, so the floor is the
+// error with all of them; the rest of 100 % − 80 % unsampled entries may add a twentieth of the light that is
+// in shadow on average.
+TEST(SamplingRecovery, RecoversFromFewSamples) {
+  const Settings all_columns{{"alpha", "0"}};
+  Settings floor = all_columns;
+  floor["rho"] = "1";
+  const Estimate e = estimate(room(), all_columns);
+  EXPECT_LT(e.trace.numbers.at("sampling_rate"), 0.2);
+  EXPECT_GT(e.trace.numbers.at("sampling_rate"), 0.02);
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < room().rows(); ++i)
+    for (std::size_t j = 0; j < room().columns(); ++j)
+      hidden += room().at(i, j, matrix::Part::visibility).r == 0;
+  const double shadow = static_cast<double>(hidden) / static_cast<double>(room().rows() * room().columns());
+  ASSERT_GT(shadow, 0.1);
+  EXPECT_LT(relative_l1_difference(e.sums, exact()), error(floor) + 0.05 * shadow / (1 - shadow) + 0.01);
+}
+
+TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
+  const Estimate all = estimate(room(), {});
+  EXPECT_GT(all.trace.numbers.at("rank"), 0);
+  EXPECT_GT(all.trace.numbers.at("iterations"), 0);
+  for (const auto& [key, value] :
+       std::vector<std::pair<std::string, std::string>>{{"splitting", "off"},
+                                                        {"sparse-visibility", "off"},
+                                                        {"prediction", "off"},
+                                                        {"separation", "off"},
+                                                        {"constraint", "off"},
+                                                        {"correction", "off"},
+                                                        {"weighted", "off"},
+                                                        {"uncertain", "0"},
+                                                        {"fit", "exact"},
+                                                        {"separated", "shading"},
+                                                        {"draw", "likely"},
+                                                        {"draw", "mean"},
+                                                        {"predictors", "nearest"},
+                                                        {"predictors", "plane"},
+                                                        {"predictors", "bayes"}}) {
+    const Estimate e = estimate(room(), {{key, value}});
+    EXPECT_LT(relative_l1_difference(e.sums, exact()), 0.5) << key << '=' << value;
+    const auto& n = e.trace.numbers;
+    if (key == "splitting") {
+      EXPECT_EQ(n.at("columns"), 200);
+    }
+    if (key == "separation") {
+      EXPECT_EQ(n.at("iterations"), 0);
+      EXPECT_EQ(n.at("corrected"), 0);
+    }
+    if (key == "correction") {
+      EXPECT_EQ(n.at("corrected"), 0);
+    }
+    if (key == "uncertain") {
+      EXPECT_EQ(n.at("sampled_uncertain"), 0);
+    }
+    if (key == "predictors") {
+      EXPECT_NEAR(n.at("predictor." + value), 1, 0.02);
+    }
+    if (key == "prediction") {
+      EXPECT_EQ(n.at("predictor.nearest"), 0);
+    }
+  }
+}
+
+TEST(SamplingRecovery, SameBitsForAnyNumberOfThreads) {
+  std::vector<Rgb> first;
+  for (const int threads : {1, 3, 4})
+    with_threads(threads, [&] {
+      const Estimate e = estimate(room(), {{"slice-rows", "60"}});
+      if (threads == 1) first = e.sums;
+      EXPECT_EQ(e.sums, first);
+    });
+}
+
+TEST(SamplingRecovery, ClustersRespectTheLimits) {
+  const Estimate e = estimate(room(), {{"most-columns", "250"}, {"alpha", "0.0001"}});
+  EXPECT_LE(e.trace.numbers.at("columns_max"), 250);
+  EXPECT_GE(e.trace.numbers.at("columns"), 249);
+}
+
+// A slice's parts fit together: clusters partition the lights, samples agree with the matrix, and what is
+// recovered lies between 0 and 1.
+TEST(SamplingRecovery, ASliceFitsTogether) {
+  const RecoverySettings settings;
+  const LightTree tree(room(), 1);
+  SliceRecovery slice(settings, tree, room());
+  std::vector<matrix::Index> rows;
+  for (matrix::Index i = 100; i < 500; ++i) rows.push_back(i);
+  std::vector<Rgb> sums(room().rows(), Rgb(-1));
+  slice.run(rows, 7, sums);
+  std::vector<int> covered(room().columns());
+  for (const auto& c : slice.clusters())
+    for (const matrix::Index j : tree.columns(c.node)) ++covered[j];
+  for (std::size_t j = 0; j < covered.size(); ++j) EXPECT_EQ(covered[j], room().power[j] > 0);
+  const std::size_t n = slice.entries().rows().size();
+  ASSERT_EQ(slice.visibility().size(), n * slice.clusters().size());
+  EXPECT_EQ(n, 200u);  // two receivers per pixel
+  for (const float v : slice.visibility()) {
+    EXPECT_GE(v, 0.0f);
+    EXPECT_LE(v, 1.0f);
+  }
+  for (std::size_t c = 0; c < slice.clusters().size(); ++c)
+    for (std::size_t r = 0; r < n; ++r) {
+      if (slice.states()[c * n + r] != linalg::Entry::exact) continue;
+      bool found = false;
+      for (std::uint32_t k = slice.entries().rows().begin(r); k < slice.entries().rows().end(r); ++k)
+        found |= room()
+                     .at(slice.entries().rows().receivers()[k], slice.clusters()[c].column.column,
+                         matrix::Part::visibility)
+                     .r == slice.visibility()[c * n + r];
+      EXPECT_TRUE(found);
+    }
+  for (matrix::Index i = 0; i < sums.size(); ++i) EXPECT_EQ(sums[i] == Rgb(-1), i < 100 || i >= 500);
+}
+
+}  // namespace
+}  // namespace lumirank::methods
