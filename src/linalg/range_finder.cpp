@@ -11,6 +11,7 @@
 
 #include "base/random.h"
 #include "linalg/blas.h"
+#include "linalg/fixed_sums.h"
 
 namespace lumirank::linalg {
 
@@ -27,14 +28,14 @@ Vector vector(float* v, std::size_t n) { return {v, static_cast<Eigen::Index>(n)
 
 void orthonormalise(std::span<float> vectors, std::size_t k, std::size_t n) {
   for (std::size_t a = 0; a < k; ++a) {
-    Vector va = vector(&vectors[a * n], n);
-    const float before = va.norm();
+    float* const at = &vectors[a * n];
+    Vector va = vector(at, n);
+    const float before = std::sqrt(fixed_dot(at, at, n));
     for (int pass = 0; pass < 2; ++pass)
       for (std::size_t b = 0; b < a; ++b) {
-        const Vector vb = vector(&vectors[b * n], n);
-        va -= va.dot(vb) * vb;
+        va -= fixed_dot(at, &vectors[b * n], n) * vector(&vectors[b * n], n);
       }
-    const float after = va.norm();
+    const float after = std::sqrt(fixed_dot(at, at, n));
     if (after > 1e-5f * before && after > 0)
       va /= after;
     else
@@ -55,7 +56,7 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
     const float sign = bits & 1 ? 1.0f : -1.0f;
     const Eigen::Map<const Eigen::VectorXf> column(&d[j * m], static_cast<Eigen::Index>(m));
     vector(x + (j < s ? j : (bits >> 8) % s) * m, m) += sign * column;
-    energy += static_cast<double>(column.squaredNorm());
+    energy += static_cast<double>(fixed_dot(&d[j * m], &d[j * m], m));
   }
   found.norm = std::sqrt(energy);
   if (!(energy > 0)) return found;

@@ -1,16 +1,11 @@
 #include "linalg/separation.h"
 
-// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialised variables.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "linalg/blas.h"
+#include "linalg/fixed_sums.h"
 #include "linalg/range_finder.h"
 
 namespace lumirank::linalg {
@@ -24,9 +19,7 @@ struct Thresholds {
   float of[4];
 };
 
-float square_sum(const float* v, std::size_t n) {
-  return Eigen::Map<const Eigen::VectorXf>(v, static_cast<Eigen::Index>(n)).squaredNorm();
-}
+float square_sum(const float* v, std::size_t n) { return fixed_dot(v, v, n); }
 
 // One column: from its X·Y (`product`, which becomes XY + Z − D) to the next Z, multiplier and B = D − Z − U.
 // With R = D − XY − U the steps are Z = shrink(R, t), U ← U + XY + Z − D = Z − R.

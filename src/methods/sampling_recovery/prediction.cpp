@@ -120,6 +120,7 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
       const Entry guess = drawn_[i] ? Entry::predicted_visible : Entry::predicted_hidden;
       const Entry told = known[i] != seen::kUnknown ? Entry::exact : guess;
       out[i] = reach[i] > 0 ? told : Entry::free;
+      if (known[i] != seen::kUnknown) probability[i] = known[i] == seen::kVisible ? 1.0f : 0.0f;
     }
   }
 }

@@ -31,7 +31,7 @@ class Prediction {
   void run(const RecoverySettings& settings, std::span<const SliceCut::Cluster> clusters,
            std::span<const float> e, std::uint64_t key, SliceEntries& entries,
            std::span<linalg::Entry> state);
-  // P(visible) of every entry as predicted; samples are in `state` alone. Until the next run.
+  // P(visible) of every entry: predicted, or 0 or 1 where it is known. Until the next run.
   std::span<const float> probabilities() const { return probabilities_; }
   const PredictionTally& tally() const { return tally_; }
 
