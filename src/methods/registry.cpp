@@ -10,6 +10,7 @@
 #include "methods/row_column/row_column.h"
 #include "methods/sampling_recovery/sampling_recovery.h"
 #include "methods/stochastic_lightcuts/stochastic_lightcuts.h"
+#include "methods/visibility_completion/visibility_completion.h"
 
 namespace lumirank::methods {
 
@@ -17,7 +18,8 @@ const std::vector<MethodInfo>& all_methods() {
   static const std::vector<MethodInfo> methods{
       brute_force_info(),          instant_radiosity_info(), power_sampling_info(),
       row_column_info(),           lightcuts_info(),         multidimensional_lightcuts_info(),
-      stochastic_lightcuts_info(), lightslice_info(),        sampling_recovery_info()};
+      stochastic_lightcuts_info(), lightslice_info(),        sampling_recovery_info(),
+      visibility_completion_info()};
   return methods;
 }
 

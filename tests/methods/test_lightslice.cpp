@@ -48,7 +48,7 @@ TEST(LightSlice, AdaptsToSlices) {
 
 // 11 two-sided t-tests with 149 degrees of freedom at a joint confidence of 99.9 %: 4.0, as in
 // test_unbiased.cpp.
-TEST(LightSlice, IsUnbiasedWithScalarColourAndZeroColumnsSampled) {
+TEST(LightSlice, IsUnbiasedWithoutBoundsAndColourAveraging) {
   for (const auto& m :
        {matrix::low_rank_matrix({200, 300, 1}, 8), matrix::sparse_matrix({200, 300, 1}, 0.3)}) {
     test::UnbiasednessTest t(m.exact_sums(), 10);
@@ -58,6 +58,7 @@ TEST(LightSlice, IsUnbiasedWithScalarColourAndZeroColumnsSampled) {
                  {"slice-rows", "40"},
                  {"neighbours", "3"},
                  {"colour", "scalar"},
+                 {"most-shown", "0"},
                  {"zero-columns", "sample"},
                  {"zero-share", "0.3"}},
                 seed)

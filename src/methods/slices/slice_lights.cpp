@@ -34,6 +34,51 @@ linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices
 
 }  // namespace
 
+const Fields<SliceLightSettings>& slice_light_fields() {
+  using S = SliceLightSettings;
+  static const Fields<S> fields{
+      count_field<S>({"columns", "columns",
+                      "Columns of a slice: clusters, each with one that stands for it. Costs one entry per "
+                      "receiver each; as many as there are columns is exact."},
+                     &S::columns, 1),
+      count_field<S>({"slice-rows", "rows",
+                      "Receivers of a slice, at most; 0: as many as cost a slice's columns as much as its "
+                      "row, one entry per column."},
+                     &S::slice_rows, 0),
+      count_field<S>({"initial-clusters", "clusters",
+                      "Of all columns by the rows of all slices, before slices split them further; 0: three "
+                      "tenths of `columns`."},
+                     &S::initial_clusters, 0),
+      count_field<S>({"neighbours", "slices",
+                      "Slices by whose rows one splits its clusters: the nearest, itself among them. Time of "
+                      "the clustering is in proportion."},
+                     &S::neighbours, 1),
+      count_field<S>({"projection", "dimensions",
+                      "Dimensions to which columns are projected for the clusters of all slices; 0: none."},
+                     &S::projection, 0),
+      choice_field<S>({"colour", "",
+                       "averaged: who stands for a cluster gets its total colour; scalar: one factor for all "
+                       "channels (unbiased)."},
+                      &S::colour, {"averaged", "scalar"}),
+      choice_field<S>({"zero-columns", "",
+                       "Columns that are zero on all rows that a slice looks at. sample: a few drawn by "
+                       "power, unbiased; ignore: taken as zero in the slice (biased, less noise)."},
+                      &S::zero_columns, {"sample", "ignore"}),
+      number_field<S>(
+          {"zero-share", "of columns", "How many of them are drawn, as a share of `columns`; at least one."},
+          &S::zero_share, 0, 1),
+      number_field<S>({"global-share", "",
+                       "Share of the choice of who stands for a cluster that goes by the rows of all slices "
+                       "instead of by the slice's own few."},
+                      &S::global_share, 0, 1),
+      number_field<S>({"most-shown", "of the sum",
+                       "A column that stands for others may not add more to a receiver than this share of the "
+                       "greatest sum among the rows that its slice looks at. Keeps specks away; 0: no bound, "
+                       "unbiased."},
+                      &S::most_shown, 0, 1e9)};
+  return fields;
+}
+
 SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options,
                          const SliceLightSettings& settings, std::span<Rgb> row_sum)
     : matrix_(matrix),
@@ -148,7 +193,7 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
       }
       float most = 0;
       for (std::size_t r = 0; r < rows; ++r) {
-        w.point[r] = w.entries[r * kStretch + k];
+        w.point[r] = w.entries[r * kStretch + k] / static_cast<float>(r + 1);
         most = std::max(most, w.point[r]);
       }
       if (most > 0)
@@ -201,6 +246,10 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
 
 void SliceLights::choose(std::size_t slice, Workspace& w) const {
   w.chosen.clear();
+  float greatest = 0;
+  for (std::size_t r = 0; r < neighbour_count_; ++r)
+    greatest = std::max(greatest, norm2(known().rows()[neighbours_[slice * neighbour_count_ + r]].sum));
+  w.most_shown = static_cast<float>(settings_.most_shown) * greatest;
   if (settings_.columns >= matrix_.columns()) {
     for (std::size_t j = 0; j < matrix_.columns(); ++j) w.chosen.push_back({static_cast<Index>(j)});
     return;

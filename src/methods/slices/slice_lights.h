@@ -3,11 +3,12 @@
 // are clustered once, as in row-column sampling; each slice then splits these clusters further, by its own
 // row and those of the slices nearest to it alone.
 //
-// Ours: the paper draws who stands for a cluster by norms over all rows that were read, and gives it the
-// cluster's whole norm there. Here the norms are those over the slice's own few rows, with a share for the
-// others (global-share), so that a column which is bright elsewhere does not stand for one that is bright
-// here. Cuts are the best of 31 along the line between the two members that differ most; the paper's is the
-// middle.
+// Ours: nearer slices count for more, the k-th as 1/(k + 1), so that twice the paper's eight can be looked
+// at: fewer columns are zero on all of them. The paper draws who stands for a cluster by norms over all rows
+// that were read, and gives it the cluster's whole norm there. Here the norms are those over the slice's own
+// few rows, with a share for the others (global-share), so that a column which is bright elsewhere does not
+// stand for one that is bright here. What one column adds is bounded where it stands for others (most-shown).
+// Cuts are the best of 31 along the line between the two members that differ most; the paper's is the middle.
 #pragma once
 
 #include <cstddef>
@@ -27,53 +28,25 @@ namespace lumirank::methods {
 struct SliceLightSettings {
   std::size_t columns = 300;         // of a slice
   std::size_t initial_clusters = 0;  // 0: three tenths of `columns`
-  std::size_t neighbours = 8;        // slices by which one is refined, itself among them
+  std::size_t neighbours = 16;       // slices by which one is refined, itself among them
   std::size_t slice_rows = 0;        // at most; 0: as many as cost a slice as much as its row
   std::size_t projection = 50;
   ColourMode colour = ColourMode::averaged;
   ZeroColumns zero_columns = ZeroColumns::sample;
   double zero_share = 0.02;
   double global_share = 0.1;
+  double most_shown = 0.5;
 };
 
-// The fields of the settings of a method with slices, S derived from SliceLightSettings.
+const Fields<SliceLightSettings>& slice_light_fields();
+// The same for a method whose settings S are these and more.
 template <typename S>
-Fields<S> slice_light_fields() {
-  return {
-      count_field<S>({"columns", "columns",
-                      "Columns of a slice: clusters, each with one that stands for it. Costs one entry per "
-                      "receiver each; as many as there are columns is exact."},
-                     &S::columns, 1),
-      count_field<S>({"slice-rows", "rows",
-                      "Receivers of a slice, at most; 0: as many as cost a slice's columns as much as its "
-                      "row, one entry per column."},
-                     &S::slice_rows, 0),
-      count_field<S>({"initial-clusters", "clusters",
-                      "Of all columns by the rows of all slices, before slices split them further; 0: three "
-                      "tenths of `columns`."},
-                     &S::initial_clusters, 0),
-      count_field<S>({"neighbours", "slices",
-                      "Slices by whose rows one splits its clusters: the nearest, itself among them. Time of "
-                      "the clustering is in proportion."},
-                     &S::neighbours, 1),
-      count_field<S>({"projection", "dimensions",
-                      "Dimensions to which columns are projected for the clusters of all slices; 0: none."},
-                     &S::projection, 0),
-      choice_field<S>({"colour", "",
-                       "averaged: who stands for a cluster gets its total colour; scalar: one factor for all "
-                       "channels (unbiased)."},
-                      &S::colour, {"averaged", "scalar"}),
-      choice_field<S>({"zero-columns", "",
-                       "Columns that are zero on all rows that a slice looks at. sample: a few drawn by "
-                       "power, unbiased; ignore: taken as zero in the slice (biased, less noise)."},
-                      &S::zero_columns, {"sample", "ignore"}),
-      number_field<S>(
-          {"zero-share", "of columns", "How many of them are drawn, as a share of `columns`; at least one."},
-          &S::zero_share, 0, 1),
-      number_field<S>({"global-share", "",
-                       "Share of the choice of who stands for a cluster that goes by the rows of all slices "
-                       "instead of by the slice's own few."},
-                      &S::global_share, 0, 1)};
+Fields<S> with_slice_light_fields(Fields<S> others) {
+  Fields<S> all;
+  for (const auto& field : slice_light_fields())
+    all.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
 }
 
 class SliceLights {
@@ -96,6 +69,15 @@ class SliceLights {
     std::vector<float> entries, point, chance;
     std::vector<matrix::Index> zero;
     std::vector<matrix::ScaledColumn> chosen;
+    // A column that stands for others may not add more than this to a row (2-norm); 0: no bound.
+    float most_shown = 0;
+    // What a chosen column adds where its entry is `entry`.
+    Rgb shown(const matrix::ScaledColumn& column, Rgb entry) const {
+      const Rgb scaled = column.scale * entry;
+      if (!(most_shown > 0)) return scaled;
+      const float most = std::max(most_shown, norm2(entry)), is = norm2(scaled);
+      return is > most ? scaled * (most / is) : scaled;
+    }
   };
   // The columns of a slice: at most `columns` of them, into workspace.chosen; all columns where there are no
   // more. A function of (seed, slice) alone. One thread.

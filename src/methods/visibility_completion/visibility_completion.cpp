@@ -1,0 +1,160 @@
+#include "methods/visibility_completion/visibility_completion.h"
+
+#include <algorithm>
+
+#include "base/random.h"
+#include "base/timer.h"
+#include "matrix/entry_reader.h"
+#include "methods/slices/slice_pass.h"
+#include "methods/visibility_completion/completion.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+enum class CompletionWay { refined, boolean };
+
+struct Settings : SliceLightSettings, CompletionSettings {
+  CompletionWay completion = CompletionWay::refined;
+};
+
+const Fields<Settings>& fields() {
+  static const Fields<Settings> all = with_slice_light_fields<Settings>(
+      {choice_field<Settings>({"completion", "",
+                               "refined: from coarse to fine receivers, looking where coarser neighbours "
+                               "differ; boolean: columns "
+                               "as sums modulo 2 of columns that are known, the paper's."},
+                              &Settings::completion, {"refined", "boolean"}),
+       count_field<Settings>(
+           {"spacing", "receivers",
+            "refined: one of so many receivers of a slice is looked at from all its columns."},
+           &Settings::spacing, 1),
+       number_field<Settings>(
+           {"checks", "",
+            "refined: share of the entries on which neighbours agree that gets a shadow ray all the same; "
+            "boolean: share of a column's rows by which its completion is checked."},
+           &Settings::checks, 0, 1),
+       number_field<Settings>({"rate", "", "boolean: share of a column's rows by which it is completed."},
+                              &Settings::rate, 0, 1)});
+  return all;
+}
+
+struct Workspace {
+  explicit Workspace(const matrix::LightingMatrix& matrix) : reader(matrix.reader()), completion(*reader) {}
+  std::unique_ptr<matrix::EntryReader> reader;
+  SliceLights::Workspace lights;
+  SliceCosts costs;
+  Completion completion;
+  std::vector<linalg::NestedLevels::Point> points;
+  std::vector<matrix::Index> columns, list_rows, list_columns;
+  std::vector<std::uint32_t> seen;  // rows of one column
+  struct Place {
+    std::uint32_t row, column;
+  };
+  std::vector<Place> places;
+  std::vector<Rgb> entries;
+  double seconds_visibility = 0, seconds_shading = 0;
+};
+
+class VisibilityCompletion final : public Method {
+ public:
+  explicit VisibilityCompletion(const Settings& settings) : settings_(settings) {}
+
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    const SlicePoints points(matrix.row_features(), matrix.rows());
+    WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(matrix); });
+    Estimate estimate =
+        run_slices(matrix, options, settings_, pool,
+                   [&](const SliceLights& lights, std::size_t s, Workspace& w, std::span<Rgb> sums) {
+                     render(lights, points, options.seed, s, w, sums);
+                   });
+    Completion::Counts all;
+    double visibility = 0, shading = 0;
+    pool.for_each([&](const Workspace& w) {
+      const Completion::Counts& c = w.completion.counts();
+      all.entries += c.entries, all.looked_at += c.looked_at, all.checks += c.checks, all.wrong += c.wrong;
+      all.whole_columns += c.whole_columns;
+      visibility += w.seconds_visibility, shading += w.seconds_shading;
+    });
+    auto& numbers = estimate.trace.numbers;
+    const auto ratio = [](std::uint64_t a, std::uint64_t b) {
+      return b > 0 ? static_cast<double>(a) / static_cast<double>(b) : 0.0;
+    };
+    numbers["sampling_rate"] = ratio(all.looked_at, all.entries);
+    numbers["completion.checks"] = ratio(all.checks, all.entries);
+    numbers["completion.wrong_checks"] = ratio(all.wrong, all.checks);
+    numbers["completion.whole_columns"] = static_cast<double>(all.whole_columns);
+    numbers["cpu_seconds.visibility"] = visibility;
+    numbers["cpu_seconds.shading"] = shading;
+    return estimate;
+  }
+
+ private:
+  void render(const SliceLights& lights, const SlicePoints& points, std::uint64_t seed, std::size_t s,
+              Workspace& w, std::span<Rgb> sums) const {
+    const Timer timer;
+    const auto rows = lights.slices().slice(s);
+    w.reader->set_rows(rows);
+    // Bright ones first: those are looked at whole and stand for others.
+    const auto& chosen = w.lights.chosen;
+    w.points.clear(), w.columns.clear();
+    for (const matrix::Index i : rows) w.points.push_back(points[i]);
+    for (const matrix::ScaledColumn& c : chosen) w.columns.push_back(c.column);
+    const Completion::Slice slice{rows, w.points, w.columns, hash_ids(seed, Stage::method, 2, s)};
+    if (settings_.completion == CompletionWay::boolean)
+      w.completion.complete_boolean(slice, settings_);
+    else
+      w.completion.complete_refined(slice, settings_);
+    const double seen = timer.seconds();
+    w.seconds_visibility += seen;
+    shade(chosen, rows, w, sums);
+    w.seconds_shading += timer.seconds() - seen;
+  }
+
+  // Σ scale · E · V; where few rows see a column, E of these alone.
+  static void shade(std::span<const matrix::ScaledColumn> chosen, std::span<const matrix::Index> rows,
+                    Workspace& w, std::span<Rgb> sums) {
+    for (const matrix::Index i : rows) sums[i] = Rgb(0);
+    w.places.clear(), w.list_rows.clear(), w.list_columns.clear();
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      w.seen.clear();
+      for (std::size_t a = 0; a < rows.size(); ++a)
+        if (w.completion.visible(a, k)) w.seen.push_back(static_cast<std::uint32_t>(a));
+      if (4 * w.seen.size() < rows.size()) {
+        for (const std::uint32_t a : w.seen) {
+          w.places.push_back({a, static_cast<std::uint32_t>(k)});
+          w.list_rows.push_back(rows[a]);
+          w.list_columns.push_back(chosen[k].column);
+        }
+        continue;
+      }
+      w.entries.resize(rows.size());
+      w.reader->column(chosen[k].column, w.entries, matrix::Part::unoccluded);
+      for (const std::uint32_t a : w.seen) sums[rows[a]] += w.lights.shown(chosen[k], w.entries[a]);
+    }
+    w.entries.resize(w.places.size());
+    w.reader->entries(w.list_rows, w.list_columns, w.entries, matrix::Part::unoccluded);
+    for (std::size_t p = 0; p < w.places.size(); ++p)
+      sums[rows[w.places[p].row]] += w.lights.shown(chosen[w.places[p].column], w.entries[p]);
+  }
+
+  Settings settings_;
+};
+
+}  // namespace
+
+MethodInfo visibility_completion_info() {
+  const std::string name = "visibility-completion";
+  return {
+      name,
+      "Columns of slices as in lightslice, with few of their shadow rays.",
+      "Wang, Holzschuch 2020, Adaptive matrix completion for fast visibility computations with many lights "
+      "rendering",
+      parameters_of(fields()),
+      [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
+        return std::make_unique<VisibilityCompletion>(read_settings(name, fields(), settings));
+      },
+      [](const SettingsMap&) -> std::size_t { return 0; }};
+}
+
+}  // namespace lumirank::methods

@@ -1,0 +1,16 @@
+// Completion of visibility (Wang and Holzschuch 2020, "Adaptive matrix completion for fast visibility
+// computations with many lights rendering"): receivers in slices, a few columns for each of them, what these
+// send unoccluded exactly, and who sees whom from few shadow rays.
+//
+// Slices and their columns are LightSlice's (slices/slice_lights.h); the paper cuts light trees instead. The
+// paper's completion is `completion = boolean`. Ours, `refined` and the default, uses that visibility changes
+// along lines: completion.h.
+#pragma once
+
+#include "methods/method.h"
+
+namespace lumirank::methods {
+
+MethodInfo visibility_completion_info();
+
+}  // namespace lumirank::methods
