@@ -65,38 +65,39 @@ bool Cut::ask(std::vector<Index>& columns) {
 void Cut::take(std::span<const Rgb> values) {
   for (std::size_t k = 0; k < asked_.size(); ++k) nodes_[asked_[k]].entry = values[k];
   if (refined_.empty()) {  // the roots
-    for (const std::uint32_t place : asked_) add(place, 1), wait(place);
+    for (const std::uint32_t place : asked_) add(place), wait(place);
     return;
   }
   for (const std::uint32_t place : refined_) {
-    add(place, -1);
+    total_ -= static_cast<double>(nodes_[place].value);
     for (std::uint32_t child = nodes_[place].children; child < nodes_[place].children + 2; ++child)
-      add(child, 1);
+      add(child);
   }
   for (const std::uint32_t place : refined_)
     for (std::uint32_t child = nodes_[place].children; child < nodes_[place].children + 2; ++child)
       wait(child);
 }
 
-void Cut::add(std::uint32_t place, float sign) {
-  const CutNode& n = nodes_[place];
+void Cut::add(std::uint32_t place) {
+  CutNode& n = nodes_[place];
   if (is_black(n.entry)) return;
-  total_ += static_cast<double>(sign * luminance(tree_.scaled(n.node).scale * n.entry));
+  n.value = luminance(tree_.scaled(n.node).scale * n.entry);
+  total_ += static_cast<double>(n.value);
 }
 
 void Cut::wait(std::uint32_t place) {
-  CutNode& n = nodes_[place];
-  if (tree_.is_leaf(n.node)) return;
-  const float bound = luminance(bounds_->bound(tree_.set(n.node)));
+  const LightTree::Node node = nodes_[place].node;
+  if (tree_.is_leaf(node)) return;
+  const float most = luminance(bounds_->bound(tree_.set(node)));
   ++bounds_computed_;
-  n.bound = bound < kUnknown ? bound : kUnknown * (1 + tree_.power(n.node));
-  if (!(n.bound > 0)) return;
-  if (n.bound > kAsleep * threshold()) {
-    heap_.push_back({n.bound, place});
+  const float bound = most < kUnknown ? most : kUnknown * (1 + tree_.power(node));
+  if (!(bound > 0)) return;
+  if (bound > kAsleep * threshold()) {
+    heap_.push_back({bound, place});
     std::push_heap(heap_.begin(), heap_.end(), later);
   } else {
-    asleep_.push_back({n.bound, place});
-    most_asleep_ = std::max(most_asleep_, n.bound);
+    asleep_.push_back({bound, place});
+    most_asleep_ = std::max(most_asleep_, bound);
   }
 }
 

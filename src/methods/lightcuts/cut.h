@@ -27,7 +27,7 @@ struct CutNode {
   LightTree::Node node = 0;
   std::uint32_t children = 0;  // the first of two neighbours; 0: on the cut
   Rgb entry;                   // of the representative, not scaled
-  float bound = 0;             // luminance; 0 for single columns, which are exact
+  float value = 0;             // luminance of scale × entry
 };
 
 class Cut {
@@ -59,7 +59,7 @@ class Cut {
     return a.bound != b.bound ? a.bound < b.bound : a.place > b.place;
   }
   float threshold() const;
-  void add(std::uint32_t place, float sign);
+  void add(std::uint32_t place);
   void wait(std::uint32_t place);
   bool wake();
 

@@ -15,7 +15,7 @@ namespace lumirank::methods {
 class ReceiverCuts {
  public:
   // Side by side: neighbours, which ask for like entries, so that rays and lanes find company.
-  static constexpr std::size_t kTogether = 16;
+  static constexpr std::size_t kTogether = 8;
 
   ReceiverCuts(const matrix::LightingMatrix& matrix, const LightTree& tree, const CutLimits& limits) {
     for (std::size_t k = 0; k < kTogether; ++k) {

@@ -15,7 +15,7 @@ void PairCut::begin(std::span<const Index> rows) {
   gather_.build(rows);
   pairs_.clear(), asked_.clear(), changed_.clear(), heap_.clear();
   total_ = 0, bounds_computed_ = 0, begun_ = false;
-  for (const LightTree::Node root : lights_.roots()) pairs_.push_back({GatherTree::root(), root, {}});
+  for (const LightTree::Node root : lights_.roots()) pairs_.push_back({GatherTree::root(), root, {}, 0});
 }
 
 float PairCut::threshold() const { return static_cast<float>(limits_.error_bound * std::max(total_, 0.0)); }
@@ -45,7 +45,7 @@ bool PairCut::ask(std::uint32_t first_place, std::vector<std::uint32_t>& places,
     std::pop_heap(heap_.begin(), heap_.end(), later);
     heap_.pop_back();
     const Pair parent = pairs_[at];
-    add(parent, -1);
+    total_ -= static_cast<double>(parent.value);
     const bool by_rows = split_gather(parent);
     Pair one = parent, other = parent;
     if (by_rows)
@@ -68,14 +68,14 @@ bool PairCut::ask(std::uint32_t first_place, std::vector<std::uint32_t>& places,
 
 void PairCut::take(std::span<const Rgb> values) {
   for (std::size_t k = 0; k < asked_.size(); ++k) pairs_[asked_[k]].entry = values[k];
-  for (const std::uint32_t at : changed_) add(pairs_[at], 1);
+  for (const std::uint32_t at : changed_) add(pairs_[at]);
   for (const std::uint32_t at : changed_) wait(at);
 }
 
-void PairCut::add(const Pair& p, double sign) {
-  if (is_black(p.entry)) return;
-  total_ += sign * static_cast<double>(gather_.weight(p.gather) *
-                                       luminance(lights_.scaled(p.light).scale * p.entry));
+void PairCut::add(Pair& p) {
+  p.value = is_black(p.entry) ? 0.0f
+                              : gather_.weight(p.gather) * luminance(lights_.scaled(p.light).scale * p.entry);
+  total_ += static_cast<double>(p.value);
 }
 
 void PairCut::wait(std::uint32_t place) {

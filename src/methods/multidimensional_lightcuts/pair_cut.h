@@ -46,7 +46,8 @@ class PairCut {
   struct Pair {
     GatherTree::Node gather = 0;
     LightTree::Node light = 0;
-    Rgb entry;  // of the representatives
+    Rgb entry;        // of the representatives
+    float value = 0;  // luminance of weight × scale × entry
   };
   struct Waiting {
     float bound;
@@ -59,7 +60,7 @@ class PairCut {
   bool exact(const Pair& p) const { return gather_.is_leaf(p.gather) && lights_.is_leaf(p.light); }
   // The side with the greater extent is refined.
   bool split_gather(const Pair& p) const;
-  void add(const Pair& p, double sign);
+  void add(Pair& p);
   void wait(std::uint32_t place);
 
   const LightTree& lights_;
