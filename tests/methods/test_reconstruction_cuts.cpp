@@ -3,8 +3,10 @@
 #include <cmath>
 #include <set>
 
+#include "matrix/entry_reader.h"
 #include "matrix/synthetic.h"
 #include "methods/column_pass.h"
+#include "methods/lightcuts/answers.h"
 #include "methods/lightcuts/image_blocks.h"
 #include "methods/lightcuts/reconstruction.h"
 
@@ -48,6 +50,26 @@ TEST(ImageBlocks, ReceiversOfOtherSurfacesTellNothing) {
   EXPECT_TRUE(alike(features, 0, 3));   // 30 degrees but for rounding
   EXPECT_FALSE(alike(features, 0, 4));  // 60 degrees
   EXPECT_TRUE(alike({}, 0, 4));
+}
+
+// Rows 0 and 1 in proportion, row 2 in opposite order: (1·3 + 3·1) / (1 + 9) = 0.6. Rows 3 and 4 are dark.
+TEST(Answers, LikenessIsTheCosineOfWhatLightsGive) {
+  std::vector<Rgb> entries;
+  for (const float v : {1.0f, 3.0f, 2.0f, 6.0f, 3.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f}) entries.emplace_back(v);
+  const DenseMatrix m(5, 2, std::move(entries), std::vector<std::uint8_t>(10, 0));  // whatever is seen
+  const LightTree tree(m, 1);
+  Answers answers(tree);
+  const std::vector<Index> rows{4, 0, 1, 2, 3};
+  answers.ask(rows, *m.reader());
+  EXPECT_NEAR(answers.likeness(1, 2), 1, 1e-6f);
+  EXPECT_NEAR(answers.likeness(1, 3), 0.6f, 1e-6f);
+  EXPECT_EQ(answers.likeness(0, 1), 0);
+  EXPECT_EQ(answers.likeness(0, 4), 1);
+  // Without lights all rows are dark.
+  const DenseMatrix no_lights(5, 0, {});
+  Answers nothing(LightTree(no_lights, 1));
+  nothing.ask(rows, *no_lights.reader());
+  EXPECT_EQ(nothing.likeness(0, 1), 1);
 }
 
 // Two columns with one root above them: cuts that hold the root alone, or both columns.

@@ -19,28 +19,34 @@ constexpr float kLeastWeight = 0.01f;
 void BlockPainter::paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts,
                          matrix::EntryReader& reader, std::span<Rgb> sums) {
   cut_corners(blocks, unit, cuts, reader);
+  const auto unit_rows = blocks.units()[unit];
+  rows_.assign(unit_rows.begin(), unit_rows.end());
+  rows_.insert(rows_.end(), corner_rows_.begin(), corner_rows_.end());
+  answers_.ask(rows_, reader);
   for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
     const ImageBlocks::Block block = blocks.block(unit, which);
-    choose_samples(block);
+    const auto first_place = static_cast<std::size_t>(block.rows.data() - unit_rows.data());
+    choose_samples(block, first_place, unit_rows.size());
     const auto corners = static_cast<std::size_t>(block.corner_count);
-    const auto extra_rows = std::span(sample_rows_).subspan(corners);
-    if (extras_.size() < extra_rows.size()) extras_.resize(extra_rows.size());
-    cuts.cut(extra_rows, reader, [&](std::size_t k, const Cut& cut) { extras_[k].set(cut, tree_); });
+    extra_rows_.clear();
+    for (const Receiver& r : std::span(sample_rows_).subspan(corners)) extra_rows_.push_back(r.row);
+    if (extras_.size() < extra_rows_.size()) extras_.resize(extra_rows_.size());
+    cuts.cut(extra_rows_, reader, [&](std::size_t k, const Cut& cut) { extras_[k].set(cut, tree_); });
     samples_.clear();
-    for (std::size_t s = 0; s < sample_rows_.size(); ++s) {
-      const auto corner = std::lower_bound(corner_rows_.begin(), corner_rows_.end(), sample_rows_[s]);
-      samples_.push_back(s < corners ? &corners_[static_cast<std::size_t>(corner - corner_rows_.begin())]
+    for (std::size_t s = 0; s < sample_rows_.size(); ++s)
+      samples_.push_back(s < corners ? &corners_[sample_rows_[s].place - unit_rows.size()]
                                      : &extras_[s - corners]);
-    }
     const Timer timer;
     pending_.clear();
-    for (const Index i : block.rows) {
-      const auto own = std::find(sample_rows_.begin(), sample_rows_.end(), i);
+    for (std::size_t k = 0; k < block.rows.size(); ++k) {
+      const Index i = block.rows[k];
+      const auto own = std::find_if(sample_rows_.begin(), sample_rows_.end(),
+                                    [&](const Receiver& r) { return r.row == i; });
       std::size_t count = 0;
       if (own != sample_rows_.end())
         sums[i] = samples_[static_cast<std::size_t>(own - sample_rows_.begin())]->sum;
       else
-        pending_.push_back({samples_for(i, count), i});
+        pending_.push_back({samples_for({i, first_place + k}, count), i});
     }
     std::sort(pending_.begin(), pending_.end(), [](const Pending& a, const Pending& b) {
       return a.samples != b.samples ? a.samples < b.samples : a.row < b.row;
@@ -69,23 +75,34 @@ void BlockPainter::cut_corners(const ImageBlocks& blocks, std::size_t unit, Rece
 
 // The block's corners, and as many of its receivers as it takes until each of the others has enough samples
 // that are like it.
-void BlockPainter::choose_samples(const ImageBlocks::Block& block) {
-  sample_rows_.assign(block.corners.begin(), block.corners.begin() + block.corner_count);
+void BlockPainter::choose_samples(const ImageBlocks::Block& block, std::size_t first_place,
+                                  std::size_t corner_place) {
+  sample_rows_.clear();
+  for (const Index i : std::span(block.corners).first(static_cast<std::size_t>(block.corner_count))) {
+    const auto corner = std::lower_bound(corner_rows_.begin(), corner_rows_.end(), i);
+    sample_rows_.push_back({i, corner_place + static_cast<std::size_t>(corner - corner_rows_.begin())});
+  }
   for (const std::uint32_t k : coarse_to_fine(block.rows.size())) {
+    const Receiver receiver{block.rows[k], first_place + k};
     std::size_t count = 0;
-    samples_for(block.rows[k], count);
-    if (count < kFewestSamples &&
-        std::find(sample_rows_.begin(), sample_rows_.end(), block.rows[k]) == sample_rows_.end())
-      sample_rows_.push_back(block.rows[k]);
+    samples_for(receiver, count);
+    if (count >= kFewestSamples) continue;
+    const bool corner = std::any_of(sample_rows_.begin(), sample_rows_.end(),
+                                    [&](const Receiver& r) { return r.row == receiver.row; });
+    if (!corner) sample_rows_.push_back(receiver);
   }
 }
 
-BlockPainter::SampleList BlockPainter::samples_for(Index row, std::size_t& count) const {
+bool BlockPainter::alike_in_all(const Receiver& a, const Receiver& b) const {
+  return alike(features_, a.row, b.row) && answers_.likeness(a.place, b.place) >= least_likeness_;
+}
+
+BlockPainter::SampleList BlockPainter::samples_for(const Receiver& receiver, std::size_t& count) const {
   SampleList list;
   list.fill(kNoSample);
   count = 0;
   for (std::size_t s = 0; s < sample_rows_.size() && count < kMost; ++s)
-    if (alike(features_, row, sample_rows_[s])) list[count++] = static_cast<std::uint16_t>(s);
+    if (alike_in_all(receiver, sample_rows_[s])) list[count++] = static_cast<std::uint16_t>(s);
   return list;
 }
 

@@ -3,8 +3,9 @@
 //
 // Our deviations: cuts are refined in rounds of a few nodes and beside those of neighbours (cut.h). Bounds
 // and totals are compared by luminance. Receivers between cuts are reconstructed in blocks of 4×4 pixels with
-// as many further cuts as their surfaces need; an interpolated node is shaded anew by its representative's
-// unoccluded entry, where the paper keeps a directional light for the purpose (reconstruction.h).
+// as many further cuts as their surfaces need; materials are alike where they answer some lights alike
+// (answers.h); an interpolated node is shaded anew by its representative's unoccluded entry, where the paper
+// keeps a directional light for the purpose (reconstruction.h).
 #include "methods/lightcuts/lightcuts.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ struct LightcutsSettings {
   std::size_t most_nodes = 1000;
   Reconstruction reconstruction = Reconstruction::on;
   double agreement = 0.005;
+  double likeness = 0.95;
 };
 
 const Fields<LightcutsSettings> kFields{
@@ -46,13 +48,18 @@ const Fields<LightcutsSettings> kFields{
     number_field<LightcutsSettings>({"agreement", "",
                                      "Cuts agree in a node when they differ in it by less than this share of "
                                      "the receiver's total."},
-                                    &LightcutsSettings::agreement, 0, 1)};
+                                    &LightcutsSettings::agreement, 0, 1),
+    number_field<LightcutsSettings>({"likeness", "",
+                                     "Receivers learn from each other where their answers to 32 lights, "
+                                     "nothing in between, make an angle of at least this cosine. Nearer to 1 "
+                                     "gives more receivers cuts of their own."},
+                                    &LightcutsSettings::likeness, 0, 1)};
 
 struct Workspace {
   Workspace(const matrix::LightingMatrix& matrix, const LightTree& tree, const LightcutsSettings& settings)
       : reader(matrix.reader()),
         cuts(matrix, tree, {settings.error_bound, settings.most_nodes}),
-        painter(matrix, tree, settings.agreement) {}
+        painter(matrix, tree, settings.agreement, settings.likeness) {}
   std::unique_ptr<matrix::EntryReader> reader;
   ReceiverCuts cuts;
   BlockPainter painter;
