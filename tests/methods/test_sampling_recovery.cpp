@@ -141,6 +141,26 @@ TEST(SamplingRecovery, ClustersRespectTheLimits) {
   EXPECT_GE(e.trace.numbers.at("columns"), 249);
 }
 
+// What is promised is the error at the known pixels: there it meets the target, or the search has ended where
+// it would have cost more than the picture. A stricter target is met by more samples.
+TEST(SamplingRecovery, MeetsATargetByItself) {
+  const auto run = [&](double target) {
+    RunOptions options;
+    options.target_error = target;
+    return find_method("sampling-recovery").make({{"slice-rows", "40"}})->run(room(), options);
+  };
+  const Estimate loose = run(0.2), strict = run(0.02);
+  for (const Estimate* e : {&loose, &strict}) {
+    const auto& n = e->trace.numbers;
+    EXPECT_LE(n.at("automatic.error"), n.at("automatic.target"));
+    EXPECT_GE(n.at("automatic.trials"), 1);
+  }
+  EXPECT_LT(loose.trace.numbers.at("samples_per_row"), strict.trace.numbers.at("samples_per_row"));
+  EXPECT_LT(relative_l1_difference(strict.sums, exact()), relative_l1_difference(loose.sums, exact()));
+  EXPECT_FALSE(estimate(room(), {}).trace.numbers.contains("automatic.alpha"));
+  EXPECT_TRUE(estimate(room(), {{"parameters", "automatic"}}).trace.numbers.contains("automatic.alpha"));
+}
+
 // A slice's parts fit together: clusters partition the lights, samples agree with the matrix, and what is
 // recovered lies between 0 and 1.
 TEST(SamplingRecovery, ASliceFitsTogether) {

@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "base/timer.h"
 #include "methods/known_rows.h"
+#include "methods/sampling_recovery/automatic.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_recovery.h"
 #include "methods/slices/slices.h"
@@ -44,6 +45,18 @@ void write_tally(const RecoveryTally& t, Trace& trace) {
   numbers["rounds"] = ratio(number(t.prediction.rounds), number(t.columns));
 }
 
+void write_choice(const AutomaticChoice& choice, Trace& trace) {
+  auto& numbers = trace.numbers;
+  numbers["automatic.alpha"] = choice.settings.alpha;
+  numbers["automatic.rho"] = choice.settings.rho;
+  numbers["automatic.prediction_error"] = choice.settings.prediction_error;
+  numbers["automatic.uncertain"] = choice.settings.uncertain;
+  numbers["automatic.initial_columns"] = static_cast<double>(choice.settings.initial_columns);
+  numbers["automatic.error"] = choice.error;
+  numbers["automatic.target"] = choice.target;
+  numbers["automatic.trials"] = static_cast<double>(choice.trials);
+}
+
 class SamplingRecovery final : public Method {
  public:
   explicit SamplingRecovery(const RecoverySettings& settings) : settings_(settings) {}
@@ -59,9 +72,19 @@ class SamplingRecovery final : public Method {
     numbers["seconds.slices"] = timer.seconds() - numbers["seconds.tree"];
     numbers["slices"] = static_cast<double>(slices.count());
     numbers["rows"] = 0;
+    RecoverySettings settings = settings_;
+    if (settings.parameters == RecoverySettings::Parameters::automatic ||
+        (settings.parameters == RecoverySettings::Parameters::by_target && options.target_error > 0)) {
+      const double before = timer.seconds();
+      const AutomaticChoice choice = choose_parameters(settings_, tree, matrix, slices, options);
+      settings = choice.settings;
+      write_choice(choice, estimate.trace);
+      numbers["seconds.parameters"] = timer.seconds() - before;
+      numbers["rows"] = static_cast<double>(choice.rows);
+    }
 
     WorkspacePool<SliceRecovery> pool(
-        [&] { return std::make_unique<SliceRecovery>(settings_, tree, matrix); });
+        [&] { return std::make_unique<SliceRecovery>(settings, tree, matrix); });
     UnitResult result;
     const UnitRows units(slices.rows, slices.first);
     result = run_units(units, {options, timer, options.time_seconds, "slices"}, estimate.sums, pool,

@@ -6,6 +6,12 @@ const Fields<RecoverySettings>& recovery_fields() {
   using S = RecoverySettings;
   const std::vector<std::string> off_on{"off", "on"};
   static const Fields<S> fields{
+      choice_field<S>(
+          {"parameters", "",
+           "automatic: alpha, rho, prediction-error, uncertain and initial-columns are found on a "
+           "few slices so that the target error is met (3 % where none is given); given: they are "
+           "taken as set; by-target: automatic if a target error is given."},
+          &S::parameters, {"by-target", "given", "automatic"}),
       count_field<S>(
           {"slice-rows", "pixels",
            "Most pixels of a slice, whose columns are chosen and recovered together. Larger slices "

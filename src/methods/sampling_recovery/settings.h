@@ -7,6 +7,7 @@
 namespace lumirank::methods {
 
 struct RecoverySettings {
+  enum class Parameters { by_target, given, automatic } parameters = Parameters::by_target;
   std::size_t slice_rows = 1024;
   // Columns of a slice.
   std::size_t initial_columns = 200, most_columns = 2000;

@@ -40,6 +40,7 @@ class SliceRecovery {
   SliceRecovery(const RecoverySettings& settings, const LightTree& tree, const matrix::LightingMatrix& matrix)
       : settings_(settings), entries_(matrix), cut_(tree, matrix) {}
 
+  void use(const RecoverySettings& settings) { settings_ = settings; }
   // Writes the sums of the slice's receivers. Random numbers are keyed by `key`.
   void run(std::span<const matrix::Index> slice, std::uint64_t key, std::span<Rgb> sums);
 
