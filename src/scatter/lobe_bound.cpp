@@ -17,39 +17,52 @@ constexpr float kGrazing = 1e-6f;  // as in eval_f()
 // Evaluation in floats, and in lanes with their own exponentials.
 constexpr float kRounding = 1.0005f;
 
-// Cosines of directions within `angle` of one at angle theta from the normal; false if all are behind.
-bool cosines(float theta, float angle, float& lo, float& hi) {
-  const float least = theta - angle - kAngleSlack, most = theta + angle + kAngleSlack;
-  if (least >= kPi / 2) return false;
-  hi = least <= 0 ? 1.0f : std::cos(least);
-  lo = most >= kPi / 2 ? 0.0f : std::cos(most);
-  return true;
+float cos_sum(Angle a, Angle b) { return a.cosine * b.cosine - a.sine * b.sine; }
+float cos_difference(Angle a, Angle b) { return a.cosine * b.cosine + a.sine * b.sine; }
+
+// Cosines with the normal of directions in a cone about one at the angle theta from it; false if all are
+// behind.
+bool cosines(Angle theta, const ConeWidth& width, float& lo, float& hi) {
+  hi = theta.cosine >= width.whole.cosine ? 1.0f : cos_difference(theta, width.whole) + kAngleSlack;
+  // Not beyond a quarter turn: there both the cosine's sign and its size would mislead.
+  lo = theta.cosine > 0 && width.whole.cosine > 0 ? std::max(0.0f, cos_sum(theta, width.whole) - kAngleSlack)
+                                                  : 0.0f;
+  hi = std::min(hi, 1.0f);
+  return hi > 0;
 }
 
 float angle_of(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); }
-// Of unit vectors; precise near 0.
-float angle_between(Vec3f a, Vec3f b) { return 2 * std::asin(std::min(1.0f, 0.5f * length(a - b))); }
 
 // Precise near the fibre too.
 float latitude(Vec3f w, Vec3f fibre) { return std::atan2(dot(w, fibre), length(cross(w, fibre))); }
 
-// Where w is on the side of wo and within `angle` of a.
-AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, float angle, float cos_lo, float cos_hi) {
+// Where w is on the side of wo and within a cone about a.
+AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, const ConeWidth& width, float cos_lo,
+                       float cos_hi) {
   AngleRange r;
   r.cos_lo = cos_lo, r.cos_hi = cos_hi;
   const Vec3f h = t.wo + a;
-  const float hz = dot(h, n), half = angle_of(0.5f * length(h)) + 0.5f * angle + kAngleSlack;
+  const float len = length(h), hz = dot(h, n);
+  const Angle half = Angle::of_cosine(0.5f * len);
   // Above the horizon |wo + w| is no less than the sum of the cosines.
   const float least = 0.5f * (t.cos_o + cos_lo);
-  float half_lo = half < kPi / 2 ? std::cos(half) : 0.0f;
+  float half_lo = width.half.cosine > 0 ? std::max(0.0f, cos_sum(half, width.half) - kAngleSlack) : 0.0f;
   r.half_lo = std::max(half_lo, least);
   if (dot(a, n) >= 0) half_lo = r.half_lo;
-  if (half_lo > 1e-6f) {
-    const float tilt = std::atan2(length(h - n * hz), hz);
-    const float turn = 0.5f * (angle + kAngleSlack) / half_lo + kAngleSlack;
-    r.tilt_lo = std::clamp(tilt - turn, 0.0f, kPi / 2), r.tilt_hi = std::min(kPi / 2, tilt + turn);
+  const float turn = 0.5f * (width.angle + kAngleSlack) / std::max(half_lo, 1e-6f) + kAngleSlack;
+  if (turn < kPi / 2 && len > 1e-6f) {
+    const Angle tilt{length(h - n * hz) / len, hz / len}, by = Angle::of(turn);
+    if (tilt.cosine < by.cosine) {
+      r.tilt_cos = std::max(0.0f, cos_difference(tilt, by));
+      r.tilt_sin = r.tilt_cos > 0 ? tilt.sine * by.cosine - tilt.cosine * by.sine : 1.0f;
+    }
+    if (tilt.cosine > by.sine)
+      r.most_tilt_sin = std::min(1.0f, tilt.sine * by.cosine + tilt.cosine * by.sine);
   }
-  r.off_mirror = std::max(0.0f, angle_between(a, n * (2 * t.cos_o) - t.wo) - angle - kAngleSlack);
+  if (t.lobe->kind == LobeKind::phong) {
+    const float off = 2 * std::asin(std::min(1.0f, 0.5f * length(a - n * (2 * t.cos_o) + t.wo)));
+    r.cos_mirror = std::cos(std::clamp(off - width.angle - kAngleSlack, 0.0f, kPi));
+  }
   return r;
 }
 
@@ -63,8 +76,9 @@ AngleRange ring(const LobeTerm& t, float from, float to) {
   const float half = theta + 0.5f * to + kAngleSlack;
   r.half_lo = std::max(half < kPi / 2 ? std::cos(half) : 0.0f, 0.5f * (t.cos_o + r.cos_lo));
   // Tilting the half vector by δ turns w by 2δ at most.
-  r.tilt_lo = std::max(0.0f, 0.5f * from - kAngleSlack);
-  r.off_mirror = std::max(0.0f, from - kAngleSlack);
+  const Angle tilt = Angle::of(std::clamp(0.5f * from - kAngleSlack, 0.0f, kPi / 2));
+  r.tilt_sin = tilt.sine, r.tilt_cos = std::max(0.0f, tilt.cosine);
+  r.cos_mirror = std::cos(std::max(0.0f, from - kAngleSlack));
   return r;
 }
 
@@ -148,6 +162,7 @@ void ClosureBound::add(const Lobe& lobe, Rgb color, bool adjoint) {
   if (lobe.kind == LobeKind::microfacet_reflect) t.at_normal = lobe_fresnel({lobe, t.eta, outside_}, 1);
   if (lobe.kind == LobeKind::oren_nayar) t.at_normal = lobe.conductor_eta * factor;
   if (is_black(t.scale) && is_black(t.at_normal)) return;
+  through_ = through_ || shines_through(lobe.kind);
   terms_[static_cast<std::size_t>(count_++)] = t;
 }
 
@@ -163,12 +178,12 @@ Rgb ClosureBound::on_fibre(const LobeTerm& t, const DirectionCone& cone, Slant s
                           std::min(kPi / 2, about + cone.angle + kAngleSlack), slant);
 }
 
-Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, float cos_lo, float cos_hi,
-                            Slant slant) const {
+Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
+                            float cos_lo, float cos_hi, Slant slant) const {
   const Coat& coat = t.lobe->coat;
   if (!coat) {
     if (!needs_cosine_only(t.lobe->kind))
-      return term_bound(t, range_about(n_, t, cone.axis, cone.angle, cos_lo, cos_hi), slant);
+      return term_bound(t, range_about(n_, t, cone.axis, width, cos_lo, cos_hi), slant);
     AngleRange r;
     r.cos_lo = cos_lo, r.cos_hi = cos_hi;
     return term_bound(t, r, slant);
@@ -179,7 +194,7 @@ Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, float 
   if (coat.bend >= 1 && cosine > 0) {
     // Refraction into the denser medium brings directions closer together by its index at least.
     const Vec3f a = cone.axis * (1 / coat.bend) + n_ * (coat_cosine(coat, cosine) - cosine / coat.bend);
-    r = range_about(n_, t, a, cone.angle / coat.bend + kAngleSlack, inside_lo, inside_hi);
+    r = range_about(n_, t, a, ConeWidth(cone.angle / coat.bend + kAngleSlack), inside_lo, inside_hi);
   } else {
     r.cos_lo = inside_lo, r.cos_hi = inside_hi, r.half_lo = 0.5f * (t.cos_o + inside_lo);
   }
@@ -194,39 +209,43 @@ Rgb ClosureBound::refracted(const LobeTerm& t, const DirectionCone& cone, float 
   // is the Jacobian's denominator; nothing below 1e-16 is answered.
   const Vec3f h = t.wo + cone.axis * t.eta;
   const float len = length(h), reach = t.eta * (cone.angle + kAngleSlack) + kAngleSlack, hz = dot(h, n_);
-  if (reach < len)
-    r.tilt_lo =
-        std::max(0.0f, std::atan2(length(h - n_ * hz), std::abs(hz)) - std::asin(reach / len) - kAngleSlack);
+  if (reach < len) {
+    const float tilt = std::atan2(length(h - n_ * hz), std::abs(hz)) - std::asin(reach / len) - kAngleSlack;
+    const Angle least_tilt = Angle::of(std::max(0.0f, tilt));
+    r.tilt_sin = least_tilt.sine, r.tilt_cos = std::max(0.0f, least_tilt.cosine);
+  }
   const float least = std::max({len - reach, std::abs(t.eta - 1) - kAngleSlack, 1e-8f});
   return term_bound(t, r, slant) * (crossed(t, cos_lo) / (least * least));
 }
 
-Rgb ClosureBound::through_sheet(const LobeTerm& t, const DirectionCone& cone, float cos_lo, float cos_hi,
-                                Slant slant) const {
+Rgb ClosureBound::through_sheet(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
+                                float cos_lo, float cos_hi, Slant slant) const {
   AngleRange r;
   r.cos_lo = cos_lo, r.cos_hi = cos_hi;
   if (!needs_cosine_only(t.lobe->kind))
-    r = range_about(n_, t, cone.axis - n_ * (2 * dot(cone.axis, n_)), cone.angle, cos_lo, cos_hi);
+    r = range_about(n_, t, cone.axis - n_ * (2 * dot(cone.axis, n_)), width, cos_lo, cos_hi);
   return term_bound(t, r, slant) * crossed(t, cos_lo);
 }
 
 Rgb ClosureBound::within(const DirectionCone& cone, Slant slant, float sharp) const {
   Rgb sum(0);
-  const float theta = angle_of(dot(cone.axis, n_));
+  if (count_ == 0) return sum;
+  const ConeWidth width(cone.angle);
+  const Angle theta = Angle::of_cosine(dot(cone.axis, n_));
   float lo = 0, hi = 0, behind_lo = 0, behind_hi = 0;
-  const bool before = !fibre_ && cosines(theta, cone.angle, lo, hi);
-  const bool behind = !fibre_ && cosines(kPi - theta, cone.angle, behind_lo, behind_hi);
+  const bool before = !fibre_ && cosines(theta, width, lo, hi);
+  const bool behind = through_ && cosines({theta.sine, -theta.cosine}, width, behind_lo, behind_hi);
   for (int k = 0; k < count_; ++k) {
     const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
     if (t.roughness < sharp) continue;
     if (fibre_) {
       sum += on_fibre(t, cone, slant);
     } else if (!shines_through(t.lobe->kind)) {
-      if (before) sum += reflected(t, cone, lo, hi, slant);
+      if (before) sum += reflected(t, cone, width, lo, hi, slant);
     } else if (behind) {
       sum += t.lobe->kind == LobeKind::microfacet_transmit
                  ? refracted(t, cone, behind_lo, behind_hi, slant)
-                 : through_sheet(t, cone, behind_lo, behind_hi, slant);
+                 : through_sheet(t, cone, width, behind_lo, behind_hi, slant);
     }
   }
   return sum;

@@ -23,6 +23,8 @@ struct DirectionCone {
 // What is multiplied with f.
 enum class Slant : std::uint8_t { none, cosine };
 
+struct ConeWidth;  // lobe_bound_terms.h
+
 // One lobe at one wo. Under a coat, directions and cosines are those inside.
 struct LobeTerm {
   const Lobe* lobe;
@@ -55,12 +57,12 @@ class ClosureBound {
  private:
   void add(const Lobe& lobe, Rgb color, bool adjoint);
   Rgb on_fibre(const LobeTerm& term, const DirectionCone& cone, Slant slant) const;
-  Rgb reflected(const LobeTerm& term, const DirectionCone& cone, float cos_lo, float cos_hi,
-                Slant slant) const;
+  Rgb reflected(const LobeTerm& term, const DirectionCone& cone, const ConeWidth& width, float cos_lo,
+                float cos_hi, Slant slant) const;
   Rgb refracted(const LobeTerm& term, const DirectionCone& cone, float cos_lo, float cos_hi,
                 Slant slant) const;
-  Rgb through_sheet(const LobeTerm& term, const DirectionCone& cone, float cos_lo, float cos_hi,
-                    Slant slant) const;
+  Rgb through_sheet(const LobeTerm& term, const DirectionCone& cone, const ConeWidth& width, float cos_lo,
+                    float cos_hi, Slant slant) const;
   Rgb in_rings(const LobeTerm& term, Slant slant) const;
   // What a coat does where light crosses it at w, beyond what is in the scale.
   float crossed(const LobeTerm& term, float cos_lo) const;
@@ -69,7 +71,7 @@ class ClosureBound {
   int count_ = 0;
   Vec3f n_{0, 0, 1}, wo_{0, 0, 1};  // n on the side of wo; on a fibre its direction
   float cos_o_ = 1;
-  bool outside_ = true, fibre_ = false;
+  bool outside_ = true, fibre_ = false, through_ = false;  // through_: some lobe shines through
 };
 
 }  // namespace lumirank::scatter

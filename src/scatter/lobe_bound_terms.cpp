@@ -15,19 +15,17 @@ namespace {
 constexpr float kLeastCosine = 1e-6f;  // eval_f() answers above it
 constexpr float kClearcoatMask = 0.25f;
 
-// exp(-tan²/α²)/cos⁴ over tilts from `tilt` on: it grows until 1/cos² = 2α².
-float gaussian_slopes(float tilt, float alpha) {
-  const float c = std::max(std::cos(tilt), 1e-6f), a2 = alpha * alpha;
-  const float tan2 = std::max(square(std::sin(tilt) / c), 2 * a2 - 1);
+// exp(-tan²/α²)/cos⁴ over all tilts: it grows until 1/cos² = 2α².
+float gaussian_slopes(const AngleRange& r, float alpha) {
+  const float a2 = alpha * alpha;
+  const float tan2 = std::max(square(r.tilt_sin / std::max(r.tilt_cos, 1e-6f)), 2 * a2 - 1);
   return std::exp(-tan2 / a2) * square(1 + tan2);
 }
 
-// D at tilts from `tilt` on.
-float normals(const LobeTerm& t, float tilt) {
+float normals(const LobeTerm& t, const AngleRange& r) {
   const float scale = kInvPi / (t.widest * t.narrowest);
-  if (t.lobe->distribution == NormalDistribution::beckmann) return scale * gaussian_slopes(tilt, t.widest);
-  const float s = std::sin(tilt), c = std::cos(tilt);
-  float q = square(s / t.widest) + c * c;
+  if (t.lobe->distribution == NormalDistribution::beckmann) return scale * gaussian_slopes(r, t.widest);
+  float q = square(r.tilt_sin / t.widest) + square(r.tilt_cos);
   if (t.widest > 1) q = std::min(q, 1 / square(t.widest));
   return scale / (q * q);
 }
@@ -62,12 +60,11 @@ float ward(const LobeTerm& t, const AngleRange& r, Slant slant) {
   if (t.lobe->variant == 2) {
     // |h|²·exp(-tan²/α²)/h_z⁴ = exp(-tan²/α²)/cos⁴ / |h|², |h| = 2·cos(d/2) and no less than h_z.
     const float len2 = std::max(square(2 * r.half_lo), square(t.cos_o + r.cos_lo));
-    const float shape = gaussian_slopes(r.tilt_lo, t.widest);
+    const float shape = gaussian_slopes(r, t.widest);
     if (slant == Slant::none) return shape / len2;
     return shape * std::min(r.cos_hi / len2, 1 / (4 * t.cos_o));  // c/(c_o + c)² has its peak at c_o
   }
-  const float tan_lo = std::tan(std::min(r.tilt_lo, 1.5707f));
-  const float gaussian = std::exp(-square(tan_lo / t.widest));
+  const float gaussian = std::exp(-square(r.tilt_sin / (std::max(r.tilt_cos, 1e-6f) * t.widest)));
   if (t.lobe->variant == 0)
     return gaussian * (slant == Slant::none ? 1 / std::sqrt(lo) : std::sqrt(r.cos_hi));
   return gaussian * (slant == Slant::none ? 1 / lo : 1.0f);
@@ -157,19 +154,19 @@ Rgb term_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
       return t.scale * direct + t.at_normal * indirect;
     }
     case LobeKind::microfacet_reflect:
-      return t.scale * reflectance(t, r) * (normals(t, r.tilt_lo) * masked(t, r, slant));
+      return t.scale * reflectance(t, r) * (normals(t, r) * masked(t, r, slant));
     case LobeKind::microfacet_transmit:
     case LobeKind::thin_transmit:
-      return t.scale * (normals(t, r.tilt_lo) * masked(t, r, slant));
+      return t.scale * (normals(t, r) * masked(t, r, slant));
     case LobeKind::phong:
-      if (r.off_mirror >= kPi / 2) return Rgb(0);
-      return t.scale * (std::pow(std::cos(r.off_mirror), t.lobe->alpha_u) * cosine);
+      if (!(r.cos_mirror > 0)) return Rgb(0);
+      return t.scale * (std::pow(r.cos_mirror, t.lobe->alpha_u) * cosine);
     case LobeKind::ward:
       return t.scale * ward(t, r, slant);
     case LobeKind::sheen:
       return t.scale * (schlick_weight(r.half_lo) * cosine);
     case LobeKind::charlie_sheen: {
-      const float d = std::pow(std::sin(r.tilt_hi), 1 / t.lobe->alpha_u);
+      const float d = std::pow(r.most_tilt_sin, 1 / t.lobe->alpha_u);
       // c/(co + c - co·c) grows with c, and what is below it too.
       const float c = slant == Slant::cosine ? r.cos_hi : r.cos_lo;
       return t.scale * (d * cosine / (4 * (t.cos_o + c - t.cos_o * c)));
@@ -177,8 +174,8 @@ Rgb term_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
     case LobeKind::disney_diffuse:
       return t.scale * disney_diffuse(t, r, slant);
     case LobeKind::clearcoat: {
-      const float f = lerp(schlick_weight(r.half_lo), 1.0f, 0.04f), s = std::sin(r.tilt_lo);
-      const float d = 1 / (s * s + square(t.lobe->alpha_u) * (1 - s * s));
+      const float f = lerp(schlick_weight(r.half_lo), 1.0f, 0.04f);
+      const float d = 1 / (square(r.tilt_sin) + square(t.lobe->alpha_u * r.tilt_cos));
       return t.scale * (f * d * masking(NormalDistribution::ggx, r.cos_hi, kClearcoatMask) * cosine);
     }
     default:

@@ -22,7 +22,6 @@ constexpr float kCosineSlack = 3e-7f;
 struct Differences {
   Vec3f center, half;
   float distance2;  // least
-  float far;        // length of center
 };
 Differences differences(const Bounds3f& rows, const Bounds3f& lights) {
   Differences d;
@@ -31,30 +30,34 @@ Differences differences(const Bounds3f& rows, const Bounds3f& lights) {
   d.center = (lo + hi) * 0.5f;
   // Of a single pair the box is a point, whose place is exact; else there are roundings.
   d.half = (hi - lo) * 0.500001f;
-  d.far = length(d.center);
   return d;
 }
 
 // At least the cosine between `axis` and any w in the box of differences. Turned so that the axis is z, w has
 // z of at most that of the box, and is off the axis by at least, or where all z are negative by at most, what
-// the box is in the direction across in which its centre lies.
-float greatest_cosine(Vec3f axis, const Differences& d) {
+// the box is in the direction across in which its centre lies. If all z are negative and `front`, no more is
+// said.
+float greatest_cosine(Vec3f axis, const Differences& d, bool front) {
   const auto extent = [&](Vec3f v) {
     return std::abs(v.x) * d.half.x + std::abs(v.y) * d.half.y + std::abs(v.z) * d.half.z;
   };
-  const float z = dot(axis, d.center), top = z + extent(axis) + kCosineSlack * d.far;
+  const float z = dot(axis, d.center);
+  const float top =
+      z + extent(axis) + kCosineSlack * (std::abs(d.center.x) + std::abs(d.center.y) + std::abs(d.center.z));
+  if (top <= 0 && front) return -1;
   const Vec3f across = d.center - axis * z;
-  const float off = length(across);
+  const float off2 = length_squared(across);
   if (top > 0) {
-    const float least = off > 0 ? std::max(0.0f, off - extent(across) / off) : 0.0f;
-    return least > 0 ? top / std::sqrt(top * top + least * least) : 1.0f;
+    const float least = off2 - extent(across);  // times off
+    return least > 0 ? top / std::sqrt(top * top + least * least / off2) : 1.0f;
   }
-  const float most = off + length(d.half);
+  const float most = std::sqrt(off2) + length(d.half);
   return most > 0 ? top / std::sqrt(top * top + most * most) : -1.0f;
 }
 
 // cos(max(0, angle - spread)).
 float towards(float cosine, float cos_spread, float sin_spread) {
+  if (cos_spread >= 1) return cosine;
   if (cosine >= cos_spread) return 1;
   return cosine * cos_spread + std::sqrt(std::max(0.0f, 1 - cosine * cosine)) * sin_spread;
 }
@@ -152,12 +155,12 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     parts.far = 1 / std::max(length_squared(farthest), 1e-30f);
     // A sphere sends light from all of its box.
     if (set.spherical) d.half += Vec3f{set.radius, set.radius, set.radius};
-    cosine = towards(greatest_cosine(normals_.axis, d), normals_.cosine, normals_sine_);
+    cosine = towards(greatest_cosine(normals_.axis, d, normals_.cosine >= 1), normals_.cosine, normals_sine_);
     if (cosine <= 0 && closures_.empty() && !behind_) return parts;
     if (!closures_.empty()) {
-      const float radius = length(d.half);
-      if (d.far > 0) cone.axis = d.center / d.far;
-      if (radius < d.far) cone.angle = radius > 0 ? std::asin(radius / d.far) : 0.0f;
+      const float radius = length(d.half), far = length(d.center);
+      if (far > 0) cone.axis = d.center / far;
+      if (radius < far) cone.angle = radius > 0 ? std::asin(radius / far) : 0.0f;
     }
     bool slanted = set.emission == Emission::oriented;
     if (!set.spherical) {
@@ -173,8 +176,8 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     }
     if (slanted) {
       d.center = -d.center;
-      const float cos_y =
-          towards(greatest_cosine(set.cone.axis, d), set.cone.cosine, sine_of(set.cone.cosine));
+      const float cos_y = towards(greatest_cosine(set.cone.axis, d, set.cone.cosine >= 1), set.cone.cosine,
+                                  sine_of(set.cone.cosine));
       if (cos_y <= 0) return parts;
       factor *= cos_y;
     }
