@@ -71,11 +71,12 @@ const Fields<SliceLightSettings>& slice_light_fields() {
                        "Share of the choice of who stands for a cluster that goes by the rows of all slices "
                        "instead of by the slice's own few."},
                       &S::global_share, 0, 1),
-      number_field<S>({"most-shown", "of the sum",
-                       "A column that stands for others may not add more to a receiver than this share of the "
-                       "greatest sum among the rows that its slice looks at. Keeps specks away; 0: no bound, "
-                       "unbiased."},
-                      &S::most_shown, 0, 1e9)};
+      number_field<S>(
+          {"most-shown", "of the sum",
+           "A column that stands for others may not add more to a receiver than this share of the "
+           "greatest sum among the rows that its slice looks at. Keeps specks away, and takes light "
+           "from receivers that are much brighter than those; 0: no bound, unbiased."},
+          &S::most_shown, 0, 1e9)};
   return fields;
 }
 

@@ -7,7 +7,8 @@
 // at: fewer columns are zero on all of them. The paper draws who stands for a cluster by norms over all rows
 // that were read, and gives it the cluster's whole norm there. Here the norms are those over the slice's own
 // few rows, with a share for the others (global-share), so that a column which is bright elsewhere does not
-// stand for one that is bright here. What one column adds is bounded where it stands for others (most-shown).
+// stand for one that is bright here. What one column adds can be
+// bounded where it stands for others (most-shown).
 // Cuts are the best of 31 along the line between the two members that differ most; the paper's is the middle.
 #pragma once
 
@@ -35,7 +36,7 @@ struct SliceLightSettings {
   ZeroColumns zero_columns = ZeroColumns::sample;
   double zero_share = 0.02;
   double global_share = 0.1;
-  double most_shown = 0.5;
+  double most_shown = 0;
 };
 
 const Fields<SliceLightSettings>& slice_light_fields();
