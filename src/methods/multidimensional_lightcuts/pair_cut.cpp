@@ -9,6 +9,9 @@ using matrix::Index;
 namespace {
 // Where nothing is known (infinite bounds), more power goes first; far above any finite bound of use.
 constexpr float kUnknown = 1e30f;
+// Extents are squares: a pixel's receivers count as if they lay twice as far apart. Its representative's
+// shadows are those of the whole pixel, and no bound knows of shadows.
+constexpr float kPixelsFirst = 4;
 }  // namespace
 
 void PairCut::begin(std::span<const Index> rows) {
@@ -22,7 +25,8 @@ float PairCut::threshold() const { return static_cast<float>(limits_.error_bound
 
 bool PairCut::split_gather(const Pair& p) const {
   if (gather_.is_leaf(p.gather)) return false;
-  return lights_.is_leaf(p.light) || gather_.extent(p.gather) > gather_.extent(lights_.set(p.light));
+  return lights_.is_leaf(p.light) ||
+         kPixelsFirst * gather_.extent(p.gather) > gather_.extent(lights_.set(p.light));
 }
 
 bool PairCut::ask(std::uint32_t first_place, std::vector<std::uint32_t>& places,

@@ -58,7 +58,7 @@ class PairCut {
   }
   float threshold() const;
   bool exact(const Pair& p) const { return gather_.is_leaf(p.gather) && lights_.is_leaf(p.light); }
-  // The side with the greater extent is refined.
+  // The side with the greater extent is refined, in doubt the pixel's.
   bool split_gather(const Pair& p) const;
   void add(Pair& p);
   void wait(std::uint32_t place);
