@@ -28,7 +28,7 @@ constexpr std::array kAlpha{0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005};
 constexpr std::array kWrong{0.2, 0.1, 0.05, 0.025, 0.0125};
 
 struct Level {
-  std::size_t alpha = 1, wrong = 1;
+  std::size_t alpha = 3, wrong = 1;
   auto operator<=>(const Level&) const = default;
 };
 struct Trial {
@@ -39,7 +39,7 @@ struct Trial {
 RecoverySettings at_level(const RecoverySettings& given, Level level) {
   RecoverySettings s = given;
   s.alpha = kAlpha[level.alpha];
-  s.initial_columns = std::clamp(static_cast<std::size_t>(4 / s.alpha), std::size_t{50}, std::size_t{1000});
+  s.initial_columns = std::clamp(static_cast<std::size_t>(2.5 / s.alpha), std::size_t{50}, std::size_t{1000});
   s.most_columns = std::max(s.most_columns, 4 * s.initial_columns);
   s.prediction_error = kWrong[level.wrong];
   s.uncertain = 0.02 * s.prediction_error;
