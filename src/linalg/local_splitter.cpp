@@ -42,7 +42,7 @@ double cost_of(const double* sum, std::size_t n) {
 void LocalSplitter::clear(std::size_t dimension) {
   dimension_ = dimension;
   padded_ = (dimension + kLanes - 1) / kLanes * kLanes;
-  x_.clear(), norms_.clear(), ids_.clear(), nodes_.clear(), queue_.clear();
+  norms_.clear(), ids_.clear(), nodes_.clear(), queue_.clear();
   line_.assign(padded_, 0.0f);
   bins_.assign((kBins + 2) * (padded_ + 1), 0.0);
   open_ = 0;
@@ -53,39 +53,35 @@ void LocalSplitter::begin_cluster() { finish_cluster(); }
 void LocalSplitter::finish_cluster() {
   const auto end = static_cast<std::uint32_t>(ids_.size());
   if (end == open_) return;
-  nodes_.push_back({open_, end, 0});
-  measure(nodes_.back());
+  double* sum = bins_.data();
+  std::fill(sum, sum + padded_ + 1, 0.0);
+  for (std::size_t k = open_; k < end; ++k) add_to<kLanes>(sum, point(k), norms_[k], padded_);
+  nodes_.push_back(node_of(open_, end, sum));
   enqueue(static_cast<std::uint32_t>(nodes_.size() - 1));
   open_ = end;
 }
 
 void LocalSplitter::add(std::uint32_t id, const float* x) {
-  const std::size_t at = x_.size();
-  x_.resize(at + padded_, 0.0f);
-  std::copy(x, x + dimension_, x_.begin() + static_cast<std::ptrdiff_t>(at));
+  const std::size_t at = ids_.size() * padded_;
+  if (x_.size() < at + padded_) x_.resize(std::max(2 * x_.size(), at + padded_));
+  float* to = x_.data() + at;
+  std::copy(x, x + dimension_, to);
+  std::fill(to + dimension_, to + padded_, 0.0f);
   ids_.push_back(id);
-  norms_.push_back(std::sqrt(dot<kLanes>(&x_[at], &x_[at], padded_)));
+  norms_.push_back(std::sqrt(dot<kLanes>(to, to, padded_)));
 }
 
-void LocalSplitter::measure(Node& node) {
-  double* sum = bins_.data();
-  std::fill(sum, sum + padded_ + 1, 0.0);
-  for (std::size_t k = node.begin; k < node.end; ++k) add_to<kLanes>(sum, point(k), norms_[k], padded_);
-  node.cost = node.end - node.begin > 1 ? cost_of(sum, padded_) : 0;
-  const double whole = sum[padded_] * sum[padded_];
-  if (node.cost <= kZeroCost * whole) node.cost = 0;
+LocalSplitter::Node LocalSplitter::node_of(std::uint32_t begin, std::uint32_t end, const double* sum) const {
+  Node node{begin, end, 0, sum[padded_]};
+  if (end - begin > 1) node.cost = cost_of(sum, padded_);
+  if (node.cost <= kZeroCost * node.weight * node.weight) node.cost = 0;
+  return node;
 }
 
 void LocalSplitter::enqueue(std::uint32_t n) {
   const Node& node = nodes_[n];
   if (node.end - node.begin < 2) return;
-  double priority = node.cost;
-  if (priority == 0) {
-    double weight = 0;
-    for (std::size_t k = node.begin; k < node.end; ++k) weight += static_cast<double>(norms_[k]);
-    priority = kParallel * weight * weight;
-  }
-  queue_.push_back({priority, n});
+  queue_.push_back({node.cost > 0 ? node.cost : kParallel * node.weight * node.weight, n});
   std::push_heap(queue_.begin(), queue_.end());
 }
 
@@ -122,28 +118,40 @@ std::uint32_t LocalSplitter::cut(const Node& node) {
     keys_[k] = dot<kLanes>(line_.data(), point(k), padded_) / norms_[k];
     low = std::min(low, keys_[k]), high = std::max(high, keys_[k]);
   }
-  const std::uint32_t middle = node.begin + (node.end - node.begin) / 2;
-  if (!(high > low)) return middle;
-
   const std::size_t stride = padded_ + 1;
   std::fill(bins_.begin(), bins_.end(), 0.0);
+  double *left = bins_.data() + kBins * stride, *right = left + stride;
+  if (!(high > low)) {  // no line tells them apart: half of them each
+    const std::uint32_t middle = node.begin + (node.end - node.begin) / 2;
+    for (std::size_t k = node.begin; k < node.end; ++k)
+      add_to<kLanes>(k < middle ? left : right, point(k), norms_[k], padded_);
+    return middle;
+  }
+
   const float scale = static_cast<float>(kBins) / (high - low) * 0.99999f;
   const auto bin_of = [&](float key) {
     return std::min(static_cast<std::size_t>((key - low) * scale), kBins - 1);
   };
-  double *left = bins_.data() + kBins * stride, *right = left + stride;
+  const auto add_bins = [&](std::size_t begin, std::size_t end, double* sum) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::size_t d = 0; d < stride; ++d) sum[d] += bins_[b * stride + d];
+  };
   for (std::size_t k = node.begin; k < node.end; ++k)
     add_to<kLanes>(bins_.data() + bin_of(keys_[k]) * stride, point(k), norms_[k], padded_);
-  for (std::size_t b = 0; b < kBins; ++b)
-    for (std::size_t d = 0; d < stride; ++d) right[d] += bins_[b * stride + d];
+  add_bins(0, kBins, right);
   double least = std::numeric_limits<double>::infinity();
   std::size_t bins_left = 1;
   for (std::size_t b = 0; b + 1 < kBins; ++b) {
-    for (std::size_t d = 0; d < stride; ++d)
-      left[d] += bins_[b * stride + d], right[d] -= bins_[b * stride + d];
+    add_bins(b, b + 1, left);
+    for (std::size_t d = 0; d < stride; ++d) right[d] -= bins_[b * stride + d];
     const double cost = cost_of(left, padded_) + cost_of(right, padded_);
     if (cost < least) least = cost, bins_left = b + 1;
   }
+  // Afresh, so that no difference of large numbers is carried on.
+  std::fill(left, right + stride, 0.0);
+  add_bins(0, bins_left, left);
+  add_bins(bins_left, kBins, right);
+  // The ends of the range lie in the first and the last bin, so neither side is empty.
   std::size_t a = node.begin, z = node.end;
   while (a < z) {
     if (bin_of(keys_[a]) < bins_left)
@@ -151,8 +159,7 @@ std::uint32_t LocalSplitter::cut(const Node& node) {
     else
       swap_points(a, --z);
   }
-  // The ends of the range lie in the first and the last bin.
-  return a > node.begin && a < node.end ? static_cast<std::uint32_t>(a) : middle;
+  return static_cast<std::uint32_t>(a);
 }
 
 void LocalSplitter::split_to(std::size_t clusters) {
@@ -163,12 +170,11 @@ void LocalSplitter::split_to(std::size_t clusters) {
     queue_.pop_back();
     const Node whole = nodes_[n];
     const std::uint32_t at = cut(whole);
-    nodes_[n] = {whole.begin, at, 0};
-    nodes_.push_back({at, whole.end, 0});
-    for (const std::uint32_t m : {n, static_cast<std::uint32_t>(nodes_.size() - 1)}) {
-      measure(nodes_[m]);
-      enqueue(m);
-    }
+    const double* left = bins_.data() + kBins * (padded_ + 1);
+    nodes_[n] = node_of(whole.begin, at, left);
+    nodes_.push_back(node_of(at, whole.end, left + padded_ + 1));
+    enqueue(n);
+    enqueue(static_cast<std::uint32_t>(nodes_.size() - 1));
   }
 }
 

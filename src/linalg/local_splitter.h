@@ -44,7 +44,7 @@ class LocalSplitter {
 
   struct Node {
     std::uint32_t begin, end;
-    double cost;
+    double cost, weight;
   };
   struct Queued {
     double priority;
@@ -57,19 +57,21 @@ class LocalSplitter {
 
   const float* point(std::size_t k) const { return x_.data() + k * padded_; }
   void finish_cluster();
-  void measure(Node& node);
+  // sum: of the coordinates and of the norms of its members.
+  Node node_of(std::uint32_t begin, std::uint32_t end, const double* sum) const;
   void enqueue(std::uint32_t node);
-  // Where to cut, after the members were brought in order about it.
+  // Where it is cut, after the members were brought in order about it; the sums of both sides are in bins_.
   std::uint32_t cut(const Node& node);
   void choose_line(const Node& node);
   void swap_points(std::size_t a, std::size_t b);
 
   std::size_t dimension_ = 0, padded_ = 0;
-  std::vector<float> x_, norms_, keys_, line_;
+  std::vector<float> x_;  // may be longer than its points
+  std::vector<float> norms_, keys_, line_;
   std::vector<std::uint32_t> ids_;
   std::vector<Node> nodes_;
   std::vector<Queued> queue_;
-  std::vector<double> bins_;  // kBins + 2 sums: coordinates and a weight
+  std::vector<double> bins_;  // kBins sums of coordinates and weight, and those of both sides
   std::uint32_t open_ = 0;    // first point of the cluster that is being added
 };
 

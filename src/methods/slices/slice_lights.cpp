@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kLeastRows = 128, kMostRows = 4096;  // of a slice, where their number is found
 constexpr std::size_t kStretch = 4096;                     // columns decoded at a time
+constexpr float kLeastEntry = 1e-17f;                      // its square is a number still
 constexpr float kNoColour = 1e-3f;                         // of the scalar norm: no colour to scale
 constexpr float kLargestGain = 4;                          // of a channel over the scalar factor
 
@@ -197,7 +198,7 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
         w.point[r] = w.entries[r * kStretch + k] / static_cast<float>(r + 1);
         most = std::max(most, w.point[r]);
       }
-      if (most > 0)
+      if (most > kLeastEntry)
         w.splitter.add(initial_.order[begin + k], w.point.data());
       else
         w.zero.push_back(initial_.order[begin + k]);

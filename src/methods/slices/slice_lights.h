@@ -40,12 +40,13 @@ struct SliceLightSettings {
 };
 
 const Fields<SliceLightSettings>& slice_light_fields();
-// The same for a method whose settings S are these and more.
+// The same for a method whose settings S are these and more, with another default of `columns`.
 template <typename S>
 Fields<S> with_slice_light_fields(Fields<S> others) {
   Fields<S> all;
   for (const auto& field : slice_light_fields())
     all.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
+  all.front().info.default_text = std::to_string(S{}.columns);
   all.insert(all.end(), others.begin(), others.end());
   return all;
 }
