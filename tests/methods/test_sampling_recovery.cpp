@@ -7,6 +7,7 @@
 #include "matrix/synthetic.h"
 #include "methods/column_pass.h"
 #include "methods/sampling_recovery/slice_recovery.h"
+#include "methods/statistics.h"
 
 namespace lumirank::methods {
 namespace {
@@ -80,6 +81,24 @@ TEST(SamplingRecovery, RecoversFromFewSamples) {
   EXPECT_LT(relative_l1_difference(corrected.sums, exact()), recovered);
 }
 
+// With all visibilities known, what is left is the choice of columns. 11 two-sided t-tests with 149 degrees
+// of freedom at a joint confidence of 99.9 %: 4.0, as in test_unbiased.cpp. Representatives by which clusters
+// were split or not are darker than their clusters, and the same test sees it.
+TEST(SamplingRecovery, RedrawnRepresentativesAreUnbiased) {
+  auto m = matrix::occluded_matrix({150, 400, 5}, 8);
+  m.pixel.clear();
+  const auto largest_t = [&](const std::string& redraw) {
+    test::UnbiasednessTest t(m.exact_sums(), 10);
+    for (std::uint64_t seed = 1; seed <= 400; ++seed)
+      t.add(
+          estimate(m, {{"redraw", redraw}, {"initial-columns", "15"}, {"alpha", "0.03"}, {"rho", "1"}}, seed)
+              .sums);
+    return t.largest_t();
+  };
+  EXPECT_LT(largest_t("on"), 4.0);
+  EXPECT_GT(largest_t("off"), 4.0);
+}
+
 TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
   const Estimate all = estimate(room(), {{"initial-columns", "200"}});
   EXPECT_GT(all.trace.numbers.at("rank"), 0);
@@ -87,6 +106,7 @@ TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
   for (const auto& [key, value] :
        std::vector<std::pair<std::string, std::string>>{{"splitting", "off"},
                                                         {"sparse-visibility", "off"},
+                                                        {"redraw", "off"},
                                                         {"prediction", "off"},
                                                         {"separation", "off"},
                                                         {"constraint", "off"},

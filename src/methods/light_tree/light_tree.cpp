@@ -42,8 +42,21 @@ Index LightTree::representative(Node node) const {
   return is_leaf(node) ? order_[node ^ kLeaf] : nodes_[node].representative;
 }
 
-matrix::ScaledColumn LightTree::scaled(Node node) const {
-  const Index j = representative(node);
+matrix::ScaledColumn LightTree::scaled(Node node) const { return scaled_to(node, representative(node)); }
+
+matrix::ScaledColumn LightTree::drawn(Node node, double u) const {
+  Node at = node;
+  while (!is_leaf(at)) {
+    const auto l = static_cast<double>(power(left(at))), r = static_cast<double>(power(right(at)));
+    const double p = l + r > 0 ? l / (l + r) : 0.5;
+    const bool to_left = u < p;
+    u = to_left ? u / p : (u - p) / (1 - p);
+    at = to_left ? left(at) : right(at);
+  }
+  return scaled_to(node, representative(at));
+}
+
+matrix::ScaledColumn LightTree::scaled_to(Node node, Index j) const {
   if (is_leaf(node)) return {j, Rgb(1)};
   const Rgb whole = nodes_[node].emitted, own = emitted_of(j);
   const float scalar = power_of(whole) / std::max(power_of(j), 1e-30f);

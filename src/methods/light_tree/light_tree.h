@@ -56,10 +56,15 @@ class LightTree {
   // The representative scaled per channel to the emission of the whole node; where one of its channels is
   // (nearly) black, by the scalar.
   matrix::ScaledColumn scaled(Node node) const;
+  // The same for another of its columns, drawn in proportion to power by `u`, uniform in [0, 1): one that no
+  // decision about the cut has looked at.
+  matrix::ScaledColumn drawn(Node node, double u) const;
 
   std::size_t memory_bytes() const;
 
  private:
+  matrix::ScaledColumn scaled_to(Node node, matrix::Index j) const;
+
   static constexpr Node kLeaf = 0x80000000u;  // kLeaf | place in order_
   // Inner nodes stand in the order of a walk that visits a node, its left side, its right side; so a subtree
   // of k leaves is k - 1 nodes in a row, and children need no numbers. 96 bytes.

@@ -29,6 +29,11 @@ const Fields<RecoverySettings>& recovery_fields() {
       choice_field<S>(
           {"sparse-visibility", "", "Whether clusters that a few shadow rays do not see are left unsplit."},
           &S::sparse_visibility, off_on),
+      choice_field<S>(
+          {"redraw", "",
+           "Whether clusters, once they are chosen, get other representatives than those by "
+           "which they were: those stayed unsplit for being dark. Unbiased, and a little noisier."},
+          &S::redraw, off_on),
       number_field<S>({"rho", "of a column's entries",
                        "How many visibilities are sampled at a time: for splitting, and in each round of "
                        "prediction; at least four. 1: all."},

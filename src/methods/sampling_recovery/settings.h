@@ -13,7 +13,7 @@ struct RecoverySettings {
   std::size_t slice_rows = 1024;
   // Columns of a slice.
   std::size_t initial_columns = 500, most_columns = 2000;
-  bool splitting = true, sparse_visibility = true;
+  bool splitting = true, sparse_visibility = true, redraw = true;
   double alpha = 0.003;
   // Visibility.
   double rho = 0.01;

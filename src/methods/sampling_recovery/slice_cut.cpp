@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.h"
 #include "base/timer.h"
 
 namespace lumirank::methods {
@@ -147,6 +148,17 @@ bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
   return true;
 }
 
+// A cluster stays whole because what was seen of its representative is dark, so that one is darker than the
+// cluster in the mean: the sums would be too small. Who is drawn after all decisions has no such bias.
+void SliceCut::redraw(SliceEntries& entries) {
+  for (Cluster& c : clusters_) {
+    if (tree_.is_leaf(c.node)) continue;
+    const std::uint64_t bits = hash_ids(entries.key(), Stage::representatives, c.node);
+    c.column = tree_.drawn(c.node, unit_double(bits));
+    c.slot = static_cast<std::uint32_t>(entries.add(c.column.column));
+  }
+}
+
 void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
   const Timer timer;
   initial_cut(std::min(settings.initial_columns, settings.most_columns), entries.rows().receivers());
@@ -158,6 +170,7 @@ void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
     add_slots(settings, entries);
     contributions(settings, entries);
   }
+  if (settings.redraw) redraw(entries);
 }
 
 }  // namespace lumirank::methods

@@ -37,6 +37,7 @@ class SliceCut {
  private:
   void initial_cut(std::size_t count, std::span<const matrix::Index> receivers);
   void add_slots(const RecoverySettings& settings, SliceEntries& entries);
+  void redraw(SliceEntries& entries);
   void contributions(const RecoverySettings& settings, SliceEntries& entries);
   bool split(const RecoverySettings& settings, SliceEntries& entries);
   std::uint32_t place(LightTree::Node node) const;

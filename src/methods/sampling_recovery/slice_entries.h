@@ -28,6 +28,7 @@ class SliceEntries {
 
   // Forgets all columns.
   void start(std::span<const matrix::Index> slice, std::uint64_t key);
+  std::uint64_t key() const { return key_; }
   const SliceRows& rows() const { return rows_; }
   SamplePatterns& patterns() { return patterns_; }
 
