@@ -152,11 +152,11 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     Differences d = differences(box_, set.box);
     const Vec3f farthest{std::abs(d.center.x) + d.half.x, std::abs(d.center.y) + d.half.y,
                          std::abs(d.center.z) + d.half.z};
-    parts.far = 1 / std::max(length_squared(farthest), 1e-30f);
+    parts.far = 1 / std::max({length_squared(farthest), d.distance2, 1e-30f});
     // A sphere sends light from all of its box.
     if (set.spherical) d.half += Vec3f{set.radius, set.radius, set.radius};
     cosine = towards(greatest_cosine(normals_.axis, d, normals_.cosine >= 1), normals_.cosine, normals_sine_);
-    if (cosine <= 0 && closures_.empty() && !behind_) return parts;
+    if (cosine <= 0 && closures_.empty() && !behind_) return {Rgb(0)};
     if (!closures_.empty()) {
       const float radius = length(d.half), far = length(d.center);
       if (far > 0) cone.axis = d.center / far;
@@ -178,7 +178,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
       d.center = -d.center;
       const float cos_y = towards(greatest_cosine(set.cone.axis, d, set.cone.cosine >= 1), set.cone.cosine,
                                   sine_of(set.cone.cosine));
-      if (cos_y <= 0) return parts;
+      if (cos_y <= 0) return {Rgb(0)};
       factor *= cos_y;
     }
   }

@@ -116,6 +116,10 @@ TEST_P(RowBoundsOfScenes, AreAboveAllSums) {
         for (std::size_t k = 1; k < some.size(); ++k) set = join(set, matrix_->column_set(some[k]));
         const Rgb bound = bounds->bound(set);
         ++(std::isfinite(max_component(bound)) ? finite : infinite);
+        const matrix::BoundParts parts = bounds->parts(set);
+        ASSERT_LE(parts.far, parts.near);
+        for (int c = 0; c < 3; ++c)
+          ASSERT_EQ(bound[c] > 0, parts.reflected[c] > 0 && set.ceiling[c] > 0) << bound[c];
         for (const Index i : some_rows) {
           double sum[3] = {0, 0, 0};
           for (const Index j : some)
