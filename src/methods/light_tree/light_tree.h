@@ -61,6 +61,8 @@ class LightTree {
   matrix::ScaledColumn drawn(Node node, double u) const;
 
   std::size_t memory_bytes() const;
+  // Of one column.
+  Rgb emitted_of(matrix::Index j) const;
 
  private:
   matrix::ScaledColumn scaled_to(Node node, matrix::Index j) const;
@@ -82,7 +84,6 @@ class LightTree {
   };
   struct Builder;
 
-  Rgb emitted_of(matrix::Index j) const;
   float power_of(matrix::Index j) const;
   // Of an inner node: the luminance of `emitted`, which where emissions are unknown is the power in all
   // channels.

@@ -43,13 +43,13 @@ void SliceCut::initial_cut(std::size_t count, std::span<const Index> receivers) 
     const Bounded top = heap_.back();
     heap_.pop_back();
     if (tree_.is_leaf(top.node) || top.bound <= 0) {
-      clusters_.push_back({top.node, kNoSlot, {}});
+      clusters_.push_back({top.node, kNoSlot, {}, -1});
       continue;
     }
     push(tree_.left(top.node));
     push(tree_.right(top.node));
   }
-  for (const Bounded& b : heap_) clusters_.push_back({b.node, kNoSlot, {}});
+  for (const Bounded& b : heap_) clusters_.push_back({b.node, kNoSlot, {}, -1});
   std::sort(clusters_.begin(), clusters_.end(),
             [&](const Cluster& a, const Cluster& b) { return place(a.node) < place(b.node); });
 }
@@ -64,7 +64,39 @@ void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries
     c.slot = static_cast<std::uint32_t>(entries.add(c.column.column));
     if (look) entries.ask_next(c.slot, samples);
   }
-  if (look) entries.look();
+  if (look) {
+    entries.look();
+    look_at_members(settings, entries);
+  }
+}
+
+// A representative tells of one light; whether the others are hidden as well is asked of some of them, at
+// rows spread over the slice.
+void SliceCut::look_at_members(const RecoverySettings& settings, SliceEntries& entries) {
+  const std::size_t rows = entries.rows().size();
+  // Two fifths of the representative's own samples.
+  const auto samples = static_cast<std::size_t>(
+      std::clamp(std::ceil(0.4 * settings.rho * static_cast<double>(rows)), 4.0, 32.0));
+  member_rows_.clear(), member_cluster_.clear(), members_.clear();
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    Cluster& cluster = clusters_[c];
+    if (cluster.lit >= 0 || tree_.is_leaf(cluster.node)) continue;
+    cluster.lit = 0;
+    const auto columns = tree_.columns(cluster.node);
+    Rng rng(entries.key(), Stage::method, cluster.node);
+    const auto order = entries.patterns().order(rng.next_below(SamplePatterns::kPatterns));
+    for (std::size_t k = 0; k < std::min({samples, columns.size(), rows}); ++k) {
+      member_rows_.push_back(order[k]);
+      members_.push_back(columns[rng.next_below(columns.size())]);
+      member_cluster_.push_back(static_cast<std::uint32_t>(c));
+    }
+  }
+  entries.look_at(member_rows_, members_, member_light_);
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const float power = mean(tree_.emitted_of(members_[k]));
+    float& lit = clusters_[member_cluster_[k]].lit;
+    if (power > 0) lit = std::max(lit, member_light_[k] / power);
+  }
 }
 
 // Equation 7: Γ = (greatest M·G among the neighbours) · (whether any sample of theirs is visible) · power.
@@ -77,7 +109,7 @@ void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& ent
   for (std::size_t c = 0; c < n; ++c) {
     const float power = mean(tree_.emitted(clusters_[c].node));
     const float scaled = mean(clusters_[c].column.scale) * entries.slot(clusters_[c].slot).most;
-    most_[c] = power > 0 ? scaled / power : 0;
+    most_[c] = std::max(power > 0 ? scaled / power : 0, clusters_[c].lit);
   }
   for (std::size_t c = 0; c < n; ++c) {
     const Node node = clusters_[c].node;
@@ -95,7 +127,7 @@ void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& ent
       const std::uint32_t at = place(clusters_[k].node);
       if (at < begin || at >= end) return false;
       most = std::max(most, most_[k]);
-      visible |= entries.slot(clusters_[k].slot).any_visible;
+      visible |= entries.slot(clusters_[k].slot).any_visible || clusters_[k].lit > 0;
       ++looked_at;
       return true;
     };
@@ -137,7 +169,7 @@ bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
     }
     ++candidate;
     for (const Node child : {tree_.left(whole.node), tree_.right(whole.node)}) {
-      Cluster part{child, kNoSlot, tree_.scaled(child)};
+      Cluster part{child, kNoSlot, tree_.scaled(child), -1};
       if (part.column.column == entries.slot(whole.slot).column) part.slot = whole.slot;
       next_.push_back(part);
     }

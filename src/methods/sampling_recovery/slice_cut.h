@@ -22,6 +22,8 @@ class SliceCut {
     LightTree::Node node;
     std::uint32_t slot;  // of its representative
     matrix::ScaledColumn column;
+    // Of its members at some rows, with visibility: greatest entry over power. < 0: not looked at yet.
+    float lit = -1;
   };
 
   SliceCut(const LightTree& tree, const matrix::LightingMatrix& matrix)
@@ -38,6 +40,7 @@ class SliceCut {
   void initial_cut(std::size_t count, std::span<const matrix::Index> receivers);
   void add_slots(const RecoverySettings& settings, SliceEntries& entries);
   void redraw(SliceEntries& entries);
+  void look_at_members(const RecoverySettings& settings, SliceEntries& entries);
   void contributions(const RecoverySettings& settings, SliceEntries& entries);
   bool split(const RecoverySettings& settings, SliceEntries& entries);
   std::uint32_t place(LightTree::Node node) const;
@@ -53,8 +56,11 @@ class SliceCut {
   std::vector<Bounded> heap_;
   std::vector<Cluster> clusters_, next_;
   double seconds_of_bounds_ = 0;
-  std::vector<float> most_;                // M·G: greatest entry over power, by cluster
-  std::vector<float> contribution_;        // Γ, by cluster
+  std::vector<float> most_;          // M·G: greatest entry over power, by cluster
+  std::vector<float> contribution_;  // Γ, by cluster
+  std::vector<std::uint32_t> member_rows_, member_cluster_;
+  std::vector<matrix::Index> members_;
+  std::vector<float> member_light_;
   std::vector<std::uint32_t> candidates_;  // clusters above the threshold
 };
 

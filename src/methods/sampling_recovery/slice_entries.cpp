@@ -84,4 +84,21 @@ void SliceEntries::look() {
   asked_columns_.clear();
 }
 
+void SliceEntries::look_at(std::span<const std::uint32_t> rows, std::span<const Index> columns,
+                           std::vector<float>& out) {
+  asked_places_.clear();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::uint32_t begin = rows_.begin(rows[k]), count = rows_.end(rows[k]) - begin;
+    const auto draw =
+        static_cast<std::uint32_t>(mix64(key_ ^ mix64((std::uint64_t{columns[k]} << 32) | rows[k])) >> 32);
+    asked_places_.push_back(begin + draw % count);
+  }
+  answers_.resize(rows.size());
+  reader_->entries_at(asked_places_, columns, answers_, Part::value);
+  asked_places_.clear();
+  looked_ += rows.size();
+  out.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) out[k] = mean(answers_[k]);
+}
+
 }  // namespace lumirank::methods

@@ -51,6 +51,10 @@ class SliceEntries {
   // Asks for the next `count` rows of the slot's pattern.
   void ask_next(std::size_t s, std::size_t count);
   void look();
+  // Means of r, g, b of entries (row, column) with visibility, each from one of the row's receivers at
+  // random.
+  void look_at(std::span<const std::uint32_t> rows, std::span<const matrix::Index> columns,
+               std::vector<float>& out);
   std::size_t looked() const { return looked_; }  // entries, since start()
 
  private:
