@@ -18,91 +18,111 @@ constexpr float kLeastWeight = 0.01f;
 
 void BlockPainter::paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts,
                          matrix::EntryReader& reader, std::span<Rgb> sums) {
-  cut_corners(blocks, unit, cuts, reader);
+  choose_samples(blocks, unit, reader);
+  cut_samples(cuts, reader);
+  for (const Own& own : own_) sums[own.row] = samples_[own.sample].sum;
+  const Timer timer;
+  std::size_t begin = 0, end = 0;
+  for (const std::uint32_t block_end : block_end_)
+    for (; begin < block_end; begin = end) {
+      while (end < block_end && pending_[end].samples == pending_[begin].samples) ++end;
+      reconstruct(std::span(pending_).subspan(begin, end - begin), reader, sums);
+    }
+  seconds_ += timer.seconds();
+}
+
+void BlockPainter::choose_samples(const ImageBlocks& blocks, std::size_t unit, matrix::EntryReader& reader) {
   const auto unit_rows = blocks.units()[unit];
-  rows_.assign(unit_rows.begin(), unit_rows.end());
-  rows_.insert(rows_.end(), corner_rows_.begin(), corner_rows_.end());
+  std::vector<Index>& corners = rows_;
+  corners.clear();
+  for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
+    const ImageBlocks::Block block = blocks.block(unit, which);
+    corners.insert(corners.end(), block.corners.begin(), block.corners.begin() + block.corner_count);
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  corner_count_ = corners.size();
+  receivers_.clear();
+  for (std::size_t c = 0; c < corner_count_; ++c) receivers_.push_back({corners[c], unit_rows.size() + c});
+  corners.insert(corners.begin(), unit_rows.begin(), unit_rows.end());
   answers_.ask(rows_, reader);
+
+  pending_.clear(), own_.clear(), block_end_.clear();
   for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
     const ImageBlocks::Block block = blocks.block(unit, which);
     const auto first_place = static_cast<std::size_t>(block.rows.data() - unit_rows.data());
-    choose_samples(block, first_place, unit_rows.size());
-    const auto corners = static_cast<std::size_t>(block.corner_count);
-    extra_rows_.clear();
-    for (const Receiver& r : std::span(sample_rows_).subspan(corners)) extra_rows_.push_back(r.row);
-    if (extras_.size() < extra_rows_.size()) extras_.resize(extra_rows_.size());
-    cuts.cut(extra_rows_, reader, [&](std::size_t k, const Cut& cut) { extras_[k].set(cut, tree_); });
-    samples_.clear();
-    for (std::size_t s = 0; s < sample_rows_.size(); ++s)
-      samples_.push_back(s < corners ? &corners_[sample_rows_[s].place - unit_rows.size()]
-                                     : &extras_[s - corners]);
-    const Timer timer;
-    pending_.clear();
-    for (std::size_t k = 0; k < block.rows.size(); ++k) {
-      const Index i = block.rows[k];
-      const auto own = std::find_if(sample_rows_.begin(), sample_rows_.end(),
-                                    [&](const Receiver& r) { return r.row == i; });
+    find_candidates(block);
+    if (order_.size() != block.rows.size()) order_ = coarse_to_fine(block.rows.size());
+    for (const std::uint32_t k : order_) {
+      const Receiver receiver{block.rows[k], first_place + k};
       std::size_t count = 0;
-      if (own != sample_rows_.end())
-        sums[i] = samples_[static_cast<std::size_t>(own - sample_rows_.begin())]->sum;
-      else
-        pending_.push_back({samples_for({i, first_place + k}, count), i});
+      samples_for(receiver, count);
+      if (count >= kFewestSamples) continue;
+      const bool corner = std::any_of(candidates_.begin(), candidates_.end(),
+                                      [&](Number s) { return receivers_[s].row == receiver.row; });
+      if (corner) continue;
+      candidates_.push_back(static_cast<Number>(receivers_.size()));
+      receivers_.push_back(receiver);
     }
-    std::sort(pending_.begin(), pending_.end(), [](const Pending& a, const Pending& b) {
-      return a.samples != b.samples ? a.samples < b.samples : a.row < b.row;
-    });
-    for (std::size_t begin = 0, end = 0; begin < pending_.size(); begin = end) {
-      while (end < pending_.size() && pending_[end].samples == pending_[begin].samples) ++end;
-      reconstruct(std::span(pending_).subspan(begin, end - begin), reader, sums);
-    }
-    seconds_ += timer.seconds();
+    assign(block, first_place);
   }
 }
 
-void BlockPainter::cut_corners(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts,
-                               matrix::EntryReader& reader) {
-  corner_rows_.clear();
-  for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
-    const ImageBlocks::Block block = blocks.block(unit, which);
-    corner_rows_.insert(corner_rows_.end(), block.corners.begin(),
-                        block.corners.begin() + block.corner_count);
-  }
-  std::sort(corner_rows_.begin(), corner_rows_.end());
-  corner_rows_.erase(std::unique(corner_rows_.begin(), corner_rows_.end()), corner_rows_.end());
-  if (corners_.size() < corner_rows_.size()) corners_.resize(corner_rows_.size());
-  cuts.cut(corner_rows_, reader, [&](std::size_t k, const Cut& cut) { corners_[k].set(cut, tree_); });
-}
-
-// The block's corners, and as many of its receivers as it takes until each of the others has enough samples
-// that are like it.
-void BlockPainter::choose_samples(const ImageBlocks::Block& block, std::size_t first_place,
-                                  std::size_t corner_place) {
-  sample_rows_.clear();
-  for (const Index i : std::span(block.corners).first(static_cast<std::size_t>(block.corner_count))) {
-    const auto corner = std::lower_bound(corner_rows_.begin(), corner_rows_.end(), i);
-    sample_rows_.push_back({i, corner_place + static_cast<std::size_t>(corner - corner_rows_.begin())});
-  }
-  for (const std::uint32_t k : coarse_to_fine(block.rows.size())) {
-    const Receiver receiver{block.rows[k], first_place + k};
+void BlockPainter::assign(const ImageBlocks::Block& block, std::size_t first_place) {
+  const std::size_t begin = pending_.size();
+  for (std::size_t k = 0; k < block.rows.size(); ++k) {
+    const Index i = block.rows[k];
+    const auto own = std::find_if(candidates_.begin(), candidates_.end(),
+                                  [&](Number s) { return receivers_[s].row == i; });
     std::size_t count = 0;
-    samples_for(receiver, count);
-    if (count >= kFewestSamples) continue;
-    const bool corner = std::any_of(sample_rows_.begin(), sample_rows_.end(),
-                                    [&](const Receiver& r) { return r.row == receiver.row; });
-    if (!corner) sample_rows_.push_back(receiver);
+    if (own != candidates_.end())
+      own_.push_back({i, *own});
+    else
+      pending_.push_back({samples_for({i, first_place + k}, count), i});
   }
+  std::sort(pending_.begin() + static_cast<std::ptrdiff_t>(begin), pending_.end(),
+            [](const Pending& a, const Pending& b) {
+              return a.samples != b.samples ? a.samples < b.samples : a.row < b.row;
+            });
+  block_end_.push_back(static_cast<std::uint32_t>(pending_.size()));
 }
 
-bool BlockPainter::alike_in_all(const Receiver& a, const Receiver& b) const {
-  return alike(features_, a.row, b.row) && answers_.likeness(a.place, b.place) >= least_likeness_;
+void BlockPainter::cut_samples(ReceiverCuts& cuts, matrix::EntryReader& reader) {
+  used_.assign(receivers_.size(), false);
+  for (const Pending& p : pending_)
+    for (const Number s : p.samples)
+      if (s != kNoSample) used_[s] = true;
+  rows_.clear();
+  for (const Receiver& r : receivers_) rows_.push_back(r.row);
+  if (samples_.size() < rows_.size()) samples_.resize(rows_.size());
+  cuts.cut(rows_, reader, [&](std::size_t k, const Cut& cut) {
+    if (used_[k])
+      samples_[k].set(cut, tree_);
+    else
+      samples_[k].sum = cut.total();
+  });
+}
+
+void BlockPainter::find_candidates(const ImageBlocks::Block& block) {
+  candidates_.clear();
+  const auto corners = std::span<const Receiver>(receivers_).first(corner_count_);
+  for (const Index i : std::span(block.corners).first(static_cast<std::size_t>(block.corner_count))) {
+    const auto corner = std::lower_bound(corners.begin(), corners.end(), i,
+                                         [](const Receiver& r, Index row) { return r.row < row; });
+    candidates_.push_back(static_cast<Number>(corner - corners.begin()));
+  }
 }
 
 BlockPainter::SampleList BlockPainter::samples_for(const Receiver& receiver, std::size_t& count) const {
   SampleList list;
   list.fill(kNoSample);
   count = 0;
-  for (std::size_t s = 0; s < sample_rows_.size() && count < kMost; ++s)
-    if (alike_in_all(receiver, sample_rows_[s])) list[count++] = static_cast<std::uint16_t>(s);
+  for (std::size_t s = 0; s < candidates_.size() && count < kMost; ++s) {
+    const Receiver& sample = receivers_[candidates_[s]];
+    if (alike(features_, receiver.row, sample.row) &&
+        answers_.likeness(receiver.place, sample.place) >= least_likeness_)
+      list[count++] = candidates_[s];
+  }
   return list;
 }
 
@@ -126,8 +146,8 @@ void BlockPainter::reconstruct(std::span<const Pending> rows, matrix::EntryReade
                                std::span<Rgb> sums) {
   std::array<const CutSample*, kMost> list;
   std::size_t count = 0;
-  for (const std::uint16_t s : rows.front().samples)
-    if (s != kNoSample) list[count++] = samples_[s];
+  for (const Number s : rows.front().samples)
+    if (s != kNoSample) list[count++] = &samples_[s];
   const auto samples = std::span<const CutSample* const>(list).first(count);
   found_.find(samples);
   weigh(rows, samples);

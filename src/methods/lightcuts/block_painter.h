@@ -37,22 +37,28 @@ class BlockPainter {
   double seconds() const { return seconds_; }                   // of both and of finding them
 
  private:
-  using SampleList = std::array<std::uint16_t, ReconstructionCut::kMostSamples>;
-  static constexpr std::uint16_t kNoSample = 0xffff;
+  // Samples of the unit by number: its corners, then its extras.
+  using Number = std::uint32_t;
+  using SampleList = std::array<Number, ReconstructionCut::kMostSamples>;
+  static constexpr Number kNoSample = 0xffffffffu;
   // With its place among the unit's rows, which are followed by its corners.
   struct Receiver {
     matrix::Index row;
     std::size_t place;
   };
   struct Pending {
-    SampleList samples;  // by number within the block
+    SampleList samples;
     matrix::Index row;
   };
 
-  void cut_corners(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts,
-                   matrix::EntryReader& reader);
-  void choose_samples(const ImageBlocks::Block& block, std::size_t first_place, std::size_t corner_place);
-  bool alike_in_all(const Receiver& a, const Receiver& b) const;
+  // The corners of all blocks, and as many of their receivers as it takes until each of the others has enough
+  // samples that are like it.
+  void choose_samples(const ImageBlocks& blocks, std::size_t unit, matrix::EntryReader& reader);
+  void cut_samples(ReceiverCuts& cuts, matrix::EntryReader& reader);
+  // For each receiver of the block its samples, or its own number if it is one.
+  void assign(const ImageBlocks::Block& block, std::size_t first_place);
+  // Whom receivers of a block may learn from: its corners, for the time being.
+  void find_candidates(const ImageBlocks::Block& block);
   SampleList samples_for(const Receiver& receiver, std::size_t& count) const;
   void reconstruct(std::span<const Pending> rows, matrix::EntryReader& reader, std::span<Rgb> sums);
   void weigh(std::span<const Pending> rows, std::span<const CutSample* const> samples);
@@ -62,12 +68,20 @@ class BlockPainter {
   float least_likeness_;
   Answers answers_;
   ReconstructionCut found_;
-  std::vector<matrix::Index> corner_rows_;   // of the unit, ascending
-  std::vector<CutSample> corners_, extras_;  // extras: of the block; kept beyond it for their space
-  std::vector<Receiver> sample_rows_;        // of the block: its corners, then its extras
-  std::vector<const CutSample*> samples_;    // likewise
-  std::vector<Pending> pending_;
-  std::vector<matrix::Index> rows_, extra_rows_;
+  std::size_t corner_count_ = 0;
+  std::vector<Receiver> receivers_;       // of the samples
+  std::vector<CutSample> samples_;        // kept for their space: there may be more than receivers_
+  std::vector<bool> used_;                // samples from which others learn; of others only sums are kept
+  std::vector<std::uint32_t> block_end_;  // in pending_
+  std::vector<Number> candidates_;
+  std::vector<std::uint32_t> order_;  // in which a block's rows are looked at
+  std::vector<Pending> pending_;      // receivers that learn from samples, block by block
+  struct Own {
+    matrix::Index row;
+    Number sample;
+  };
+  std::vector<Own> own_;  // receivers that are samples
+  std::vector<matrix::Index> rows_;
   std::vector<float> weights_;  // kMostSamples for each row
   std::vector<Rgb> values_;
   std::uint64_t shaded_ = 0, interpolated_ = 0;

@@ -12,7 +12,7 @@ using matrix::Index;
 namespace {
 
 constexpr Index kNone = 0xffffffffu;
-constexpr int kSmallestUnit = 16, kLargestUnit = 64;  // pixels
+constexpr int kSmallestUnit = 16, kLargestUnit = 32;  // pixels
 constexpr int kEnoughUnits = 256;
 constexpr float kCosine30 = 0.8660254f;
 constexpr float kSine30 = 0.5f;
