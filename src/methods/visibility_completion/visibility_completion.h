@@ -5,6 +5,9 @@
 // Slices and their columns are LightSlice's (slices/slice_lights.h); the paper cuts light trees instead. The
 // paper's completion is `completion = boolean`. Ours, `refined` and the default, uses that visibility changes
 // along lines: completion.h.
+//
+// Only visibility is completed, so what shadow rays lose in thin glass on their way is not: such light counts
+// whole. lightslice with the same settings has it exactly.
 #pragma once
 
 #include "methods/method.h"
