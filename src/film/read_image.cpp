@@ -6,6 +6,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <mutex>
 #include <sstream>
 
 #include "base/error.h"
@@ -84,7 +86,7 @@ class Reader {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
     if (memory) wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
-    const auto input = OIIO::ImageInput::open(memory ? opened_as : filename_, &wishes);
+    const auto input = open(memory ? opened_as : filename_, wishes);
     if (!input) fail(OIIO::geterror());
     input->threads(1);
     const OIIO::ImageSpec spec = input->spec();
@@ -115,6 +117,14 @@ class Reader {
   }
 
  private:
+  // One at a time: while it opens a file OpenImageIO (2.4.7) decodes its ICC profile by way of a table that
+  // several threads corrupt.
+  static std::unique_ptr<OIIO::ImageInput> open(const std::string& name, const OIIO::ImageSpec& wishes) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    return OIIO::ImageInput::open(name, &wishes);
+  }
+
   [[noreturn]] void fail(const std::string& why) const {
     throw InputError(SourceLocation{filename_, 0},
                      "cannot read the image: " + (why.empty() ? "it is damaged" : why));
