@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +86,24 @@ S read_settings(const std::string& method, const Fields<S>& fields, const Settin
     if (!found->set(s, value)) throw_wrong_value(method, found->info, value);
   }
   return s;
+}
+
+struct MethodText {
+  std::string name, summary;
+  std::string paper = "";
+};
+
+// The entry of a method M whose constructor takes its settings S, and which uses all generated lights.
+template <typename M, typename S>
+MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
+  return {text.name,
+          text.summary,
+          text.paper,
+          parameters_of(fields),
+          [name = text.name, fields](const SettingsMap& settings) -> std::unique_ptr<Method> {
+            return std::make_unique<M>(read_settings(name, fields, settings));
+          },
+          [](const SettingsMap&) -> std::size_t { return 0; }};
 }
 
 // Every parameter of the method with the value that a run with these settings uses: what a report records.

@@ -148,16 +148,11 @@ class Lightcuts final : public Method {
 }  // namespace
 
 MethodInfo lightcuts_info() {
-  const std::string name = "lightcuts";
-  return {name,
-          "For each receiver a cut through a tree of lights, refined by error bounds.",
-          "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
-          "illumination, SIGGRAPH 2005",
-          parameters_of(kFields),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<Lightcuts>(read_settings(name, kFields, settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<Lightcuts>(
+      {"lightcuts", "For each receiver a cut through a tree of lights, refined by error bounds.",
+       "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
+       "illumination, SIGGRAPH 2005"},
+      kFields);
 }
 
 }  // namespace lumirank::methods

@@ -42,15 +42,10 @@ class LightSlice final : public Method {
 }  // namespace
 
 MethodInfo lightslice_info() {
-  const std::string name = "lightslice";
-  return {name,
-          "Clusters columns for every slice of receivers on their own.",
-          "Ou, Pellacini 2011, LightSlice: matrix slice sampling for the many-lights problem",
-          parameters_of(slice_light_fields()),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<LightSlice>(read_settings(name, slice_light_fields(), settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<LightSlice>(
+      {"lightslice", "Clusters columns for every slice of receivers on their own.",
+       "Ou, Pellacini 2011, LightSlice: matrix slice sampling for the many-lights problem"},
+      slice_light_fields());
 }
 
 }  // namespace lumirank::methods

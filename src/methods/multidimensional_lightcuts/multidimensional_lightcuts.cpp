@@ -185,15 +185,11 @@ class MultidimensionalLightcuts final : public Method {
 }  // namespace
 
 MethodInfo multidimensional_lightcuts_info() {
-  const std::string name = "multidimensional-lightcuts";
-  return {name,
-          "For each pixel a cut through pairs of its receivers and a tree of lights.",
-          "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
-          parameters_of(kFields),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<MultidimensionalLightcuts>(read_settings(name, kFields, settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<MultidimensionalLightcuts>(
+      {"multidimensional-lightcuts",
+       "For each pixel a cut through pairs of its receivers and a tree of lights.",
+       "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006"},
+      kFields);
 }
 
 }  // namespace lumirank::methods

@@ -137,15 +137,8 @@ class PowerSampling final : public Method {
 }  // namespace
 
 MethodInfo power_sampling_info() {
-  const std::string name = "power-sampling";
-  return {name,
-          "Draws columns in proportion to their lights' power.",
-          "",
-          parameters_of(kFields),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<PowerSampling>(read_settings(name, kFields, settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<PowerSampling>({"power-sampling", "Draws columns in proportion to their lights' power."},
+                                    kFields);
 }
 
 }  // namespace lumirank::methods

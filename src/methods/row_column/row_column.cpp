@@ -31,15 +31,11 @@ class RowColumnSampling final : public Method {
 }  // namespace
 
 MethodInfo row_column_info() {
-  const std::string name = "row-column-sampling";
-  return {name,
-          "Reads a few rows, clusters the columns by them, and renders one representative of each cluster.",
-          "Hašan, Pellacini, Bala 2007, Matrix row-column sampling for the many-light problem",
-          parameters_of(row_column_fields()),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<RowColumnSampling>(read_settings(name, row_column_fields(), settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<RowColumnSampling>(
+      {"row-column-sampling",
+       "Reads a few rows, clusters the columns by them, and renders one representative of each cluster.",
+       "Hašan, Pellacini, Bala 2007, Matrix row-column sampling for the many-light problem"},
+      row_column_fields());
 }
 
 }  // namespace lumirank::methods

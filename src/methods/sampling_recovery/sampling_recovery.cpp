@@ -120,15 +120,10 @@ class SamplingRecovery final : public Method {
 }  // namespace
 
 MethodInfo sampling_recovery_info() {
-  const std::string name = "sampling-recovery";
-  return {name,
-          "Samples few visibilities of every slice of receivers and recovers the others.",
-          "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering",
-          parameters_of(recovery_fields()),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<SamplingRecovery>(read_settings(name, recovery_fields(), settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<SamplingRecovery>(
+      {"sampling-recovery", "Samples few visibilities of every slice of receivers and recovers the others.",
+       "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering"},
+      recovery_fields());
 }
 
 }  // namespace lumirank::methods

@@ -172,16 +172,12 @@ class StochasticLightcuts final : public Method {
 }  // namespace
 
 MethodInfo stochastic_lightcuts_info() {
-  const std::string name = "stochastic-lightcuts";
-  return {name,
-          "For each receiver a cut through a tree of lights, and a light drawn from each of its nodes.",
-          "Yuksel: Stochastic Lightcuts, HPG 2019; Stochastic Lightcuts for Sampling Many Lights, IEEE TVCG "
-          "2020",
-          parameters_of(kFields),
-          [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            return std::make_unique<StochasticLightcuts>(read_settings(name, kFields, settings));
-          },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<StochasticLightcuts>(
+      {"stochastic-lightcuts",
+       "For each receiver a cut through a tree of lights, and a light drawn from each of its nodes.",
+       "Yuksel: Stochastic Lightcuts, HPG 2019; Stochastic Lightcuts for Sampling Many Lights, IEEE TVCG "
+       "2020"},
+      kFields);
 }
 
 }  // namespace lumirank::methods

@@ -146,17 +146,11 @@ class VisibilityCompletion final : public Method {
 }  // namespace
 
 MethodInfo visibility_completion_info() {
-  const std::string name = "visibility-completion";
-  return {
-      name,
-      "Columns of slices as in lightslice, with few of their shadow rays.",
-      "Wang, Holzschuch 2020, Adaptive matrix completion for fast visibility computations with many lights "
-      "rendering",
-      parameters_of(fields()),
-      [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-        return std::make_unique<VisibilityCompletion>(read_settings(name, fields(), settings));
-      },
-      [](const SettingsMap&) -> std::size_t { return 0; }};
+  return method_info<VisibilityCompletion>(
+      {"visibility-completion", "Columns of slices as in lightslice, with few of their shadow rays.",
+       "Wang, Holzschuch 2020, Adaptive matrix completion for fast visibility computations with many lights "
+       "rendering"},
+      fields());
 }
 
 }  // namespace lumirank::methods
