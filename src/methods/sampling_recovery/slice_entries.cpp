@@ -46,20 +46,25 @@ void SliceEntries::scalars(std::size_t s, Rgb scale, std::span<float> out) const
   }
 }
 
-bool SliceEntries::ask(std::size_t s, std::size_t row) {
+std::uint32_t SliceEntries::place(std::size_t s, std::size_t row) const {
   const auto e = shades(s);
   const std::uint32_t begin = rows_.begin(row), count = rows_.end(row) - begin;
   const auto draw =
       static_cast<std::uint32_t>(mix64(key_ ^ mix64((std::uint64_t{slots_[s].column} << 32) | row)) >> 32);
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t receiver = begin + (draw + k) % count;
-    if (is_black(e[receiver])) continue;
-    requests_.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(row)});
-    asked_places_.push_back(receiver);
-    asked_columns_.push_back(slots_[s].column);
-    return true;
+    if (!is_black(e[receiver])) return receiver;
   }
-  return false;
+  return kNowhere;
+}
+
+bool SliceEntries::ask(std::size_t s, std::size_t row) {
+  const std::uint32_t receiver = place(s, row);
+  if (receiver == kNowhere) return false;
+  requests_.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(row)});
+  asked_places_.push_back(receiver);
+  asked_columns_.push_back(slots_[s].column);
+  return true;
 }
 
 void SliceEntries::ask_next(std::size_t s, std::size_t count) {

@@ -45,8 +45,11 @@ class SliceEntries {
   // The mean over a row's receivers of the mean of r, g, b of their entries times `scale`.
   void scalars(std::size_t s, Rgb scale, std::span<float> out) const;
 
-  // Asks for an entry: one of the row's receivers that the column reaches, at random, is looked from. False
-  // if it reaches none. Answered by look().
+  // Where an entry is looked from: one of the row's receivers that the column reaches, at random but always
+  // the same. kNowhere if it reaches none.
+  static constexpr std::uint32_t kNowhere = 0xffffffffu;
+  std::uint32_t place(std::size_t s, std::size_t row) const;
+  // Asks for an entry, as seen from its place(). False if there is none. Answered by look().
   bool ask(std::size_t s, std::size_t row);
   // Asks for the next `count` rows of the slot's pattern.
   void ask_next(std::size_t s, std::size_t count);
