@@ -100,7 +100,7 @@ void Looker::judge(std::size_t s, Workspace& w, const RecoverySettings& settings
   out.failed = static_cast<double>(after.prediction.failed - before.prediction.failed);
 }
 
-// The same separation once more, through all its iterations.
+// The same separation once more, through all its iterations, and in two other ways.
 void Looker::separate_endlessly(Workspace& w, Findings& f) const {
   if (!settings_.separation) return;
   const auto e = w.recovery.unoccluded();
@@ -114,9 +114,19 @@ void Looker::separate_endlessly(Workspace& w, Findings& f) const {
   s.constraint = settings_.constraint;
   s.fit = settings_.fit;
   const std::size_t rows = w.recovery.entries().rows().size();
-  w.endless.run({rows, rows > 0 ? e.size() / rows : 0, w.recovery.predicted(), w.recovery.states(), whole},
-                s);
+  const linalg::CorruptedMatrix matrix{rows, rows > 0 ? e.size() / rows : 0, w.recovery.predicted(),
+                                       w.recovery.states(), whole};
+  w.endless.run(matrix, s);
   f.endless.assign(w.endless.residuals().begin(), w.endless.residuals().end());
+  std::vector<Entry> guessed(matrix.state.begin(), matrix.state.end());
+  for (std::size_t at = 0; at < guessed.size(); ++at)
+    if (guessed[at] == Entry::exact)
+      guessed[at] = matrix.d[at] > 0 ? Entry::predicted_visible : Entry::predicted_hidden;
+  w.endless.run({matrix.rows, matrix.columns, matrix.d, guessed, whole}, s);
+  f.everywhere.assign(w.endless.residuals().begin(), w.endless.residuals().end());
+  s.fit = linalg::SeparationSettings::Fit::exact_only;
+  w.endless.run(matrix, s);
+  f.printed.assign(w.endless.residuals().begin(), w.endless.residuals().end());
 }
 
 // Sums of rows as drawn and as separated against the true ones; guesses against the truth.
@@ -140,6 +150,8 @@ void Looker::compare_rows(Workspace& w, Findings& f, std::vector<double>& right)
     f.light += right[i];
     f.error_drawn += std::abs(static_cast<double>(w.drawn[i]) - right[i]);
     f.error_separated += std::abs(static_cast<double>(w.separated[i]) - right[i]);
+    f.bias_drawn += static_cast<double>(w.drawn[i]) - right[i];
+    f.bias_separated += static_cast<double>(w.separated[i]) - right[i];
   }
 }
 
@@ -190,8 +202,10 @@ void Looker::look_at(std::size_t s, Workspace& w) {
   std::fill(w.separated.begin(), w.separated.end(), 0.0f);
   for (std::size_t at = 0; at < e.size(); ++at)
     w.separated[at % rows] += w.recovery.visibility()[at] * w.recovery.unoccluded()[at];
-  for (std::size_t i = 0; i < rows; ++i)
+  for (std::size_t i = 0; i < rows; ++i) {
     f.error_final += std::abs(static_cast<double>(w.separated[i]) - right[i]);
+    f.bias_final += static_cast<double>(w.separated[i]) - right[i];
+  }
 }
 
 }  // namespace lumirank::bench

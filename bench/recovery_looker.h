@@ -63,9 +63,12 @@ struct Findings {
   double sampled = 0, uncertain = 0, corrected = 0;  // entries
   double rank = 0, iterations = 0, nonzero = 0;      // Z ≠ 0 by half an entry
   bool converged = false;
-  std::vector<double> residuals, endless;  // as the method stops; never stopping
-  Wrong drawn, separated;                  // guesses, before and after
+  // ‖XY + Z − D‖ / ‖D‖: as the method stops; through all iterations; the same with the fit as printed; the
+  // same as the method is set, but for Z, which entries that were looked at may have, too.
+  std::vector<double> residuals, endless, printed, everywhere;
+  Wrong drawn, separated;                                                   // guesses, before and after
   double light = 0, error_drawn = 0, error_separated = 0, error_final = 0;  // Σ over rows of |sum − truth|
+  double bias_drawn = 0, bias_separated = 0, bias_final = 0;                // of sum − truth
 };
 
 // One thread's.

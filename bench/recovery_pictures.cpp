@@ -75,10 +75,24 @@ json Looker::write_pictures() const {
   return told;
 }
 
+namespace {
+
+// After how many iterations the method's rule (linalg/separation.h) would stop.
+std::size_t stop(const std::vector<double>& residuals) {
+  const linalg::SeparationSettings s;
+  for (std::size_t k = 0; k < residuals.size(); ++k)
+    if (residuals[k] < s.tolerance || (k > 2 && residuals[k] > (1 - s.least_progress) * residuals[k - 1]))
+      return k + 1;
+  return residuals.size();
+}
+
+}  // namespace
+
 json Looker::tell() const {
   json slices = json::array();
-  std::vector<double> residual(kIterations), endless(kIterations);
-  std::vector<double> stopped(settings_.iterations + 1);
+  std::vector<double> residual(kIterations), endless(kIterations), printed(kIterations),
+      everywhere(kIterations);
+  std::vector<double> stopped(settings_.iterations + 1), stopped_printed(kIterations + 1);
   double counted = 0;
   json sum = json::object();
   const auto add = [&](const char* key, double value) { sum[key] = sum.value(key, 0.0) + value; };
@@ -106,18 +120,24 @@ json Looker::tell() const {
                                      {"error_drawn", f.error_drawn},
                                      {"error_separated", f.error_separated},
                                      {"error_final", f.error_final},
+                                     {"bias_drawn", f.bias_drawn},
+                                     {"bias_separated", f.bias_separated},
+                                     {"bias_final", f.bias_final},
                                      {"converged", f.converged ? 1.0 : 0.0}})
       add(key, value);
     drawn += f.drawn, separated += f.separated;
     if (f.residuals.empty()) continue;
     counted += 1;
     stopped[f.residuals.size()] += 1;
+    stopped_printed[stop(f.printed)] += 1;
     for (std::size_t k = 0; k < kIterations; ++k) {
       residual[k] += f.residuals[std::min(k, f.residuals.size() - 1)];
       endless[k] += f.endless[std::min(k, f.endless.size() - 1)];
+      printed[k] += f.printed[std::min(k, f.printed.size() - 1)];
+      everywhere[k] += f.everywhere[std::min(k, f.everywhere.size() - 1)];
     }
   }
-  for (auto* r : {&residual, &endless})
+  for (auto* r : {&residual, &endless, &printed, &everywhere})
     for (double& x : *r) x /= std::max(counted, 1.0);
   return {{"per_slice", slices},
           {"sums", sum},
@@ -127,7 +147,10 @@ json Looker::tell() const {
            {{"slices", counted},
             {"slices_by_iterations", stopped},
             {"residual", residual},
-            {"residual_without_stopping", endless}}}};
+            {"residual_without_stopping", endless},
+            {"residual_as_printed", printed},
+            {"residual_with_sparse_everywhere", everywhere},
+            {"slices_by_iterations_as_printed", stopped_printed}}}};
 }
 
 std::size_t Looker::slice_at(double q) const {

@@ -50,6 +50,18 @@ def false_colour(x):
     return bytes(round(a + (b - a) * (x - k)) for a, b in zip(stops[k], stops[k + 1]))
 
 
+FALSE_COLOURS = [false_colour(k / 255) for k in range(256)]
+# Blue, white, red for -1 … 1.
+SIGNED_COLOURS = [bytes(round(255 + (c - 255) * abs(t)) for c in ((190, 30, 40) if t > 0 else (30, 70, 180))) for t in (k / 127.5 - 1 for k in range(256))]
+NOTHING = bytes((112, 112, 112))
+
+
+def colours_of(values, low, high, colours, nothing=math.isnan):
+    """The first of every three numbers, painted by the colours from low to high; grey where there is nothing."""
+    scale = len(colours) / (high - low)
+    return b"".join(NOTHING if nothing(v) else colours[min(len(colours) - 1, max(0, int((v - low) * scale)))] for v in values[::3])
+
+
 class Truth:
     """Two independent references A and B of one picture.
 
@@ -184,9 +196,49 @@ def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=600, hei
     return "\n".join(out + ["</svg>"])
 
 
+def bars(title, x_label, y_label, heights, curves, width=600, height=340):
+    """An SVG of bars, {name: [heights of 0, 1, 2 …]} side by side, over which lie curves {name: [(x, y)]} with an axis of their own on the right, from 0."""
+    left, right, top, bottom = 62, 210, 34, 46
+    columns = max(len(h) for h in heights.values())
+    most = max(max(h) for h in heights.values()) or 1
+    upper = max((y for c in curves.values() for _, y in c), default=1) * 1.05 or 1
+    across, down = width - left - right, height - top - bottom
+    slot = across / columns
+    out = [f'<svg viewBox="0 0 {width} {height}" width="{width}" role="img" aria-label="{html.escape(title)}">',
+           f'<text x="{left}" y="18" class="t">{html.escape(title)}</text>']
+    for k in range(5):
+        y = height - bottom - down * k / 4
+        out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - right}" y2="{y:.1f}" class="g"/><text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{most * k / 4:.3g}</text>')
+        if curves:
+            out.append(f'<text x="{width - right + 5}" y="{y + 4:.1f}">{upper * k / 4:.2g}</text>')
+    for k in range(0, columns, max(1, columns // 10)):
+        out.append(f'<text x="{left + (k + 0.5) * slot:.1f}" y="{height - bottom + 15}" text-anchor="middle">{k}</text>')
+    out.append(f'<text x="{left + across / 2}" y="{height - 10}" text-anchor="middle">{html.escape(x_label)}</text>'
+               f'<text transform="translate(14 {top + down / 2}) rotate(-90)" text-anchor="middle">{html.escape(y_label)}</text>')
+    names = 0
+
+    def legend(name, colour):
+        nonlocal names
+        y = top + 12 + 18 * names
+        names += 1
+        out.append(f'<rect x="{width - right + 48}" y="{y - 6}" width="12" height="10" fill="{colour}"/><text x="{width - right + 64}" y="{y + 3}">{html.escape(name)}</text>')
+    bar = 0.8 * slot / len(heights)
+    for n, ((name, values), colour) in enumerate(zip(heights.items(), ("#7aa6c8", "#c9b27c", "#9cc09c"))):
+        for k, v in enumerate(values):
+            h = down * v / most
+            out.append(f'<rect x="{left + k * slot + 0.1 * slot + n * bar:.1f}" y="{height - bottom - h:.1f}" width="{bar:.1f}" height="{h:.1f}" fill="{colour}"/>')
+        legend(name, colour)
+    for (name, curve), colour in zip(curves.items(), ("#c8502a", "#8a6d1e", "#8a4fa3", "#3a8f4d")):
+        path = " ".join(f"{left + (x + 0.5) * slot:.1f},{height - bottom - down * y / upper:.1f}" for x, y in curve)
+        out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        legend(name, colour)
+    return "\n".join(out + ["</svg>"])
+
+
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:1180px;margin:2em auto;padding:0 1em;color:#222;background:#fff}
 table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;border-bottom:1px solid #ddd;text-align:right}td:first-child,th:first-child{text-align:left}
 figure{display:inline-block;margin:.3em;vertical-align:top}figure img{display:block;image-rendering:auto;max-width:100%}figcaption{font-size:13px;max-width:380px}
+.bar{display:flex;gap:.5em;align-items:center;font-size:12px;margin:.2em 0}.bar i{flex:1;height:.9em;border:1px solid #888}
 svg text{font:12px system-ui,sans-serif;fill:#333}svg .t{font-weight:600}svg .g{stroke:#e4e4e4}svg{max-width:100%;margin:.4em}
 @media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}td,th{border-color:#444}svg text{fill:#ccc}svg .g{stroke:#333}}"""
 
@@ -218,9 +270,29 @@ class Page:
         truth.difference_png(self.folder / "images" / f"{name}.png", image)
         self.figure(name, truth.width, caption)
 
-    def figure(self, name, width, caption):
-        shown = max(256, min(width, 400))
-        self.body.append(f'<figure><img src="images/{name}.png" width="{shown}" alt="{html.escape(caption)}"><figcaption>{html.escape(caption)}</figcaption></figure>')
+    def scaled(self, name, image, low, high, caption, signed=False, nothing=math.isnan, label="{:g}".format, shown=None):
+        """The first channel in false colour, with a bar that says what the colours stand for."""
+        width, height, values = image
+        colours = SIGNED_COLOURS if signed else FALSE_COLOURS
+        write_png(self.folder / "images" / f"{name}.png", width, height, colours_of(values, low, high, colours, nothing))
+        stops = ",".join(f"rgb({c[0]},{c[1]},{c[2]})" for c in (colours[k] for k in (0, 64, 128, 191, 255)))
+        self.figure(name, width, caption, f'<div class="bar"><span>{label(low)}</span><i style="background:linear-gradient(90deg,{stops})"></i><span>{label(high)}</span></div>', shown)
+
+    def codes(self, name, image, kinds, caption, shown=None):
+        """The first channel holds 0, 1, 2 …; kinds: (name, colour) of each."""
+        width, height, values = image
+        write_png(self.folder / "images" / f"{name}.png", width, height, colours_of(values, 0, len(kinds), [bytes(c) for _, c in kinds]))
+        legend = "".join(f'<i style="background:rgb({c[0]},{c[1]},{c[2]});flex:0 0 1.2em"></i><span>{html.escape(n)}</span>' for n, c in kinds)
+        self.figure(name, width, caption, f'<div class="bar">{legend}</div>', shown)
+
+    def raw(self, name, width, height, pixels, caption):
+        """pixels: bytes, three to a pixel."""
+        write_png(self.folder / "images" / f"{name}.png", width, height, pixels)
+        self.figure(name, width, caption)
+
+    def figure(self, name, width, caption, below="", shown=None):
+        shown = shown or max(256, min(width, 400))
+        self.body.append(f'<figure><img src="images/{name}.png" width="{shown}" alt="{html.escape(caption)}">{below}<figcaption>{html.escape(caption)}</figcaption></figure>')
 
     def svg(self, drawing):
         self.body.append(drawing)

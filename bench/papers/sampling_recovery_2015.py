@@ -8,13 +8,18 @@
   steps     Figure 8: sampling-recovery without prediction, without separation, without correction, and with the separation as printed
   rays      Figure 9: the error ratio that predictions are held to, and the splitting threshold alpha
   separation  Figure 6: how far the separation is after how many iterations
+  predictors  Figures 4 and 5: how often each predictor is wrong, and which is chosen, slice by slice
+  matrices  Figure 7: the matrices of two slices, step by step
   clusters  Figure 3: light clusters without splitting, without sparse visibility, and with both
 
 Errors are relative L1 against the sum of all columns, at the pixels of 4,096 stratified receivers of the full-size render unless --receivers says otherwise.
+Parts separation, predictors and matrices need bench/look_into_recovery.cpp (cmake -DLUMIRANK_BENCH=ON), which asks for all visibilities of the reduced matrices;
+its size and lights are smaller: --look-size and --look-lights.
 OUT gets index.html, tables.md, and the page of every comparison. What is finished with the same settings is not run again. --quick: small sizes, minutes
 instead of hours; its numbers show that the script works and nothing else.
 """
 import argparse
+import functools
 import hashlib
 import json
 import math
@@ -22,7 +27,7 @@ import pathlib
 import subprocess
 import sys
 
-from experiment_page import Page, percent, plot
+from experiment_page import Page, bars, percent, plot, read_pfm, to_display
 
 HERE = pathlib.Path(__file__).resolve().parent
 OWN = ("courtyard", "fair", "room", "arcade")
@@ -37,6 +42,8 @@ LADDERS = {
     "visibility-completion": ("columns", (100, 300, 600)),
     OURS: ("alpha", (0.08, 0.02, 0.005)),
 }
+PREDICTORS = {"nearest": "Nearest samples", "plane": "Plane", "bayes": "Naive Bayes", "all": "Best of the three"}
+LOOKED = (("guessed", (20, 20, 30)), ("sampled", (235, 235, 220)), ("uncertain", (250, 170, 40)), ("corrected", (225, 50, 60)))
 STEPS = ("prediction", "separation", "correction", "constraint")
 
 
@@ -50,6 +57,12 @@ def at_level(curve, level, x, y):
     return None
 
 
+def exposure(values):
+    """Takes the median to a third of the range: a window may be a hundred times brighter than the room."""
+    middle = sorted(values)[len(values) // 2]
+    return 0.1 / middle if middle > 0 else 1.0
+
+
 class Experiments:
     def __init__(self, args):
         self.args, self.out = args, args.out
@@ -59,6 +72,8 @@ class Experiments:
         self.receivers = args.receivers or (256 if quick else 4096)
         width, height = map(int, self.size.split("x"))
         self.pixels = width * height
+        self.look_size = args.look_size or ("100x75" if quick else "400x300")
+        self.look_lights = args.look_lights or (5000 if quick else 20000)
         self.page = Page("Matrix sampling and recovery: the experiments of the 2015 paper", args.out)
         self.scenes = {f"{s.parent.name}/{s.stem}" if s.stem != "scene" else s.parent.name: s for s in args.scenes}
         if not self.scenes:
@@ -148,11 +163,140 @@ class Experiments:
         self.switched("Figure 3: light clusters", "Without splitting, without sparse visibility, with both.", "clusters",
                       [("splitting", ("off", "on")), ("sparse-visibility", ("off",))])
 
+    def look(self, scene):
+        """What look_into_recovery finds, and the folder of its pictures."""
+        folder = self.out / "runs" / f"look_{scene.replace('/', '_')}"
+        command = ["--size", self.look_size, "--lights", str(self.look_lights), "--spp", "4"]
+        mark, stamp = folder / "asked", hashlib.sha256("\n".join([str(self.scenes[scene]), *command]).encode()).hexdigest()
+        if not (mark.exists() and mark.read_text() == stamp):
+            folder.mkdir(parents=True, exist_ok=True)
+            line = [str(self.args.looker), str(self.scenes[scene]), str(folder), *command, "--threads", str(self.args.threads)]
+            print("$", *line, flush=True)
+            subprocess.run(line, check=True)
+            mark.write_text(stamp)
+        return json.loads((folder / "results.json").read_text()), folder
+
+    def looked_at(self, found):
+        slices = found["per_slice"]
+        return (f"{self.look_size}, {found['receivers']} receivers in {len(slices)} slices, {found['lights']} lights, "
+                f"{found['sums']['columns'] / len(slices):.0f} columns per slice; {percent(found['sums']['hidden'] / found['sums']['entries'])} of the entries that light could reach are hidden.")
+
+    def predictors(self):
+        page = self.page
+        page.heading("Figures 4 and 5: predictors")
+        page.say("The share of wrong predictions among the entries that were not looked at, against all visibilities of the reduced matrices. Predictions are drawn by their probability, as the "
+                 "method does. Predictors stand alone: nothing is separated, corrected or looked at for being uncertain.")
+        for scene in self.scenes:
+            found, folder = self.look(scene)
+            name = "look_" + scene.replace("/", "_")
+            page.heading(scene)
+            page.say(self.looked_at(found))
+            image = read_pfm(folder / "image.pfm")
+            page.picture(f"{name}_image", image, exposure(image[2]), "What the method renders")
+            pictures = {p: read_pfm(folder / f"wrong_{p}.pfm") for p in PREDICTORS}
+            high = 0.05 * math.ceil(20 * max(max(p[2]) for p in pictures.values()))
+            for p, words in PREDICTORS.items():
+                told = found["predictors"][f"wrong_{p}"]
+                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(told['wrong'])} wrong after looking at {percent(told['looked'])}", nothing=lambda v: v < 0, label=percent)
+            choice = read_pfm(folder / "choice.pfm")
+            page.raw(f"{name}_choice", choice[0], choice[1], bytes(112 if v < 0 else min(255, round(255 * v)) for v in choice[2]),
+                     "Columns by the predictor chosen: red nearest samples, green Bayes, blue plane")
+            page.scaled(f"{name}_mixed", read_pfm(folder / "mixed.pfm"), 0, 0.5, "How mixed columns are: the share of the rarer of visible and hidden, mean over columns", nothing=lambda v: v < 0, label=percent)
+            rows = []
+            for equal, until in (("", "until the prediction error is met"), ("equal_", "after five rounds")):
+                for p, words in PREDICTORS.items():
+                    told = found["predictors"][f"wrong_{equal}{p}"]
+                    columns = told["columns"]
+                    rows.append((f"{words}, {until}", percent(told["wrong"]), percent(told["wrong_light"]), percent(told["looked"]), "" if p == "all" else percent(told["best_in_slices"]),
+                                 "" if equal else percent(told["failed_columns"]), " / ".join(percent(columns[c]) for c in ("nearest", "plane", "bayes")) if p == "all" else ""))
+            page.table(("", "wrong", "weighted by light", "looked at", "best of the three in slices", "columns that failed", "columns: nearest / plane / Bayes"), rows)
+            page.write()
+
+    def matrices(self):
+        page = self.page
+        page.heading("Figure 7: matrices of two slices")
+        page.say("Columns along the light tree, rows along Hilbert's curve through the slice; grey where the light does not reach (E = 0). The slices stand at 25 % and 90 % of all by how mixed "
+                 "their columns are. What is separated is visibility, 0 or 1.")
+        for scene in self.scenes:
+            found, folder = self.look(scene)
+            stem = "look_" + scene.replace("/", "_")
+            page.heading(scene)
+            page.say(self.looked_at(found))
+            width, height, values = read_pfm(folder / "image.pfm")
+            shown = bytearray(to_display(values, exposure(values)))
+            for which, tint in (("few", (230, 40, 40)), ("many", (50, 90, 255))):
+                for k, v in enumerate(read_pfm(folder / f"{which}_where.pfm")[2]):
+                    shown[k] = round(shown[k] + 0.6 * v * (tint[k % 3] - shown[k]))
+            page.raw(f"{stem}_slices", width, height, bytes(shown), "Where the two slices are: red few differences, blue many")
+            for which, words in (("few", "Few differences"), ("many", "Many differences")):
+                told, name = found[which], f"{stem}_{which}"
+                page.say(f"{words}: {told['rows']} × {told['columns']}, {percent(told['hidden'])} hidden, rank {told['rank']:.0f}, {told['iterations']:.0f} iterations; looked at {percent(told['sampled'])} "
+                         f"for prediction, {percent(told['uncertain'])} where a guess would cost much, {percent(told['corrected'])} by correction; Z is above half an entry at {percent(told['nonzero'])}. "
+                         f"Row sums are off by {percent(told['error_drawn'])} as predicted, {percent(told['error_separated'])} as separated, {percent(told['error_final'])} with correction.")
+                read = lambda what: read_pfm(folder / f"{which}_{what}.pfm")
+                paint = functools.partial(page.scaled, shown=270)
+                paint(f"{name}_predicted", read("predicted"), 0, 1, "(a) D: looked at or predicted")
+                page.codes(f"{name}_looked", read("looked"), LOOKED, "(b) What was looked at", shown=270)
+                paint(f"{name}_low_rank", read("low_rank"), 0, 1, "(c) L = X·Y, held to 0 … 1 in the picture")
+                paint(f"{name}_sparse", read("sparse"), -1, 1, "(d) Z", signed=True)
+                paint(f"{name}_density", read("density"), 0, 1, "(e) Density of errors")
+                paint(f"{name}_recovered", read("recovered"), 0, 1, "(f) Recovered visibility")
+                paint(f"{name}_error", read("error"), -1, 1, "(g) Recovered less true", signed=True)
+                paint(f"{name}_reference", read("reference"), 0, 1, "(h) True visibility")
+                light, recovered, error = read("light_reference"), read("light_recovered"), read("light_error")
+                seen = sorted(v for v in light[2][::3] if v > 0)
+                white = seen[int(0.98 * (len(seen) - 1))] if seen else 1.0
+                paint(f"{name}_light_reference", light, 0, white, "True contributions E·V; white: the 98th percentile", label="{:.2g}".format)
+                paint(f"{name}_light_recovered", recovered, 0, white, "Recovered contributions", label="{:.2g}".format)
+                paint(f"{name}_light_error", error, -white, white, "Recovered less true contributions", signed=True, label="{:.2g}".format)
+            curves = {}
+            for which in ("few", "many"):
+                for what, words in (("visibility", "V"), ("light", "E·V")):
+                    values = found[which]["singular_values"][what]
+                    curves[f"{which}, {words}"] = [(k + 1, v / values[0]) for k, v in enumerate(values[:400]) if v > 1e-5 * values[0]]
+            page.svg(plot(f"{scene}: (i) singular values of the reference", "number", "share of the first", curves, log_x=False))
+            rows = []
+            for which in ("few", "many"):
+                for what in ("visibility", "light", "unoccluded"):
+                    values = found[which]["singular_values"][what]
+                    squares = [v * v for v in values]
+                    whole, rank = sum(squares), found[which]["rank"]
+                    beyond = [sum(squares[k:]) / whole for k in (int(rank), 50, 100)]
+                    rows.append((f"{which}, {what}", sum(v > 0.01 * values[0] for v in values), *(percent(math.sqrt(b)) for b in beyond)))
+            page.table(("", "values above 1 % of the first", "Frobenius norm beyond the rank used", "beyond 50", "beyond 100"), rows)
+            page.write()
+
     def separation(self):
-        self.switched("Figure 6: iterations of the separation", "The error of the whole after so many iterations at most.", "separation", [("iterations", (1, 2, 4, 8, 20))])
+        page = self.page
+        page.heading("Figure 6: convergence of the separation")
+        page.say("Slices by the number of iterations after which the separation stops, and the mean of ‖XY + Z − D‖ / ‖D‖ after each iteration were it not to stop. As the method is set, predictions are fitted too, and "
+                 "entries that were looked at have no Z: these alone are mostly of a higher rank, so that no X·Y meets them and the residual cannot vanish. As the paper prints it (equations 6 and 11) only what was "
+                 "looked at is fitted, and may have a Z. The rule stops below 1 %, or from the fourth iteration on when one brings less than 10 % of what is left.")
+        for scene in self.scenes:
+            found, _ = self.look(scene)
+            c = found["convergence"]
+            pick = lambda r: [(k + 1, v) for k, v in enumerate(r)]
+            page.svg(bars(f"{scene}: {c['slices']:.0f} slices", "iterations", "slices", {"fit of all": c["slices_by_iterations"], "as printed": c["slices_by_iterations_as_printed"]},
+                          {"residual, fit of all": pick(c["residual_without_stopping"]), "residual, as printed": pick(c["residual_as_printed"]),
+                           "of all, Z everywhere": pick(c["residual_with_sparse_everywhere"])}))
+            rows = []
+            for words, stopped, residual in (("fit of all", "slices_by_iterations", "residual_without_stopping"), ("as printed", "slices_by_iterations_as_printed", "residual_as_printed"),
+                                            ("fit of all, Z everywhere", None, "residual_with_sparse_everywhere")):
+                by = lambda n: "" if stopped is None else percent(sum(c[stopped][:n + 1]) / max(c["slices"], 1))
+                rows.append((words, by(4), by(10), *(percent(c[residual][k - 1]) for k in (1, 4, 10, 20))))
+            page.table((scene, "stopped by 4", "by 10", "residual after 1", "after 4", "after 10", "after 20"), rows)
+            sums = found["sums"]
+            off = lambda step: f"{percent(sums['error_' + step] / sums['light'])} (bias {percent(sums['bias_' + step] / sums['light'])})"
+            page.say(f"Row sums over all slices are off by {off('drawn')} as predicted, {off('separated')} as separated, {off('final')} with correction; "
+                     f"guesses are wrong by {percent(found['guesses_drawn']['wrong'])} as predicted and by {percent(found['guesses_separated']['wrong'])} "
+                     f"on average as separated. Mean rank {sums['rank'] / len(found['per_slice']):.1f}; Z is above half an entry at {percent(sums['nonzero'] / sums['entries'])} of the entries; "
+                     f"correction looks at {percent(sums['corrected'] / sums['entries'])}.")
+            page.write()
+        self.switched("Figure 6: the whole method by iterations", "The error of the picture after so many iterations at most.", "separation", [("iterations", (1, 2, 4, 8, 20))])
 
 
-PARTS = {"table": Experiments.table, "steps": Experiments.steps, "rays": Experiments.rays, "separation": Experiments.separation, "clusters": Experiments.clusters}
+PARTS = {"table": Experiments.table, "steps": Experiments.steps, "rays": Experiments.rays, "separation": Experiments.separation,
+         "predictors": Experiments.predictors, "matrices": Experiments.matrices, "clusters": Experiments.clusters}
 
 
 def main():
@@ -165,6 +309,9 @@ def main():
     parser.add_argument("--size", help="default 800x600")
     parser.add_argument("--lights", type=int, help="default 1000000")
     parser.add_argument("--receivers", type=int, help="at which the truth is known; default 4096")
+    parser.add_argument("--looker", type=pathlib.Path, default=HERE.parents[1] / "build/release/bench/look_into_recovery")
+    parser.add_argument("--look-size", help="of the parts that look inside; default 400x300")
+    parser.add_argument("--look-lights", type=int, help="default 20000")
     parser.add_argument("--threads", type=int, default=0)
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
