@@ -29,7 +29,9 @@ constexpr std::array kWrong{0.2, 0.1, 0.05, 0.025, 0.0125};
 
 struct Level {
   std::size_t alpha = 3, wrong = 1;
-  auto operator<=>(const Level&) const = default;
+  friend bool operator<(const Level& a, const Level& b) {
+    return a.alpha != b.alpha ? a.alpha < b.alpha : a.wrong < b.wrong;
+  }
 };
 struct Trial {
   Level level;
