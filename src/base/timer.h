@@ -1,10 +1,12 @@
-// Wall-clock seconds, for reports and --time; no result depends on it unless --time is given.
+// Seconds for reports and --time; no result depends on them unless --time is given.
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
 namespace lumirank {
 
+// Of the wall clock.
 class Timer {
  public:
   double seconds() const {
@@ -13,6 +15,20 @@ class Timer {
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Of the calling thread's processor time, so that what others run beside it does not count.
+class ThreadTimer {
+ public:
+  double seconds() const { return now() - start_; }
+
+ private:
+  static double now() {
+    std::timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double start_ = now();
 };
 
 }  // namespace lumirank

@@ -56,6 +56,7 @@ class SceneReader final : public matrix::EntryReader {
       plan.runs.push_back(run);
       plan.kind.resize(run.end / 16, run_kind);
     }
+    in_order_ = plan.runs.size() < 2;
     plan.slot.resize(rows_);
     for (std::uint32_t slot = 0; slot < places_.size(); ++slot)
       if (places_[slot] != kNoItem) plan.slot[places_[slot]] = slot;
@@ -74,6 +75,43 @@ class SceneReader final : public matrix::EntryReader {
     copy_out(column_block_, part, places_, [&](std::uint32_t to) -> Rgb& { return out[to]; });
   }
 
+  void unoccluded_scalars(Index j, Rgb weights, std::span<float> out) override {
+    evaluate(j, out.size());
+    if (in_order_) {
+      column_block_.scalars(weights, [&](std::size_t group, const float* lanes) {
+        std::copy_n(lanes, std::min<std::size_t>(16, out.size() - 16 * group), &out[16 * group]);
+      });
+      return;
+    }
+    column_block_.scalars(weights, [&](std::size_t group, const float* lanes) {
+      const std::uint32_t* const to = &places_[16 * group];
+      for (std::size_t k = 0; k < 16; ++k)
+        if (to[k] != kNoItem) out[to[k]] = lanes[k];
+    });
+  }
+
+  void add_unoccluded(std::span<const matrix::ScaledColumn> columns, std::span<const float> shares,
+                      std::span<const std::uint32_t> of, std::span<Rgb> sums) override {
+    if (columns.empty() || rows_ == 0) return;
+    if (shares.size() % columns.size() != 0 || of.size() != rows_ || sums.size() != rows_)
+      throw InternalError("add_unoccluded: as many shares for every column, and one of them for every row");
+    const std::size_t each = shares.size() / columns.size();
+    share_of_.assign(places_.size(), 0);
+    sums_.assign(3 * places_.size(), 0.0f);
+    for (std::size_t slot = 0; slot < places_.size(); ++slot)
+      if (places_[slot] != kNoItem) share_of_[slot] = of[places_[slot]];
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const auto share = shares.subspan(k * each, each);
+      if (std::ranges::all_of(share, [](float s) { return s == 0; })) continue;
+      evaluate(columns[k].column, rows_);
+      column_block_.add_shares(columns[k].scale, share, share_of_, sums_);
+    }
+    for (std::size_t slot = 0; slot < places_.size(); ++slot) {
+      const float* const sum = &sums_[48 * (slot / 16) + slot % 16];
+      if (places_[slot] != kNoItem) sums[places_[slot]] += Rgb(sum[0], sum[16], sum[32]);
+    }
+  }
+
   void entries_at(std::span<const std::uint32_t> places, std::span<const Index> columns, std::span<Rgb> out,
                   Part part) override {
     list_entries(slice_list_, slice_list_block_, slice_.plan.slot, {places, columns, out}, part);
@@ -84,6 +122,16 @@ class SceneReader final : public matrix::EntryReader {
   }
 
  private:
+  // E of a column, into its block.
+  void evaluate(Index j, std::size_t rows) {
+    if (j >= context_.columns->plan.slot.size() || rows != rows_)
+      throw InternalError(
+          "transport::SceneReader::column needs a column of the matrix and room for its rows");
+    if (rows_ == 0) return;
+    column_block_.set_column(context_.columns->plan.slot[j]);
+    tally_ += finish(column_block_, Part::unoccluded, rows_);
+  }
+
   static constexpr std::size_t kPiece = 4096;  // pairs whose buffers stay in a core's own cache
 
   struct Asked {
@@ -139,7 +187,9 @@ class SceneReader final : public matrix::EntryReader {
   PairList slice_list_, list_;
   Tally tally_;
   std::size_t rows_ = 0;
-  std::vector<std::uint32_t> order_, places_;
+  bool in_order_ = true;  // rows lie as they were given
+  std::vector<std::uint32_t> order_, places_, share_of_;
+  std::vector<float> sums_;  // 16 × r, g, b by group
 };
 
 }  // namespace

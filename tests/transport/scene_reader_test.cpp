@@ -15,6 +15,40 @@ using matrix::Part;
 
 constexpr std::size_t kRows = 700, kColumns = 300;
 
+// What is summed on the way is what would be summed of the entries, in the same order. Returns how many
+// entries that took.
+std::size_t expect_same_sums(matrix::EntryReader& reader, std::span<const Index> rows,
+                             std::span<const Rgb> whole) {
+  const Rgb weights(0.5f, 0.2f, 0.3f);
+  std::vector<float> scalars(rows.size());
+  for (Index j = 0; j < kColumns; ++j) {
+    reader.unoccluded_scalars(j, weights, scalars);
+    for (std::size_t a = 0; a < rows.size(); ++a) {
+      const Rgb e = whole[rows[a] * kColumns + j];
+      EXPECT_EQ(scalars[a], weights.r * e.r + weights.g * e.g + weights.b * e.b);
+    }
+  }
+  // Every fourth column, and three shares of each, of which every fifth column has none.
+  std::vector<matrix::ScaledColumn> columns;
+  std::vector<float> shares;
+  for (Index j = 0; j < kColumns; j += 4) {
+    const auto x = static_cast<float>(j);
+    columns.push_back({j, Rgb(1, 0.5f, 2 + x)});
+    for (const float share : {0.5f, 0.0f, 1.0f}) shares.push_back(j % 5 == 0 ? 0 : share * (1 + x));
+  }
+  std::vector<std::uint32_t> of(rows.size());
+  for (std::size_t a = 0; a < of.size(); ++a) of[a] = static_cast<std::uint32_t>(a % 3);
+  std::vector<Rgb> sums(rows.size(), Rgb(0));
+  reader.add_unoccluded(columns, shares, of, sums);
+  for (std::size_t a = 0; a < rows.size(); ++a) {
+    Rgb expected(0);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      expected += columns[k].scale * shares[3 * k + of[a]] * whole[rows[a] * kColumns + columns[k].column];
+    EXPECT_EQ(sums[a], expected);
+  }
+  return rows.size() * (kColumns + columns.size() * 4 / 5);
+}
+
 class SceneReader : public ::testing::TestWithParam<bool> {};
 
 TEST_P(SceneReader, GivesTheMatrixOwnEntries) {
@@ -49,6 +83,7 @@ TEST_P(SceneReader, GivesTheMatrixOwnEntries) {
           for (std::size_t a = 0; a < count; ++a) same(out[a], rows[a], j);
         }
         if (count == 0) continue;
+        if (part == Part::unoccluded) asked += expect_same_sums(*reader, rows, whole);
         std::vector<std::uint32_t> places(1000);
         std::vector<Index> js(places.size());
         for (std::uint32_t& place : places) place = static_cast<std::uint32_t>(rng.next_below(count));

@@ -105,7 +105,7 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
     if (!settings.prediction) {
       std::ranges::fill(probability, 1.0f);
       std::ranges::fill(drawn_, std::uint8_t{1});
-    } else if (entries.slot(columns_[c].slot).sampled < rows) {
+    } else {
       predict(c, entries, probability);
       if (settings.draw == RecoverySettings::Draw::likely)
         for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability[i] > 0.5f ? 1 : 0;

@@ -61,7 +61,7 @@ void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries
   for (Cluster& c : clusters_) {
     if (c.slot != kNoSlot) continue;
     c.column = tree_.scaled(c.node);
-    c.slot = static_cast<std::uint32_t>(entries.add(c.column.column));
+    c.slot = static_cast<std::uint32_t>(entries.add(c.column));
     if (look) entries.ask_next(c.slot, samples);
   }
   if (look) {
@@ -184,25 +184,32 @@ bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
 // cluster in the mean: the sums would be too small. Who is drawn after all decisions has no such bias.
 void SliceCut::redraw(SliceEntries& entries) {
   for (Cluster& c : clusters_) {
-    if (tree_.is_leaf(c.node)) continue;
+    if (tree_.is_leaf(c.node)) {
+      entries.make_whole(c.slot, c.column);
+      continue;
+    }
     const std::uint64_t bits = hash_ids(entries.key(), Stage::representatives, c.node);
     c.column = tree_.drawn(c.node, unit_double(bits));
-    c.slot = static_cast<std::uint32_t>(entries.add(c.column.column));
+    c.slot = static_cast<std::uint32_t>(entries.add_whole(c.column));
   }
 }
 
 void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
-  const Timer timer;
+  const ThreadTimer timer;
   initial_cut(std::min(settings.initial_columns, settings.most_columns), entries.rows().receivers());
   seconds_of_bounds_ = timer.seconds();
   add_slots(settings, entries);
-  if (!settings.splitting) return;
-  contributions(settings, entries);
-  while (split(settings, entries)) {
-    add_slots(settings, entries);
+  if (settings.splitting) {
     contributions(settings, entries);
+    while (split(settings, entries)) {
+      add_slots(settings, entries);
+      contributions(settings, entries);
+    }
   }
-  if (settings.redraw) redraw(entries);
+  if (settings.splitting && settings.redraw)
+    redraw(entries);
+  else
+    for (const Cluster& c : clusters_) entries.make_whole(c.slot, c.column);
 }
 
 }  // namespace lumirank::methods

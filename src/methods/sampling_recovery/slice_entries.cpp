@@ -1,6 +1,7 @@
 #include "methods/sampling_recovery/slice_entries.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/random.h"
 
@@ -8,6 +9,14 @@ namespace lumirank::methods {
 
 using matrix::Index;
 using matrix::Part;
+
+namespace {
+// Of the channels, when the scale times an entry is averaged and divided by the mean of the scale.
+Rgb weights(Rgb scale) {
+  const float sum = scale.r + scale.g + scale.b;
+  return sum > 0 ? scale * (1 / sum) : Rgb(1.0f / 3.0f);
+}
+}  // namespace
 
 void SliceEntries::start(std::span<const Index> slice, std::uint64_t key) {
   rows_.build(features_, slice);
@@ -17,45 +26,90 @@ void SliceEntries::start(std::span<const Index> slice, std::uint64_t key) {
   looked_ = 0;
   slots_.clear();
   requests_.clear();
+  first_layer_.resize(rows_.size());
+  row_of_.resize(rows_.receivers().size());
+  std::uint32_t most = 1;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const std::uint32_t count = receivers_of(r);
+    // Four receivers are in four layers by their number, so that a mask of them needs no turning.
+    first_layer_[r] = count > 4 ? static_cast<std::uint8_t>(mix64(key ^ mix64(r)) >> 56) : 0;
+    most = std::max(most, count);
+    for (std::uint32_t k = rows_.begin(r); k < rows_.end(r); ++k) row_of_[k] = static_cast<std::uint32_t>(r);
+  }
+  layer_count_ = std::min<std::size_t>(most, kLayers);
+  while (layers_.size() < layer_count_) layers_.push_back(matrix_.reader());
+  layer_receivers_.resize(rows_.size());
+  for (std::size_t l = 0; l < layer_count_; ++l) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) layer_receivers_[r] = rows_.receivers()[receiver(r, l)];
+    layers_[l]->set_rows(layer_receivers_);
+  }
 }
 
-std::size_t SliceEntries::add(Index column) {
-  const std::size_t s = slots_.size(), receivers = rows_.receivers().size();
-  if (shades_.size() < (s + 1) * receivers) shades_.resize(std::max(2 * s, s + 16) * receivers);
-  if (seen_.size() < (s + 1) * rows_.size()) seen_.resize(std::max(2 * s, s + 16) * rows_.size());
-  const auto out = std::span(shades_).subspan(s * receivers, receivers);
-  reader_->column(column, out, Part::unoccluded);
-  Slot slot{column, static_cast<std::uint32_t>(mix64(key_ ^ mix64(column)) % SamplePatterns::kPatterns), 0, 0,
-            false};
-  float most = 0;
-  for (const Rgb e : out) most = std::max(most, e.r + e.g + e.b);
-  slot.most = most * (1.0f / 3.0f);
-  slots_.push_back(slot);
+std::size_t SliceEntries::new_slot(const matrix::ScaledColumn& column) {
+  const std::size_t s = slots_.size(), rows = rows_.size();
+  if (seen_.size() < (s + 1) * rows) {
+    const std::size_t room = std::max(2 * s, s + 16) * rows;
+    seen_.resize(room);
+    scalars_.resize(room);
+    lit_.resize(room);
+  }
+  const std::uint64_t bits = mix64(key_ ^ mix64(column.column));
+  slots_.push_back({column.column, static_cast<std::uint32_t>(bits % SamplePatterns::kPatterns), 0, 0,
+                    static_cast<std::uint16_t>((bits >> 32) % layer_count_), false});
   std::ranges::fill(seen(s), linalg::seen::kUnknown);
   return s;
 }
 
-void SliceEntries::scalars(std::size_t s, Rgb scale, std::span<float> out) const {
-  const auto e = shades(s);
-  const Rgb third = scale * (1.0f / 3.0f);
-  for (std::size_t r = 0; r < out.size(); ++r) {
+std::size_t SliceEntries::add(const matrix::ScaledColumn& column) {
+  const std::size_t s = new_slot(column);
+  Slot& slot = slots_[s];
+  const auto out = std::span(scalars_).subspan(s * rows_.size(), rows_.size());
+  layers_[slot.layer]->unoccluded_scalars(column.column, weights(column.scale), out);
+  for (const float e : out) slot.most = std::max(slot.most, e);
+  return s;
+}
+
+std::size_t SliceEntries::add_whole(const matrix::ScaledColumn& column) {
+  const std::size_t s = new_slot(column);
+  make_whole(s, column);
+  return s;
+}
+
+void SliceEntries::make_whole(std::size_t s, const matrix::ScaledColumn& column) {
+  slots_[s].layer = kWhole;
+  receiver_scalars_.resize(rows_.receivers().size());
+  reader_->unoccluded_scalars(column.column, weights(column.scale), receiver_scalars_);
+  float* const out = &scalars_[s * rows_.size()];
+  std::uint16_t* const lit = &lit_[s * rows_.size()];
+  const float* const all = receiver_scalars_.data();
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const float* const e = all + rows_.begin(r);
+    const std::uint32_t count = receivers_of(r);
+    if (count == 4) {  // by far most rows of a picture with four samples per pixel
+      out[r] = 0.25f * ((e[0] + e[1]) + (e[2] + e[3]));
+      lit[r] = static_cast<std::uint16_t>((e[0] > 0) | (e[1] > 0) << 1 | (e[2] > 0) << 2 | (e[3] > 0) << 3);
+      continue;
+    }
     float sum = 0;
-    for (std::uint32_t k = rows_.begin(r); k < rows_.end(r); ++k)
-      sum += third.r * e[k].r + third.g * e[k].g + third.b * e[k].b;
-    out[r] = sum / static_cast<float>(rows_.end(r) - rows_.begin(r));
+    std::uint32_t reached = 0;
+    for (std::uint32_t k = 0; k < count; ++k) sum += e[k];
+    for (std::uint32_t l = 0; l < std::min<std::uint32_t>(count, kMostLayers); ++l)
+      reached |= (all[receiver(r, l)] > 0 ? 1u : 0u) << l;
+    out[r] = sum / static_cast<float>(count);
+    lit[r] = static_cast<std::uint16_t>(reached);
   }
 }
 
 std::uint32_t SliceEntries::place(std::size_t s, std::size_t row) const {
-  const auto e = shades(s);
-  const std::uint32_t begin = rows_.begin(row), count = rows_.end(row) - begin;
-  const auto draw =
-      static_cast<std::uint32_t>(mix64(key_ ^ mix64((std::uint64_t{slots_[s].column} << 32) | row)) >> 32);
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint32_t receiver = begin + (draw + k) % count;
-    if (!is_black(e[receiver])) return receiver;
-  }
-  return kNowhere;
+  const std::size_t at = s * rows_.size() + row;
+  const Slot& slot = slots_[s];
+  if (slot.layer != kWhole) return scalars_[at] > 0 ? receiver(row, slot.layer) : kNowhere;
+  std::uint32_t lit = lit_[at];
+  if (lit == 0) return kNowhere;
+  const std::uint64_t bits = mix64(key_ ^ mix64((std::uint64_t{slot.column} << 32) | row)) >> 32;
+  for (auto skip = (bits * static_cast<std::uint64_t>(std::popcount(lit))) >> 32; skip > 0; --skip)
+    lit &= lit - 1;
+  return receiver(row, static_cast<std::size_t>(std::countr_zero(lit)));
 }
 
 bool SliceEntries::ask(std::size_t s, std::size_t row) {

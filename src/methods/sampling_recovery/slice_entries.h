@@ -1,5 +1,9 @@
-// What is known of a slice's entries: for every column that was looked at, its unoccluded contributions to
-// all receivers, and the visibilities that were sampled.
+// What is known of a slice's entries: for every column that was looked at, its unoccluded contribution to
+// each row, and the visibilities that were sampled.
+//
+// A row is a pixel with several receivers. While clusters are split, a column is evaluated at one receiver of
+// each row: receivers are dealt to a few layers of one per row, and a column has a random layer. Columns that
+// stay are evaluated at all receivers, of which one number per row is kept, and which of them it reaches.
 #pragma once
 
 #include <memory>
@@ -19,12 +23,13 @@ class SliceEntries {
     matrix::Index column;
     std::uint32_t pattern;
     std::uint32_t sampled;  // the first of the pattern's rows are known where the column reaches them
-    float most;             // greatest mean of r, g, b of an unoccluded entry
+    float most;             // greatest unoccluded scalar
+    std::uint16_t layer;    // kWhole: evaluated at all receivers
     bool any_visible;       // among the samples
   };
 
   explicit SliceEntries(const matrix::LightingMatrix& matrix)
-      : features_(matrix.row_features()), reader_(matrix.reader()) {}
+      : features_(matrix.row_features()), matrix_(matrix), reader_(matrix.reader()) {}
 
   // Forgets all columns.
   void start(std::span<const matrix::Index> slice, std::uint64_t key);
@@ -32,21 +37,31 @@ class SliceEntries {
   const SliceRows& rows() const { return rows_; }
   SamplePatterns& patterns() { return patterns_; }
 
-  // Evaluates a column without visibility; the number of its slot.
-  std::size_t add(matrix::Index column);
+  // Evaluates a column without visibility, at one receiver of each row; the number of its slot. Colours count
+  // by its scale.
+  std::size_t add(const matrix::ScaledColumn& column);
+  // The same at all receivers; of a slot that is there already, its samples stay.
+  std::size_t add_whole(const matrix::ScaledColumn& column);
+  void make_whole(std::size_t s, const matrix::ScaledColumn& column);
   Slot& slot(std::size_t s) { return slots_[s]; }
-  std::span<const Rgb> shades(std::size_t s) const {  // per receiver
-    return std::span(shades_).subspan(s * rows_.receivers().size(), rows_.receivers().size());
+  // Per row, whole: the mean over its receivers of the mean of r, g, b of an entry times the scale that it
+  // was added with, over the mean of that scale.
+  std::span<const float> scalars(std::size_t s) const {
+    return std::span(scalars_).subspan(s * rows_.size(), rows_.size());
   }
   // Per row: linalg::seen.
   std::span<std::uint8_t> seen(std::size_t s) {
     return std::span(seen_).subspan(s * rows_.size(), rows_.size());
   }
-  // The mean over a row's receivers of the mean of r, g, b of their entries times `scale`.
-  void scalars(std::size_t s, Rgb scale, std::span<float> out) const;
+  // Adds to each receiver's sum, in the order of rows().receivers(), its own E of these columns times its
+  // row's visibility; visibility: column after column.
+  void add_to(std::span<Rgb> sums, std::span<const matrix::ScaledColumn> columns,
+              std::span<const float> visibility) {
+    reader_->add_unoccluded(columns, visibility, row_of_, sums);
+  }
 
-  // Where an entry is looked from: one of the row's receivers that the column reaches, at random but always
-  // the same. kNowhere if it reaches none.
+  // Where an entry is looked from: one of the row's receivers that the column is known to reach, at random
+  // but always the same until the slot is whole. kNowhere if there is none.
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
   std::uint32_t place(std::size_t s, std::size_t row) const;
   // Asks for an entry, as seen from its place(). False if there is none. Answered by look().
@@ -61,14 +76,32 @@ class SliceEntries {
   std::size_t looked() const { return looked_; }  // entries, since start()
 
  private:
+  static constexpr std::size_t kLayers = 4, kMostLayers = 16;
+  static constexpr std::uint16_t kWhole = 0xffff;
+  std::uint32_t receivers_of(std::size_t row) const { return rows_.end(row) - rows_.begin(row); }
+  // The receiver of a row in a layer.
+  std::uint32_t receiver(std::size_t row, std::size_t layer) const {
+    return rows_.begin(row) + static_cast<std::uint32_t>(first_layer_[row] + layer) % receivers_of(row);
+  }
+
   matrix::RowFeatures features_;
-  std::unique_ptr<matrix::EntryReader> reader_;
+  const matrix::LightingMatrix& matrix_;
+  std::unique_ptr<matrix::EntryReader> reader_;  // of all receivers
+  std::vector<std::unique_ptr<matrix::EntryReader>> layers_;
+  std::size_t layer_count_ = 1;
+  std::vector<std::uint8_t> first_layer_;  // by row
+  std::vector<matrix::Index> layer_receivers_;
+  std::vector<std::uint32_t> row_of_;  // by receiver
   SliceRows rows_;
   SamplePatterns patterns_;
   std::uint64_t key_ = 0;
   std::size_t looked_ = 0;
   std::vector<Slot> slots_;
-  std::vector<Rgb> shades_, answers_;
+  std::vector<Rgb> answers_;
+  std::vector<float> scalars_, receiver_scalars_;
+  std::vector<std::uint16_t>
+      lit_;  // by whole slot and row: bit l: the column reaches its receiver in layer l
+  std::size_t new_slot(const matrix::ScaledColumn& column);
   std::vector<std::uint8_t> seen_;
   struct Request {
     std::uint32_t slot, row;

@@ -34,8 +34,12 @@ bool guessed(Entry e) { return e == Entry::predicted_visible || e == Entry::pred
 void SliceRecovery::assemble() {
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
   e_.resize(rows * columns);
-  for (std::size_t c = 0; c < columns; ++c)
-    entries_.scalars(clusters()[c].slot, clusters()[c].column.scale, std::span(e_).subspan(c * rows, rows));
+  for (std::size_t c = 0; c < columns; ++c) {
+    const auto scalars = entries_.scalars(clusters()[c].slot);
+    const float scale = mean(clusters()[c].column.scale);
+    float* const out = &e_[c * rows];
+    for (std::size_t i = 0; i < rows; ++i) out[i] = scale * scalars[i];
+  }
 }
 
 void SliceRecovery::separate() {
@@ -152,20 +156,14 @@ void SliceRecovery::recover_visibility() {
 void SliceRecovery::gather(std::span<Rgb> sums) {
   const SliceRows& rows = entries_.rows();
   gathered_.assign(rows.receivers().size(), Rgb(0));
-  for (std::size_t c = 0; c < clusters().size(); ++c) {
-    const auto shades = entries_.shades(clusters()[c].slot);
-    const Rgb scale = clusters()[c].column.scale;
-    const float* const visibility = &visibility_[c * rows.size()];
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const Rgb share = scale * visibility[r];
-      for (std::uint32_t k = rows.begin(r); k < rows.end(r); ++k) gathered_[k] += share * shades[k];
-    }
-  }
+  columns_.clear();
+  for (const SliceCut::Cluster& c : clusters()) columns_.push_back(c.column);
+  entries_.add_to(gathered_, columns_, visibility_);
   for (std::size_t k = 0; k < gathered_.size(); ++k) sums[rows.receivers()[k]] = gathered_[k];
 }
 
 void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::span<Rgb> sums) {
-  const Timer timer;
+  const ThreadTimer timer;
   double last = 0;
   const auto done = [&](std::size_t step) {
     const double now = timer.seconds();

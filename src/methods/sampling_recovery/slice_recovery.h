@@ -80,6 +80,7 @@ class SliceRecovery {
   std::vector<std::uint8_t> wrong_;  // by the separation
   std::vector<float> row_sums_;
   std::vector<std::uint32_t> asked_;  // entries that correction asked for
+  std::vector<matrix::ScaledColumn> columns_;
   std::vector<Rgb> gathered_;
   RecoveryTally tally_;
 };

@@ -85,6 +85,20 @@ class PairBlock {
   double visible_energy() const;
   double removed_energy() const;
 
+  // Σ weight · E over the channels, 0 where it is not visible: use(group, 16 floats).
+  template <typename Use>
+  void scalars(Rgb weights, Use&& use) const {
+    for (std::size_t g = 0; g < groups_; ++g) {
+      const Lane sum = select(mask_from_bits(visible_[g]), dot(splat(weights), e(g)), Lane{});
+      float lanes[kLanes];
+      store(lanes, sum);
+      use(g, lanes);
+    }
+  }
+  // sums += scale · shares[of[place]] · E; sums: 16 × r, g, b by group.
+  void add_shares(Rgb scale, std::span<const float> shares, std::span<const std::uint32_t> of,
+                  std::span<float> sums) const;
+
   // Running sums of the receivers of a row tile, in registers' order: sums += scale · E · V, column by
   // column.
   void load_sums(std::span<const Rgb> sums);

@@ -71,6 +71,21 @@ double PairBlock::store_sums(std::span<Rgb> sums) const {
   return added;
 }
 
+void PairBlock::add_shares(Rgb scale, std::span<const float> shares, std::span<const std::uint32_t> of,
+                           std::span<float> sums) const {
+  const Lane3 s = splat(scale);
+  for (std::size_t g = 0; g < groups_; ++g) {
+    if (visible_[g] == 0) continue;
+    float share[kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) share[k] = shares[of[16 * g + k]];
+    const Lane3 added = select(mask_from_bits(visible_[g]), s * load(share) * e(g), Lane3{});
+    float* const to = &sums[48 * g];
+    store(to, load(to) + added.x);
+    store(to + 16, load(to + 16) + added.y);
+    store(to + 32, load(to + 32) + added.z);
+  }
+}
+
 Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs) {
   Tally tally;
   tally.evaluated = pairs;
