@@ -91,11 +91,15 @@ void SliceEntries::make_whole(std::size_t s, const matrix::ScaledColumn& column)
       continue;
     }
     float sum = 0;
-    std::uint32_t reached = 0;
     for (std::uint32_t k = 0; k < count; ++k) sum += e[k];
-    for (std::uint32_t l = 0; l < std::min<std::uint32_t>(count, kMostLayers); ++l)
-      reached |= (all[receiver(r, l)] > 0 ? 1u : 0u) << l;
     out[r] = sum / static_cast<float>(count);
+    std::uint32_t reached = 0;
+    if (count <= kMostLayers) {
+      for (std::uint32_t l = 0; l < count; ++l) reached |= (all[receiver(r, l)] > 0 ? 1u : 0u) << l;
+    } else if (sum > 0) {
+      reached = static_cast<std::uint32_t>((draw(s, r) * count) >> 32);
+      while (!(e[reached] > 0)) reached = reached + 1 < count ? reached + 1 : 0;
+    }
     lit[r] = static_cast<std::uint16_t>(reached);
   }
 }
@@ -104,10 +108,10 @@ std::uint32_t SliceEntries::place(std::size_t s, std::size_t row) const {
   const std::size_t at = s * rows_.size() + row;
   const Slot& slot = slots_[s];
   if (slot.layer != kWhole) return scalars_[at] > 0 ? receiver(row, slot.layer) : kNowhere;
+  if (!(scalars_[at] > 0)) return kNowhere;
   std::uint32_t lit = lit_[at];
-  if (lit == 0) return kNowhere;
-  const std::uint64_t bits = mix64(key_ ^ mix64((std::uint64_t{slot.column} << 32) | row)) >> 32;
-  for (auto skip = (bits * static_cast<std::uint64_t>(std::popcount(lit))) >> 32; skip > 0; --skip)
+  if (receivers_of(row) > kMostLayers) return rows_.begin(row) + lit;
+  for (auto skip = (draw(s, row) * static_cast<std::uint64_t>(std::popcount(lit))) >> 32; skip > 0; --skip)
     lit &= lit - 1;
   return receiver(row, static_cast<std::size_t>(std::countr_zero(lit)));
 }

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/random.h"
 #include "linalg/visibility_predictors.h"
 #include "matrix/entry_reader.h"
 #include "methods/sampling_recovery/sample_patterns.h"
@@ -99,8 +100,13 @@ class SliceEntries {
   std::vector<Slot> slots_;
   std::vector<Rgb> answers_;
   std::vector<float> scalars_, receiver_scalars_;
-  std::vector<std::uint16_t>
-      lit_;  // by whole slot and row: bit l: the column reaches its receiver in layer l
+  // By whole slot and row: bit l: the column reaches its receiver in layer l; of more receivers than bits,
+  // the number of one that it reaches.
+  std::vector<std::uint16_t> lit_;
+  // 32 random bits of an entry.
+  std::uint64_t draw(std::size_t s, std::size_t row) const {
+    return mix64(key_ ^ mix64((std::uint64_t{slots_[s].column} << 32) | row)) >> 32;
+  }
   std::size_t new_slot(const matrix::ScaledColumn& column);
   std::vector<std::uint8_t> seen_;
   struct Request {
