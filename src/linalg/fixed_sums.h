@@ -19,4 +19,17 @@ inline float fixed_dot(const float* a, const float* b, std::size_t n) {
   return lane[0];
 }
 
+// Σ a[i], likewise.
+inline float fixed_sum(const float* a, std::size_t n) {
+  constexpr std::size_t kLanes = 16;
+  float lane[kLanes] = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) lane[l] += a[i + l];
+  for (std::size_t l = 0; i + l < n; ++l) lane[l] += a[i + l];
+  for (std::size_t width = kLanes / 2; width > 0; width /= 2)
+    for (std::size_t l = 0; l < width; ++l) lane[l] += lane[l + width];
+  return lane[0];
+}
+
 }  // namespace lumirank::linalg

@@ -10,6 +10,7 @@ namespace {
 
 using Few = SampledNeighbours::Few;
 constexpr std::size_t kCount = SampledNeighbours::kCount;
+constexpr std::size_t kStretch = 16;
 
 // Inserts a candidate among the nearest unless it is there already.
 void offer(std::uint32_t candidate, float distance, Few& nearest, std::array<float, kCount>& distances) {
@@ -80,10 +81,14 @@ void HilbertCurves::build(std::span<const Vec2f> points) {
   }
 }
 
+void SampledNeighbours::clear(std::size_t points) {
+  nearest_.assign(points, Few{kNone, kNone, kNone});
+  distance_.assign(points, {kInfinity, kInfinity, kInfinity});
+}
+
 void SampledNeighbours::find(const HilbertCurves& curves, std::span<const std::uint8_t> sampled) {
   const auto points = curves.points();
-  nearest_.assign(points.size(), Few{kNone, kNone, kNone});
-  distance_.assign(points.size(), {kInfinity, kInfinity, kInfinity});
+  clear(points.size());
   for (std::size_t c = 0; c < HilbertCurves::kCurves; ++c)
     for (const bool backwards : {false, true}) {
       const auto order = curves.order(c);
@@ -103,19 +108,38 @@ void SampledNeighbours::find(const HilbertCurves& curves, std::span<const std::u
 
 void SampledNeighbours::extend(const SampledNeighbours& before, const HilbertCurves& curves,
                                std::span<const std::uint32_t> more) {
-  nearest_ = before.nearest_;
-  distance_ = before.distance_;
+  if (&before != this) {
+    nearest_ = before.nearest_;
+    distance_ = before.distance_;
+  }
   const auto points = curves.points();
   const std::size_t n = points.size();
   to_.resize(n);
+  farthest_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) farthest_[i] = distance_[i].back();
   for (const std::uint32_t sample : more) {
     const Vec2f at = points[sample];
     for (std::size_t i = 0; i < n; ++i) {
       const float x = points[i].x - at.x, y = points[i].y - at.y;
       to_[i] = x * x + y * y;
     }
-    for (std::size_t i = 0; i < n; ++i)
-      if (to_[i] < distance_[i].back()) offer(sample, to_[i], nearest_[i], distance_[i]);
+    // Few points have a new neighbour: sixteen at a time are looked over for one.
+    for (std::size_t begin = 0; begin < n; begin += kStretch) {
+      const std::size_t end = std::min(n, begin + kStretch);
+      const float *const to = &to_[begin], *const farthest = &farthest_[begin];
+      int nearer = 0;
+      if (end - begin == kStretch) {
+        for (std::size_t k = 0; k < kStretch; ++k) nearer |= to[k] < farthest[k] ? 1 : 0;
+      } else {
+        nearer = 1;
+      }
+      if (nearer == 0) continue;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!(to_[i] < farthest_[i])) continue;
+        offer(sample, to_[i], nearest_[i], distance_[i]);
+        farthest_[i] = distance_[i].back();
+      }
+    }
   }
 }
 

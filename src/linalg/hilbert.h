@@ -46,7 +46,9 @@ class SampledNeighbours {
   // `sampled`: one flag per point. Looks at three sampled predecessors and three successors on each curve, so
   // it may miss a nearest one. A sampled point has itself first.
   void find(const HilbertCurves& curves, std::span<const std::uint8_t> sampled);
-  // The same after more points have been sampled; of these it misses none.
+  // Without any sample yet.
+  void clear(std::size_t points);
+  // The same after more points have been sampled; of these it misses none. `before` may be this one.
   void extend(const SampledNeighbours& before, const HilbertCurves& curves,
               std::span<const std::uint32_t> more);
   std::span<const Few> of() const { return nearest_; }  // kNone where there are fewer samples
@@ -54,7 +56,8 @@ class SampledNeighbours {
  private:
   std::vector<Few> nearest_;
   std::vector<std::array<float, kCount>> distance_;
-  std::vector<float> to_;  // distances to one sample
+  std::vector<float> farthest_;  // of the distances, by point
+  std::vector<float> to_;        // distances to one sample
 };
 
 }  // namespace lumirank::linalg

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "linalg/fixed_sums.h"
 
 namespace lumirank::methods {
 
@@ -147,10 +148,13 @@ void Prediction::run(const RecoverySettings& settings, std::span<const SliceCut:
   // A wrong entry of a bright column costs more: so that all columns may bring as much error, the brighter
   // ones may be wrong so much less often.
   double sum = 0;
-  for (const float x : e) sum += static_cast<double>(x);
+  column_sums_.resize(columns_.size());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    double own = 0;
-    for (std::size_t i = 0; i < rows; ++i) own += static_cast<double>(e[c * rows + i]);
+    column_sums_[c] = static_cast<double>(linalg::fixed_sum(&e[c * rows], rows));
+    sum += column_sums_[c];
+  }
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const double own = column_sums_[c];
     const double brighter = sum > 0 ? own / sum * static_cast<double>(columns_.size()) : 0;
     columns_[c].allowed =
         static_cast<float>(settings.prediction_error / (settings.weighted ? std::max(brighter, 1.0) : 1.0));

@@ -57,6 +57,7 @@ class Prediction {
   std::vector<std::uint32_t> sample_rows_;
   std::vector<std::uint8_t> sample_visible_, drawn_;
   std::vector<float> probabilities_, stretch_probability_;
+  std::vector<double> column_sums_;  // of e
   PredictionTally tally_;
 };
 

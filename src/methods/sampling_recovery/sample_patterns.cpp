@@ -7,6 +7,9 @@
 namespace lumirank::methods {
 
 namespace {
+// So many samples are compared to each row faster than they are found along curves.
+constexpr std::size_t kFew = 128;
+
 std::uint32_t reversed(std::uint32_t x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -49,6 +52,9 @@ std::span<const SamplePatterns::Few> SamplePatterns::nearest(std::size_t pattern
   if (before < k) {
     p.tables[k]->extend(*p.tables[before], *curves_,
                         std::span(p.order).subspan(p.counts[before], count - p.counts[before]));
+  } else if (count <= kFew) {
+    p.tables[k]->clear(p.order.size());
+    p.tables[k]->extend(*p.tables[k], *curves_, std::span(p.order).first(count));
   } else {
     sampled_.assign(p.order.size(), 0);
     for (std::size_t s = 0; s < count; ++s) sampled_[p.order[s]] = 1;

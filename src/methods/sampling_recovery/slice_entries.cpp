@@ -129,7 +129,10 @@ void SliceEntries::ask_next(std::size_t s, std::size_t count) {
   Slot& slot = slots_[s];
   const auto order = patterns_.order(slot.pattern);
   const std::size_t end = std::min(order.size(), slot.sampled + count);
-  for (std::size_t k = slot.sampled; k < end; ++k) ask(s, order[k]);
+  // In the rows' order, so that rays that are shot together start near each other.
+  asked_rows_.assign(order.begin() + slot.sampled, order.begin() + static_cast<std::ptrdiff_t>(end));
+  std::sort(asked_rows_.begin(), asked_rows_.end());
+  for (const std::uint32_t row : asked_rows_) ask(s, row);
   slot.sampled = static_cast<std::uint32_t>(end);
 }
 

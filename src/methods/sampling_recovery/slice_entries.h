@@ -114,6 +114,7 @@ class SliceEntries {
   };
   std::vector<Request> requests_;
   std::vector<matrix::Index> asked_places_, asked_columns_;
+  std::vector<std::uint32_t> asked_rows_;
 };
 
 }  // namespace lumirank::methods

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/timer.h"
 
@@ -86,17 +87,21 @@ void SliceRecovery::ask_where_dense() {
   // dense.)
   wrong_.resize(e_.size());
   const auto z = separation_.sparse();
+  const float *const sparse = z.data(), *const all = whole().data();
+  const Entry* const state = state_.data();
+  std::uint8_t* const wrong = wrong_.data();
   for (std::size_t at = 0; at < wrong_.size(); ++at)
-    wrong_[at] = state_[at] != Entry::free && std::abs(z[at]) > 0.5f * whole()[at] ? 1 : 0;
+    wrong[at] =
+        static_cast<std::uint8_t>((std::abs(sparse[at]) > 0.5f * all[at]) & (state[at] != Entry::free));
   density_.build(wrong_, rows, columns);
   const auto density = density_.density();
   const auto least = static_cast<float>(settings_.density);
-  for (std::size_t c = 0; c < columns; ++c)
-    for (std::size_t i = 0; i < rows; ++i) {
-      const std::size_t at = c * rows + i;
-      if (guessed(state_[at]) && density[at] > least && entries_.ask(clusters()[c].slot, i))
-        asked_.push_back(static_cast<std::uint32_t>(at));
-    }
+  chosen_.resize(rows);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const float* const dense = &density[c * rows];
+    for (std::size_t i = 0; i < rows; ++i) chosen_[i] = dense[i] > least ? 1 : 0;
+    ask_chosen(c);
+  }
 }
 
 // Where a guess may cost much: it is expected to be wrong by 2p(1 − p)E.
@@ -108,13 +113,27 @@ void SliceRecovery::ask_where_uncertain() {
   for (std::size_t c = 0; c < columns; ++c)
     for (std::size_t i = 0; i < rows; ++i) row_sums_[i] += e_[c * rows + i] * p[c * rows + i];
   for (float& sum : row_sums_) sum *= 0.5f * static_cast<float>(settings_.uncertain);
-  for (std::size_t c = 0; c < columns; ++c)
-    for (std::size_t i = 0; i < rows; ++i) {
-      const std::size_t at = c * rows + i;
-      if (p[at] * (1 - p[at]) * e_[at] > row_sums_[i] && guessed(state_[at]) &&
-          entries_.ask(clusters()[c].slot, i))
-        asked_.push_back(static_cast<std::uint32_t>(at));
-    }
+  chosen_.resize(rows);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const float *const pc = &p[c * rows], *const e = &e_[c * rows], *const sums = row_sums_.data();
+    for (std::size_t i = 0; i < rows; ++i) chosen_[i] = pc[i] * (1 - pc[i]) * e[i] > sums[i] ? 1 : 0;
+    ask_chosen(c);
+  }
+}
+
+// Those of a column's guesses that are chosen_.
+void SliceRecovery::ask_chosen(std::size_t c) {
+  const std::size_t rows = chosen_.size();
+  const std::uint8_t* const first = chosen_.data();
+  const auto from = [&](std::size_t i) {
+    const void* const found = i < rows ? std::memchr(first + i, 1, rows - i) : nullptr;
+    return found ? static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - first) : rows;
+  };
+  for (std::size_t i = from(0); i < rows; i = from(i + 1)) {
+    const std::size_t at = c * rows + i;
+    if (guessed(state_[at]) && entries_.ask(clusters()[c].slot, i))
+      asked_.push_back(static_cast<std::uint32_t>(at));
+  }
 }
 
 void SliceRecovery::look() {

@@ -62,6 +62,7 @@ class SliceRecovery {
   void look();
   void ask_where_dense();
   void ask_where_uncertain();
+  void ask_chosen(std::size_t column);
   void recover_visibility();
   void gather(std::span<Rgb> sums);
 
@@ -77,7 +78,8 @@ class SliceRecovery {
   }
   std::vector<float> e_, d_, whole_, visibility_;
   std::vector<linalg::Entry> state_;
-  std::vector<std::uint8_t> wrong_;  // by the separation
+  std::vector<std::uint8_t> wrong_;   // by the separation
+  std::vector<std::uint8_t> chosen_;  // of a column's entries: to be asked for
   std::vector<float> row_sums_;
   std::vector<std::uint32_t> asked_;  // entries that correction asked for
   std::vector<matrix::ScaledColumn> columns_;
