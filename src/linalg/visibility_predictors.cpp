@@ -39,18 +39,33 @@ void nearest_probabilities(std::span<const SampledNeighbours::Few> nearest,
 }
 
 SeparatingPlane SeparatingPlane::fit(std::span<const Vec3f> points, const ColumnSamples& samples) {
-  Eigen::Matrix4f square = Eigen::Matrix4f::Zero();
-  Eigen::Vector4f right = Eigen::Vector4f::Zero();
+  PlaneSums sums;
+  sums.add(points, samples);
+  return sums.fit();
+}
+
+void PlaneSums::add(std::span<const Vec3f> points, const ColumnSamples& samples) {
   for (std::size_t k = 0; k < samples.rows.size(); ++k) {
     const Vec3f p = points[samples.rows[k]];
-    const Eigen::Vector4f x(p.x, p.y, p.z, 1);
-    square.noalias() += x * x.transpose();
-    right += samples.visible[k] ? x : Eigen::Vector4f(-x);
+    const float x[4] = {p.x, p.y, p.z, 1};
+    const float y = samples.visible[k] ? 1.0f : -1.0f;
+    std::size_t at = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = a; b < 4; ++b) square_[at++] += x[a] * x[b];
+      right_[a] += y * x[a];
+    }
   }
+}
+
+SeparatingPlane PlaneSums::fit() const {
   SeparatingPlane plane;
-  if (samples.rows.empty()) return plane;
+  if (!(square_[9] > 0)) return plane;  // no sample
+  Eigen::Matrix4f square;
+  std::size_t at = 0;
+  for (int a = 0; a < 4; ++a)
+    for (int b = a; b < 4; ++b) square(a, b) = square(b, a) = square_[at++];
   square.diagonal().array() += 1e-3f * square.trace() / 4;
-  const Eigen::Vector4f w = square.ldlt().solve(right);
+  const Eigen::Vector4f w = square.ldlt().solve(Eigen::Vector4f(right_.data()));
   for (int a = 0; a < 4; ++a) plane.w[static_cast<std::size_t>(a)] = w[a];
   return plane;
 }

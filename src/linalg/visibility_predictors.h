@@ -48,6 +48,17 @@ struct SeparatingPlane {
   void probabilities(std::span<const Vec3f> points, std::span<float> out) const;
 };
 
+// The same as samples come: sums of products, so that each sample is looked at once.
+class PlaneSums {
+ public:
+  void add(std::span<const Vec3f> points, const ColumnSamples& samples);
+  SeparatingPlane fit() const;
+
+ private:
+  std::array<float, 10> square_{};  // upper triangle of XᵀX, row after row
+  std::array<float, 4> right_{};    // XᵀY
+};
+
 // Naive Bayes over five columns side by side: P(v | i) ∝ P(v) P(i | v), where the feature i is the stretch of
 // 16 rows that row i lies in (rows must be in an order in which neighbours are near); Laplace-smoothed.
 class BayesCounts {

@@ -24,10 +24,9 @@ PredictionTally& PredictionTally::operator+=(const PredictionTally& o) {
   return *this;
 }
 
-// Samples begin … end − 1 of the column's pattern, where they are known, into sample_rows_ and
-// sample_visible_.
-void Prediction::gather_samples(SliceEntries& entries, const Column& column, std::size_t begin,
-                                std::size_t end) {
+// Column c's predictors learn of samples begin … end − 1 of its pattern, where they are known.
+void Prediction::learn(std::size_t c, std::size_t begin, std::size_t end, SliceEntries& entries) {
+  Column& column = columns_[c];
   const auto order = entries.patterns().order(entries.slot(column.slot).pattern);
   const auto known = entries.seen(column.slot);
   sample_rows_.clear();
@@ -37,6 +36,8 @@ void Prediction::gather_samples(SliceEntries& entries, const Column& column, std
     sample_rows_.push_back(order[k]);
     sample_visible_.push_back(known[order[k]] == seen::kVisible ? 1 : 0);
   }
+  counts_.add(c, {sample_rows_, sample_visible_});
+  column.plane.add(entries.rows().points(), {sample_rows_, sample_visible_});
 }
 
 // Tests what was trained on the first samples of column c by those that came since. True if the best
@@ -49,9 +50,7 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, Slice
   const auto known = entries.seen(column.slot);
   const auto neighbours =
       entries.patterns().nearest_of_next(slot.pattern, column.trained, slot.sampled - column.trained);
-  gather_samples(entries, column, 0, column.trained);
-  const SeparatingPlane fitted =
-      SeparatingPlane::fit(entries.rows().points(), {sample_rows_, sample_visible_});
+  const SeparatingPlane fitted = column.plane.fit();
   std::array<float, 3> wrong{};
   float tests = 0;
   for (std::size_t k = column.trained; k < slot.sampled; ++k) {
@@ -83,9 +82,7 @@ void Prediction::predict(std::size_t c, SliceEntries& entries, std::span<float> 
                                     entries.seen(column.slot), out);
       break;
     case plane:
-      gather_samples(entries, column, 0, slot.sampled);
-      SeparatingPlane::fit(entries.rows().points(), {sample_rows_, sample_visible_})
-          .probabilities(entries.rows().points(), out);
+      column.plane.fit().probabilities(entries.rows().points(), out);
       break;
     case bayes:
       counts_.probabilities(c, stretch_probability_);
@@ -141,8 +138,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const SliceCut:
     columns_.push_back({clusters[c].slot});
     Column& column = columns_.back();
     column.trained = entries.slot(column.slot).sampled;
-    gather_samples(entries, column, 0, column.trained);
-    counts_.add(c, {sample_rows_, sample_visible_});
+    learn(c, 0, column.trained, entries);
     active_.push_back(static_cast<std::uint32_t>(c));
   }
   // A wrong entry of a bright column costs more: so that all columns may bring as much error, the brighter
@@ -174,8 +170,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const SliceCut:
     // All have been tested on what this round brought; now they learn from it.
     for (const std::uint32_t c : active_) {
       Column& column = columns_[c];
-      gather_samples(entries, column, column.trained, entries.slot(column.slot).sampled);
-      counts_.add(c, {sample_rows_, sample_visible_});
+      learn(c, column.trained, entries.slot(column.slot).sampled, entries);
       column.trained = entries.slot(column.slot).sampled;
     }
     std::swap(active_, still_active_);

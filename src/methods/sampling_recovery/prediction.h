@@ -43,9 +43,10 @@ class Prediction {
     Kind best = nearest;
     float error = 0;
     float allowed = 0;  // error
+    linalg::PlaneSums plane = {};
   };
 
-  void gather_samples(SliceEntries& entries, const Column& column, std::size_t begin, std::size_t end);
+  void learn(std::size_t c, std::size_t begin, std::size_t end, SliceEntries& entries);
   bool validate(const RecoverySettings& settings, std::size_t c, SliceEntries& entries);
   void predict(std::size_t c, SliceEntries& entries, std::span<float> out);
   void fill(const RecoverySettings& settings, std::uint64_t key, std::span<const float> e,
