@@ -11,7 +11,7 @@
 //   nearest,
 //                              plane, bayes, all. Until the prediction error is met; _equal: all after the
 //                              same five rounds. −1 where no receiver is.
-//   choice                     share of columns: red nearest, green bayes, blue plane
+//   choice                     share of tested columns: red nearest, green bayes, blue plane
 //   few_M, many_M              matrices of two slices, rows along Hilbert's curve, columns along the light
 //   tree
 // Predictors are judged alone: no separation, no correction, no looking where a guess would cost much.

@@ -34,6 +34,18 @@ film::Image Looker::paint(const std::function<Rgb(const Findings&)>& value) cons
   return image;
 }
 
+namespace {
+
+// Columns by the predictor that was best. Columns that reach hardly any row have no test, and count as
+// nearest even where another predictor stands alone: they are left out.
+std::array<double, 3> chosen_by_test(const Findings& f, bool equal) {
+  auto chosen = (equal ? f.equal : f.adaptive)[3].chosen;
+  chosen[0] -= (equal ? f.equal : f.adaptive)[1].chosen[0];
+  return chosen;
+}
+
+}  // namespace
+
 json Looker::write_pictures() const {
   json told = json::object();
   for (std::size_t k = 0; k < kPredictors.size(); ++k)
@@ -43,11 +55,12 @@ json Looker::write_pictures() const {
               return Rgb(static_cast<float>((equal ? f.equal : f.adaptive)[k].wrong.share()));
             }));
       Predicted sum;
-      double entries = 0, columns = 0, best = 0;
+      double entries = 0, columns = 0, best = 0, tested = 0;
       for (const Findings& f : findings_) {
         const Predicted& p = (equal ? f.equal : f.adaptive)[k];
         sum.wrong += p.wrong, sum.looked += p.looked, sum.failed += p.failed;
-        for (std::size_t c = 0; c < 3; ++c) sum.chosen[c] += p.chosen[c];
+        const auto chosen = chosen_by_test(f, equal);
+        for (std::size_t c = 0; c < 3; ++c) sum.chosen[c] += chosen[c], tested += chosen[c];
         entries += f.entries, columns += f.columns;
         // Slices where it alone is the best of the three.
         const auto& three = equal ? f.equal : f.adaptive;
@@ -60,15 +73,19 @@ json Looker::write_pictures() const {
       j["looked"] = sum.looked / entries;
       j["failed_columns"] = sum.failed / columns;
       j["best_in_slices"] = best / static_cast<double>(findings_.size());
-      j["columns"] = {{"nearest", sum.chosen[0] / columns},
-                      {"plane", sum.chosen[1] / columns},
-                      {"bayes", sum.chosen[2] / columns}};
+      if (k < 3) continue;
+      j["tested_columns"] = tested / columns;
+      j["columns"] = {{"nearest", sum.chosen[0] / tested},
+                      {"plane", sum.chosen[1] / tested},
+                      {"bayes", sum.chosen[2] / tested}};
     }
   write("choice", paint([](const Findings& f) {
-          const auto& chosen = f.adaptive[3].chosen;
-          return Rgb{static_cast<float>(chosen[0]), static_cast<float>(chosen[2]),
-                     static_cast<float>(chosen[1])} *
-                 (1.0f / static_cast<float>(std::max(f.columns, 1.0)));
+          const auto chosen = chosen_by_test(f, false);
+          const double tested = chosen[0] + chosen[1] + chosen[2];
+          const auto share = [&](std::size_t c) {
+            return static_cast<float>(chosen[c] / std::max(tested, 1.0));
+          };
+          return Rgb{share(0), share(2), share(1)};
         }));
   write("mixed",
         paint([](const Findings& f) { return Rgb(static_cast<float>(f.mixed / std::max(f.entries, 1.0))); }));

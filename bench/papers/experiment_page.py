@@ -238,7 +238,7 @@ def bars(title, x_label, y_label, heights, curves, width=600, height=340):
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:1180px;margin:2em auto;padding:0 1em;color:#222;background:#fff}
 table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;border-bottom:1px solid #ddd;text-align:right}td:first-child,th:first-child{text-align:left}
 figure{display:inline-block;margin:.3em;vertical-align:top}figure img{display:block;image-rendering:auto;max-width:100%}figcaption{font-size:13px;max-width:380px}
-.bar{display:flex;gap:.5em;align-items:center;font-size:12px;margin:.2em 0}.bar i{flex:1;height:.9em;border:1px solid #888}
+.bar{display:flex;flex-wrap:wrap;gap:.5em;align-items:center;font-size:12px;margin:.2em 0}.bar i{flex:1;min-width:3em;height:.9em;border:1px solid #888}
 svg text{font:12px system-ui,sans-serif;fill:#333}svg .t{font-weight:600}svg .g{stroke:#e4e4e4}svg{max-width:100%;margin:.4em}
 @media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}td,th{border-color:#444}svg text{fill:#ccc}svg .g{stroke:#333}}"""
 
@@ -282,7 +282,7 @@ class Page:
         """The first channel holds 0, 1, 2 …; kinds: (name, colour) of each."""
         width, height, values = image
         write_png(self.folder / "images" / f"{name}.png", width, height, colours_of(values, 0, len(kinds), [bytes(c) for _, c in kinds]))
-        legend = "".join(f'<i style="background:rgb({c[0]},{c[1]},{c[2]});flex:0 0 1.2em"></i><span>{html.escape(n)}</span>' for n, c in kinds)
+        legend = "".join(f'<i style="background:rgb({c[0]},{c[1]},{c[2]});flex:0 0 1.2em;min-width:0"></i><span>{html.escape(n)}</span>' for n, c in kinds)
         self.figure(name, width, caption, f'<div class="bar">{legend}</div>', shown)
 
     def raw(self, name, width, height, pixels, caption):
@@ -292,7 +292,7 @@ class Page:
 
     def figure(self, name, width, caption, below="", shown=None):
         shown = shown or max(256, min(width, 400))
-        self.body.append(f'<figure><img src="images/{name}.png" width="{shown}" alt="{html.escape(caption)}">{below}<figcaption>{html.escape(caption)}</figcaption></figure>')
+        self.body.append(f'<figure style="max-width:{shown}px"><img src="images/{name}.png" width="{shown}" alt="{html.escape(caption)}">{below}<figcaption>{html.escape(caption)}</figcaption></figure>')
 
     def svg(self, drawing):
         self.body.append(drawing)

@@ -201,15 +201,19 @@ class Experiments:
             choice = read_pfm(folder / "choice.pfm")
             page.raw(f"{name}_choice", choice[0], choice[1], bytes(112 if v < 0 else min(255, round(255 * v)) for v in choice[2]),
                      "Columns by the predictor chosen: red nearest samples, green Bayes, blue plane")
+            for channel, words in ((2, "the plane"), (1, "Bayes")):
+                share = choice[2][channel::3]
+                page.scaled(f"{name}_choice_{channel}", (choice[0], choice[1], [v for v in share for _ in range(3)]), 0, max(0.05, 0.05 * math.ceil(20 * max(share))),
+                            f"Share of the columns that chose {words}", nothing=lambda v: v < 0, label=percent)
             page.scaled(f"{name}_mixed", read_pfm(folder / "mixed.pfm"), 0, 0.5, "How mixed columns are: the share of the rarer of visible and hidden, mean over columns", nothing=lambda v: v < 0, label=percent)
             rows = []
             for equal, until in (("", "until the prediction error is met"), ("equal_", "after five rounds")):
                 for p, words in PREDICTORS.items():
                     told = found["predictors"][f"wrong_{equal}{p}"]
-                    columns = told["columns"]
                     rows.append((f"{words}, {until}", percent(told["wrong"]), percent(told["wrong_light"]), percent(told["looked"]), "" if p == "all" else percent(told["best_in_slices"]),
-                                 "" if equal else percent(told["failed_columns"]), " / ".join(percent(columns[c]) for c in ("nearest", "plane", "bayes")) if p == "all" else ""))
-            page.table(("", "wrong", "weighted by light", "looked at", "best of the three in slices", "columns that failed", "columns: nearest / plane / Bayes"), rows)
+                                 "" if equal else percent(told["failed_columns"]), " / ".join(percent(told["columns"][c]) for c in ("nearest", "plane", "bayes")) if p == "all" else ""))
+            page.table(("", "wrong", "weighted by light", "looked at", "best of the three in slices", "columns that failed", "tested columns: nearest / plane / Bayes"), rows)
+            page.say(f"Columns that reach too few rows to be tested ({percent(1 - found['predictors']['wrong_all']['tested_columns'])}) are not counted among those that chose.")
             page.write()
 
     def matrices(self):
