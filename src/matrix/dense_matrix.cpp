@@ -99,11 +99,15 @@ void DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rg
 }
 
 ColumnSet DenseMatrix::column_set(Index j) const {
+  std::call_once(greatest_known_, [&] {
+    greatest_.assign(columns_, Rgb(0));
+    for (std::size_t i = 0; i < rows_; ++i)
+      for (std::size_t k = 0; k < columns_; ++k)
+        for (int c = 0; c < 3; ++c)
+          greatest_[k][c] = std::max(greatest_[k][c], unoccluded_[i * columns_ + k][c]);
+  });
   ColumnSet set;
-  for (std::size_t i = 0; i < rows_; ++i) {
-    const Rgb e = unoccluded_[i * columns_ + j];
-    for (int c = 0; c < 3; ++c) set.intensity[c] = std::max(set.intensity[c], e[c]);
-  }
+  set.intensity = greatest_[j];
   set.box.extend(column_position.empty() ? Vec3f{} : column_position[j]);
   set.ceiling = set.intensity;
   return set;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 #include "matrix/lighting_matrix.h"
@@ -53,6 +54,8 @@ class DenseMatrix : public LightingMatrix {
   std::size_t rows_, columns_;
   std::vector<Rgb> unoccluded_;
   std::vector<std::uint8_t> visibility_;
+  mutable std::once_flag greatest_known_;
+  mutable std::vector<Rgb> greatest_;  // by column: the greatest entries, as if all were visible
 };
 
 }  // namespace lumirank::matrix
