@@ -305,3 +305,17 @@ class Page:
             temporary = self.folder / (name + ".part")
             temporary.write_text(content)
             os.replace(temporary, self.folder / name)
+
+
+def run_parts(parser, args, parts, make):
+    """Runs the parts that args.parts names, in that order, on make(args), which has a page; the page is whole after each."""
+    args.out.mkdir(parents=True, exist_ok=True)
+    wanted = args.parts.split(",")
+    for part in wanted:
+        if part not in parts:
+            parser.error(f"there is no part {part}; the parts are {', '.join(parts)}")
+    experiments = make(args)
+    for part in wanted:
+        parts[part](experiments)
+        experiments.page.write()
+    print(f"wrote {args.out / 'index.html'}")

@@ -27,7 +27,7 @@ import pathlib
 import subprocess
 import sys
 
-from experiment_page import Page, bars, percent, plot, read_pfm, to_display
+from experiment_page import Page, bars, percent, plot, read_pfm, run_parts, to_display
 
 HERE = pathlib.Path(__file__).resolve().parent
 OWN = ("courtyard", "fair", "room", "arcade")
@@ -40,7 +40,7 @@ LADDERS = {
     "stochastic-lightcuts": ("nodes", (16, 64, 256)),
     "row-column-sampling": ("rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
     "visibility-completion": ("columns", (100, 300, 600)),
-    OURS: ("alpha", (0.08, 0.02, 0.005)),
+    OURS: ("initial-columns:alpha", ("100:0.02", "250:0.008", "500:0.003", "1000:0.001")),
 }
 PREDICTORS = {"nearest": "Nearest samples", "plane": "Plane", "bayes": "Naive Bayes", "all": "Best of the three"}
 LOOKED = (("guessed", (20, 20, 30)), ("sampled", (235, 235, 220)), ("uncertain", (250, 170, 40)), ("corrected", (225, 50, 60)))
@@ -318,16 +318,7 @@ def main():
     parser.add_argument("--look-lights", type=int, help="default 20000")
     parser.add_argument("--threads", type=int, default=0)
     args = parser.parse_args()
-    args.out.mkdir(parents=True, exist_ok=True)
-    wanted = args.parts.split(",")
-    for part in wanted:
-        if part not in PARTS:
-            parser.error(f"there is no part {part}; the parts are {', '.join(PARTS)}")
-    experiments = Experiments(args)
-    for part in wanted:
-        PARTS[part](experiments)
-        experiments.page.write()
-    print(f"wrote {args.out / 'index.html'}")
+    run_parts(parser, args, PARTS, Experiments)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ import pathlib
 import subprocess
 import sys
 
-from experiment_page import Page, Runs, Truth, percent, plot, read_pfm
+from experiment_page import Page, Runs, Truth, percent, plot, read_pfm, run_parts
 
 HERE = pathlib.Path(__file__).resolve().parent
 GLOSSY = ("kitchen", "hall", "tableau")
@@ -315,16 +315,7 @@ def main():
     parser.add_argument("--threads", type=int, default=0)
     args = parser.parse_args()
     args.scenes = args.scenes or args.out / "scenes"
-    args.out.mkdir(parents=True, exist_ok=True)
-    wanted = args.parts.split(",")
-    for part in wanted:
-        if part not in PARTS:
-            parser.error(f"there is no part {part}; the parts are {', '.join(PARTS)}")
-    experiments = Experiments(args)
-    for part in wanted:
-        PARTS[part](experiments)
-        experiments.page.write()
-    print(f"wrote {args.out / 'index.html'}")
+    run_parts(parser, args, PARTS, Experiments)
 
 
 if __name__ == "__main__":

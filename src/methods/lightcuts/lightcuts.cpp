@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "methods/known_rows.h"
+#include "methods/light_tree/cut_costs.h"
 #include "methods/light_tree/light_tree.h"
 #include "methods/lightcuts/block_painter.h"
 #include "methods/parameters.h"
@@ -78,28 +79,20 @@ UnitRows stretches(std::size_t rows) {
 }
 
 void write_costs(const Pool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
-  double cuts = 0, nodes = 0, most = 0, bounds = 0, entries = 0, interpolated = 0;
+  CutCosts costs;
+  double interpolated = 0;
   auto& numbers = trace.numbers;
   pool.for_each([&](const Workspace& w) {
-    cuts += static_cast<double>(w.cuts.cuts_made()), nodes += static_cast<double>(w.cuts.nodes());
-    most = std::max(most, static_cast<double>(w.cuts.most_nodes()));
-    bounds += static_cast<double>(w.cuts.bounds_computed());
-    entries += static_cast<double>(w.cuts.rounds().entries() + w.painter.shaded());
+    costs.add({static_cast<double>(w.cuts.cuts_made()), static_cast<double>(w.cuts.nodes()),
+               static_cast<double>(w.cuts.most_nodes()), static_cast<double>(w.cuts.bounds_computed()),
+               static_cast<double>(w.cuts.rounds().entries() + w.painter.shaded())});
     interpolated += static_cast<double>(w.painter.interpolated());
     numbers["cpu_seconds.bounds"] += w.cuts.rounds().seconds_cuts();
     numbers["cpu_seconds.entries"] += w.cuts.rounds().seconds_entries();
     numbers["cpu_seconds.reconstruction"] += w.painter.seconds();
   });
-  const auto per = [](double what, double of) { return of > 0 ? what / of : 0.0; };
-  const auto rows = static_cast<double>(matrix.rows()), columns = static_cast<double>(matrix.columns());
-  numbers["rows"] = 0;
-  numbers["columns"] = per(entries, rows);
-  numbers["columns_max"] = most;
-  numbers["cuts"] = cuts;
-  numbers["cut_nodes"] = per(nodes, cuts);
-  numbers["bounds"] = per(bounds, rows);
-  numbers["interpolated"] = per(interpolated, rows);
-  numbers["sampling_rate"] = columns > 0 ? per(entries, rows * columns) : 1.0;
+  costs.write(matrix, "cut_nodes", numbers);
+  numbers["interpolated"] = interpolated / std::max(1.0, static_cast<double>(matrix.rows()));
 }
 
 class Lightcuts final : public Method {

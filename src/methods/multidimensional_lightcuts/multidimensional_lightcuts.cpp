@@ -12,6 +12,7 @@
 #include "base/timer.h"
 #include "matrix/entry_reader.h"
 #include "methods/known_rows.h"
+#include "methods/light_tree/cut_costs.h"
 #include "methods/multidimensional_lightcuts/pair_cut.h"
 #include "methods/parameters.h"
 #include "methods/unit_pass.h"
@@ -85,7 +86,7 @@ class Workspace {
       if (!any) break;
       values_.resize(columns_.size());
       reader_->entries_at(places_, columns_, values_);
-      entries += static_cast<double>(columns_.size());
+      costs.entries += static_cast<double>(columns_.size());
       lap(seconds_entries);
       std::uint32_t from = 0;
       for (std::size_t k = 0; k < count; ++k) {
@@ -95,14 +96,13 @@ class Workspace {
     }
     for (std::size_t k = 0; k < count; ++k) {
       cuts_[k].write_sums(sums);
-      ++cuts, pairs += static_cast<double>(cuts_[k].size());
-      most_pairs = std::max(most_pairs, static_cast<double>(cuts_[k].size()));
-      bounds += static_cast<double>(cuts_[k].bounds_computed());
+      const auto pairs = static_cast<double>(cuts_[k].size());
+      costs.add({1, pairs, pairs, static_cast<double>(cuts_[k].bounds_computed()), 0});
     }
   }
 
   double seconds_cuts = 0, seconds_entries = 0;
-  double entries = 0, cuts = 0, pairs = 0, most_pairs = 0, bounds = 0;  // whole numbers
+  CutCosts costs;
 
  private:
   std::unique_ptr<matrix::EntryReader> reader_;
@@ -126,24 +126,15 @@ UnitRows together(const UnitRows& pixels) {
 }
 
 void write_costs(const Pool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
-  double cuts = 0, pairs = 0, most = 0, bounds = 0, entries = 0;
+  CutCosts costs;
   auto& numbers = trace.numbers;
   numbers["cpu_seconds.bounds"] = numbers["cpu_seconds.entries"] = 0;
   pool.for_each([&](const Workspace& w) {
-    cuts += w.cuts, pairs += w.pairs, most = std::max(most, w.most_pairs);
-    bounds += w.bounds, entries += w.entries;
+    costs.add(w.costs);
     numbers["cpu_seconds.bounds"] += w.seconds_cuts;
     numbers["cpu_seconds.entries"] += w.seconds_entries;
   });
-  const auto per = [](double what, double of) { return of > 0 ? what / of : 0.0; };
-  const auto rows = static_cast<double>(matrix.rows()), columns = static_cast<double>(matrix.columns());
-  numbers["rows"] = 0;
-  numbers["columns"] = per(entries, rows);
-  numbers["columns_max"] = most;
-  numbers["cuts"] = cuts;
-  numbers["cut_pairs"] = per(pairs, cuts);
-  numbers["bounds"] = per(bounds, rows);
-  numbers["sampling_rate"] = columns > 0 ? per(entries, rows * columns) : 1.0;
+  costs.write(matrix, "cut_pairs", numbers);
 }
 
 class MultidimensionalLightcuts final : public Method {

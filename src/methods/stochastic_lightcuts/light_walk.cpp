@@ -68,7 +68,7 @@ LightWalk::Weights LightWalk::weigh(Node node) {
           narrow && parts.near <= kSmall * parts.far};
 }
 
-// Yuksel 2019, section 4.2: the mean of the probabilities by the nearest and by the farthest points, since
+// After Yuksel 2019: the mean of the probabilities by the nearest and by the farthest points, since
 // close to a node one alone tells little. Where both children may be infinitely close, distances tell
 // nothing. Negative if neither sends anything.
 double LightWalk::share_of_left(Node node, bool& left_small, bool& right_small) {
