@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "methods/power_draws.h"
 #include "methods/row_column/columns_known.h"
+#include "methods/slices/slice_budget.h"
 
 namespace lumirank::methods {
 
@@ -16,17 +17,10 @@ using matrix::ScaledColumn;
 
 namespace {
 
-constexpr std::size_t kLeastRows = 128, kMostRows = 4096;  // of a slice, where their number is found
-constexpr std::size_t kStretch = 4096;                     // columns decoded at a time
-constexpr float kLeastEntry = 1e-17f;                      // its square is a number still
-constexpr float kNoColour = 1e-3f;                         // of the scalar norm: no colour to scale
-constexpr float kLargestGain = 4;                          // of a channel over the scalar factor
-
-// Reading a row costs an entry per column, rendering a slice's columns `columns` per row.
-std::size_t slice_rows(const SliceLightSettings& settings, std::size_t columns) {
-  if (settings.slice_rows > 0) return settings.slice_rows;
-  return std::clamp(columns / std::max<std::size_t>(settings.columns, 1), kLeastRows, kMostRows);
-}
+constexpr std::size_t kStretch = 4096;  // columns decoded at a time
+constexpr float kLeastEntry = 1e-17f;   // its square is a number still
+constexpr float kNoColour = 1e-3f;      // of the scalar norm: no colour to scale
+constexpr float kLargestGain = 4;       // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
   if (projection == 0 || slices <= projection) return {columns, slices, false};
@@ -84,9 +78,10 @@ const Fields<SliceLightSettings>& slice_light_fields() {
 SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options,
                          const SliceLightSettings& settings, std::span<Rgb> row_sum)
     : matrix_(matrix),
-      settings_(settings),
+      settings_(with_slice_rows(settings, matrix, options)),
+      most_columns_(settings.columns),
       seed_(options.seed),
-      slices_(make_slices(matrix.row_features(), matrix.rows(), slice_rows(settings, matrix.columns()))),
+      slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),
       exploration_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection),
                    options.seed),
       rows_(slices_.count(), matrix.columns()) {
@@ -244,6 +239,10 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
             std::min(static_cast<float>(channels[c] / energy) / own, kLargestGain);
     }
   return column;
+}
+
+void SliceLights::set_columns(std::size_t columns) {
+  settings_.columns = std::min(std::max(columns, initial_.clusters() + 1), most_columns_);
 }
 
 void SliceLights::choose(std::size_t slice, Workspace& w) const {

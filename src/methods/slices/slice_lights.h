@@ -54,11 +54,15 @@ Fields<S> with_slice_light_fields(Fields<S> others) {
 class SliceLights {
  public:
   // Reads the rows and clusters by all of them. `row_sum`: filled for every row of the matrix with the exact
-  // sum at its slice's row. Where cancelled in between, ready() is false.
+  // sum at its slice's row. Where cancelled in between, ready() is false. Under --time there are as many
+  // slices, rows and clusters as a few rows show to fit (the timed choice "slices").
   SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options,
               const SliceLightSettings& settings, std::span<Rgb> row_sum);
 
   bool ready() const { return ready_; }
+  // Columns of a slice from now on, as far as the clusters of all slices and the settings allow.
+  void set_columns(std::size_t columns);
+  std::size_t most_columns() const { return most_columns_; }
   const Slices& slices() const { return slices_; }
   const KnownRows& known() const { return exploration_.known(); }
   // Bytes that stay: the rows that were read, at two bytes an entry, and four norms per column.
@@ -95,6 +99,7 @@ class SliceLights {
 
   const matrix::LightingMatrix& matrix_;
   SliceLightSettings settings_;
+  std::size_t most_columns_;
   std::uint64_t seed_;
   Slices slices_;
   Exploration exploration_;

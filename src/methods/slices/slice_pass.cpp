@@ -1,5 +1,7 @@
 #include "methods/slices/slice_pass.h"
 
+#include <algorithm>
+
 #include "methods/known_rows.h"
 
 namespace lumirank::methods {
@@ -20,6 +22,20 @@ SlicePass::SlicePass(const matrix::LightingMatrix& matrix, const RunOptions& opt
       lights_(matrix, options, settings, estimate_.sums) {
   result_.cancelled = !lights_.ready();
   if (lights_.ready() && options.on_estimate) options.on_estimate(estimate_.sums);
+}
+
+// Slices take turns of as many as there are threads. A tenth is kept back for turns that take longer.
+std::size_t SlicePass::columns_that_fit(std::size_t slices, std::size_t tried,
+                                        const SliceCosts& trial) const {
+  constexpr double kShare = 0.9, kLeastSeconds = 1e-12;
+  if (tried == 0) return 0;
+  const auto threads = static_cast<std::size_t>(current_threads());
+  const double turns = static_cast<double>((slices + threads - 1) / threads), n = static_cast<double>(tried);
+  const double turn = kShare * (options_.time_seconds - timer_.seconds()) / turns;
+  const double column =
+      trial.seconds_columns / n / static_cast<double>(std::max<std::uint64_t>(trial.most_columns, 1));
+  const double fitting = (turn - trial.seconds_clustering / n) / std::max(column, kLeastSeconds);
+  return static_cast<std::size_t>(std::clamp(fitting, 0.0, static_cast<double>(lights_.most_columns())));
 }
 
 Estimate SlicePass::finish() {

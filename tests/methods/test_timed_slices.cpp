@@ -1,0 +1,56 @@
+// Methods with columns per slice under a time budget: it chooses slices and columns, not the clock alone
+// where the pass ends.
+#include <gtest/gtest.h>
+
+#include "matrix/synthetic.h"
+#include "methods/timed_choices.h"
+
+namespace lumirank::methods {
+namespace {
+
+class TimedSlices : public testing::TestWithParam<const char*> {
+ protected:
+  Estimate run(double seconds, TimedChoices* choices = nullptr) const {
+    RunOptions options;
+    options.time_seconds = seconds;
+    options.choices = choices;
+    return find_method(GetParam())
+        .make({{"columns", "60"}, {"slice-rows", "50"}, {"initial-clusters", "20"}})
+        ->run(matrix_, options);
+  }
+  // Dense enough that no column is zero on the rows that a slice looks at.
+  matrix::DenseMatrix matrix_ = matrix::low_rank_matrix({400, 900, 1}, 5);
+};
+
+// Repeated choices ask no clock.
+TEST_P(TimedSlices, RowsAndColumnsFollowTheChoices) {
+  TimedChoices choices({{"slices", {4}}, {"slice_columns", {30}}, {"units", {4}}});
+  const auto numbers = run(1e-6, &choices).trace.numbers;
+  choices.expect_end();
+  EXPECT_EQ(numbers.at("slices"), 4);
+  EXPECT_EQ(numbers.at("rows"), 4);
+  EXPECT_EQ(numbers.at("columns"), 30);
+}
+
+// Clusters of all slices, and one more for what is split further.
+TEST_P(TimedSlices, FewestColumnsAreTheClustersOfAllSlices) {
+  TimedChoices choices({{"slices", {4}}, {"slice_columns", {0}}, {"units", {4}}});
+  EXPECT_EQ(run(1e-6, &choices).trace.numbers.at("columns"), 21);
+}
+
+TEST_P(TimedSlices, NoTimeIsOneSlice) {
+  TimedChoices choices;
+  const Estimate e = run(1e-9, &choices);
+  EXPECT_EQ(e.trace.numbers.at("rows"), 1);
+  for (const Rgb v : e.sums) EXPECT_TRUE(is_finite(v));
+}
+
+TEST_P(TimedSlices, EnoughTimeChangesNothing) { EXPECT_TRUE(run(1e6).sums == run(0).sums); }
+
+INSTANTIATE_TEST_SUITE_P(All, TimedSlices, testing::Values("lightslice", "visibility-completion"),
+                         [](const auto& p) {
+                           return std::string(p.param).substr(0, std::string(p.param).find('-'));
+                         });
+
+}  // namespace
+}  // namespace lumirank::methods
