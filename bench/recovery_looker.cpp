@@ -23,7 +23,7 @@ Looker::Looker(const LookOptions& options, const matrix::LightingMatrix& matrix)
       sums_(matrix.rows()),
       pool_([this] {
         return std::make_unique<Workspace>(Workspace{
-            methods::SliceRecovery(settings_, tree_, matrix_), matrix_.reader(), {}, {}, {}, {}, {}, {}, {}});
+            methods::SliceRecovery(settings_, &tree_, matrix_), matrix_.reader(), {}, {}, {}, {}, {}, {}, {}});
       }) {}
 
 // As the method does.

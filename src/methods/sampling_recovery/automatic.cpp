@@ -57,7 +57,7 @@ class Search {
         slices_(slices),
         options_(options),
         known_(matrix),
-        pool_([&] { return std::make_unique<SliceRecovery>(given_, tree, matrix); }),
+        pool_([&] { return std::make_unique<SliceRecovery>(given_, &tree, matrix); }),
         sums_(matrix.rows()) {
     const std::size_t count =
         std::min(slices.count(), std::clamp(slices.count() / 16, kFewestSlices, kMostSlices));

@@ -123,7 +123,7 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
   }
 }
 
-void Prediction::run(const RecoverySettings& settings, std::span<const SliceCut::Cluster> clusters,
+void Prediction::run(const RecoverySettings& settings, std::span<const ReducedColumn> clusters,
                      std::span<const float> e, std::uint64_t key, SliceEntries& entries,
                      std::span<Entry> state) {
   const std::size_t rows = entries.rows().size();

@@ -9,7 +9,6 @@
 #include "linalg/separation.h"
 #include "linalg/visibility_predictors.h"
 #include "methods/sampling_recovery/settings.h"
-#include "methods/sampling_recovery/slice_cut.h"
 #include "methods/sampling_recovery/slice_entries.h"
 
 namespace lumirank::methods {
@@ -28,7 +27,7 @@ class Prediction {
  public:
   // `e`: unoccluded scalars, column after column. Writes the state of every entry. Errors are judged by
   // probabilities: a draw with probability p is wrong with |p − v|.
-  void run(const RecoverySettings& settings, std::span<const SliceCut::Cluster> clusters,
+  void run(const RecoverySettings& settings, std::span<const ReducedColumn> clusters,
            std::span<const float> e, std::uint64_t key, SliceEntries& entries,
            std::span<linalg::Entry> state);
   // P(visible) of every entry: predicted, or 0 or 1 where it is known. Until the next run.

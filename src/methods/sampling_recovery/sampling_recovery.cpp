@@ -8,7 +8,9 @@
 #include "methods/sampling_recovery/automatic.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_recovery.h"
+#include "methods/slices/slice_lights.h"
 #include "methods/slices/slices.h"
+#include "methods/slices/slice_pass.h"
 #include "methods/unit_pass.h"
 
 namespace lumirank::methods {
@@ -62,6 +64,38 @@ class SamplingRecovery final : public Method {
   explicit SamplingRecovery(const RecoverySettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    if (settings_.clusters == RecoverySettings::Clusters::rows) return by_rows(matrix, options);
+    return by_bounds(matrix, options);
+  }
+
+ private:
+  struct Workspace {
+    Workspace(const RecoverySettings& settings, const matrix::LightingMatrix& matrix)
+        : recovery(settings, nullptr, matrix) {}
+    SliceRecovery recovery;
+    SliceLights::Workspace lights;
+    SliceCosts costs;
+  };
+
+  Estimate by_rows(const matrix::LightingMatrix& matrix, const RunOptions& options) const {
+    SliceLightSettings lights;
+    lights.columns = settings_.columns;
+    lights.neighbours = settings_.neighbours;
+    lights.slice_rows = most_receivers(matrix);
+    WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(settings_, matrix); });
+    Estimate estimate = run_slices(
+        matrix, options, lights, pool,
+        [&](const SliceLights& slices, std::size_t s, Workspace& w, std::span<Rgb> sums) {
+          w.recovery.run(slices.slices().slice(s), w.lights.chosen,
+                         hash_ids(options.seed, Stage::method, 0x5245434f, s), sums);
+        });
+    RecoveryTally tally;
+    pool.for_each([&](const Workspace& w) { tally += w.recovery.tally(); });
+    write_tally(tally, estimate.trace);
+    return estimate;
+  }
+
+  Estimate by_bounds(const matrix::LightingMatrix& matrix, const RunOptions& options) const {
     const Timer timer;
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
@@ -84,7 +118,7 @@ class SamplingRecovery final : public Method {
     }
 
     WorkspacePool<SliceRecovery> pool(
-        [&] { return std::make_unique<SliceRecovery>(settings, tree, matrix); });
+        [&] { return std::make_unique<SliceRecovery>(settings, &tree, matrix); });
     UnitResult result;
     const UnitRows units(slices.rows, slices.first);
     result = run_units(units, {options, timer, options.time_seconds, "slices"}, estimate.sums, pool,
@@ -106,7 +140,6 @@ class SamplingRecovery final : public Method {
     return estimate;
   }
 
- private:
   // Slices are cut by receivers, of which a pixel has several.
   std::size_t most_receivers(const matrix::LightingMatrix& matrix) const {
     const std::size_t pixels = UnitRows::pixels(matrix).size();

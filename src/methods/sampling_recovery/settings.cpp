@@ -17,6 +17,15 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Most pixels of a slice, whose columns are chosen and recovered together. Larger slices "
            "share their columns' choice among more pixels, and have a higher rank."},
           &S::slice_rows, 1),
+      choice_field<S>({"clusters", "",
+                       "How a slice's lights are clustered. bounds: by bounds and sampled contributions, over "
+                       "the light tree, as in the paper; rows: by one whole row of each slice, as LightSlice "
+                       "does."},
+                      &S::clusters, {"bounds", "rows"}),
+      count_field<S>({"columns", "columns", "Clusters of a slice where they are by rows."}, &S::columns, 1),
+      count_field<S>({"neighbours", "slices",
+                      "Slices by whose rows one clusters, itself among them."},
+                     &S::neighbours, 1),
       count_field<S>({"initial-columns", "columns",
                       "Clusters of lights that a slice begins with, by bounds without visibility."},
                      &S::initial_columns, 1),

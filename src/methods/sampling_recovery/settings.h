@@ -12,6 +12,8 @@ struct RecoverySettings {
   enum class Parameters { by_target, given, automatic } parameters = Parameters::by_target;
   std::size_t slice_rows = 1024;
   // Columns of a slice.
+  enum class Clusters { bounds, rows } clusters = Clusters::bounds;
+  std::size_t columns = 300, neighbours = 16;
   std::size_t initial_columns = 500, most_columns = 2000;
   bool splitting = true, sparse_visibility = true, redraw = true;
   double alpha = 0.003;

@@ -18,6 +18,12 @@
 
 namespace lumirank::methods {
 
+// Of the reduced matrix: a cluster of lights by its representative.
+struct ReducedColumn {
+  std::uint32_t slot;
+  matrix::ScaledColumn column;
+};
+
 class SliceEntries {
  public:
   struct Slot {

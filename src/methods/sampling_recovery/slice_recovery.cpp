@@ -176,45 +176,71 @@ void SliceRecovery::gather(std::span<Rgb> sums) {
   const SliceRows& rows = entries_.rows();
   gathered_.assign(rows.receivers().size(), Rgb(0));
   columns_.clear();
-  for (const SliceCut::Cluster& c : clusters()) columns_.push_back(c.column);
+  for (const ReducedColumn& c : clusters()) columns_.push_back(c.column);
   entries_.add_to(gathered_, columns_, visibility_);
   for (std::size_t k = 0; k < gathered_.size(); ++k) sums[rows.receivers()[k]] = gathered_[k];
 }
 
+class SliceRecovery::Steps {
+ public:
+  explicit Steps(RecoveryTally& tally) : tally_(tally) {}
+  void done(std::size_t step) {
+    const double now = timer_.seconds();
+    tally_.seconds[step] += now - last_;
+    last_ = now;
+  }
+
+ private:
+  RecoveryTally& tally_;
+  const ThreadTimer timer_;
+  double last_ = 0;
+};
+
 void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::span<Rgb> sums) {
-  const ThreadTimer timer;
-  double last = 0;
-  const auto done = [&](std::size_t step) {
-    const double now = timer.seconds();
-    tally_.seconds[step] += now - last;
-    last = now;
-  };
+  Steps steps(tally_);
   entries_.start(slice, key);
-  cut_.choose(settings_, entries_);
-  done(1);
+  cut_->choose(settings_, entries_);
+  reduced_.clear();
+  for (const SliceCut::Cluster& c : cut_->clusters()) reduced_.push_back({c.slot, c.column});
+  steps.done(1);
+  tally_.seconds[0] += cut_->seconds_of_bounds();
+  tally_.seconds[1] -= cut_->seconds_of_bounds();
+  recover(steps, key, sums);
+}
+
+void SliceRecovery::run(std::span<const Index> slice, std::span<const matrix::ScaledColumn> columns,
+                        std::uint64_t key, std::span<Rgb> sums) {
+  Steps steps(tally_);
+  entries_.start(slice, key);
+  reduced_.clear();
+  for (const matrix::ScaledColumn& c : columns)
+    reduced_.push_back({static_cast<std::uint32_t>(entries_.add_whole(c)), c});
+  steps.done(1);
+  recover(steps, key, sums);
+}
+
+void SliceRecovery::recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums) {
   assemble();
   state_.resize(e_.size());
   prediction_.run(settings_, clusters(), e_, key, entries_, state_);
   ask_where_uncertain();
   tally_.uncertain += asked_.size();
   look();
-  done(2);
+  steps.done(2);
   separate();
-  done(3);
+  steps.done(3);
   ask_where_dense();
   tally_.corrected += asked_.size();
   look();
-  done(4);
+  steps.done(4);
   recover_visibility();
   gather(sums);
-  done(5);
-  tally_.seconds[0] += cut_.seconds_of_bounds();
-  tally_.seconds[1] -= cut_.seconds_of_bounds();
+  steps.done(5);
   ++tally_.slices;
   tally_.rows += entries_.rows().size();
   tally_.columns += clusters().size();
   tally_.columns_most = std::max<std::uint64_t>(tally_.columns_most, clusters().size());
-  tally_.shades += clusters().size() * slice.size();
+  tally_.shades += clusters().size() * entries_.rows().receivers().size();
   tally_.entries += e_.size();
   tally_.sampled += entries_.looked();
   tally_.prediction += prediction_.tally();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,16 +38,22 @@ struct RecoveryTally {
 // Work space of one thread.
 class SliceRecovery {
  public:
-  SliceRecovery(const RecoverySettings& settings, const LightTree& tree, const matrix::LightingMatrix& matrix)
-      : settings_(settings), entries_(matrix), cut_(tree, matrix) {}
+  // tree: for those who leave the choice of columns to it.
+  SliceRecovery(const RecoverySettings& settings, const LightTree* tree, const matrix::LightingMatrix& matrix)
+      : settings_(settings), entries_(matrix) {
+    if (tree) cut_.emplace(*tree, matrix);
+  }
 
   void use(const RecoverySettings& settings) { settings_ = settings; }
   // Writes the sums of the slice's receivers. Random numbers are keyed by `key`.
   void run(std::span<const matrix::Index> slice, std::uint64_t key, std::span<Rgb> sums);
+  // With these columns instead of its own choice.
+  void run(std::span<const matrix::Index> slice, std::span<const matrix::ScaledColumn> columns,
+           std::uint64_t key, std::span<Rgb> sums);
 
   // Of the last slice, for those who look into it: column after column, rows × columns.
   const SliceEntries& entries() const { return entries_; }
-  std::span<const SliceCut::Cluster> clusters() const { return cut_.clusters(); }
+  std::span<const ReducedColumn> clusters() const { return reduced_; }
   std::span<const float> unoccluded() const { return e_; }
   std::span<const float> predicted() const { return d_; }
   std::span<const linalg::Entry> states() const { return state_; }  // after correction
@@ -57,6 +64,8 @@ class SliceRecovery {
   const RecoveryTally& tally() const { return tally_; }
 
  private:
+  class Steps;
+  void recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums);
   void assemble();
   void separate();
   void look();
@@ -68,7 +77,7 @@ class SliceRecovery {
 
   RecoverySettings settings_;
   SliceEntries entries_;
-  SliceCut cut_;
+  std::optional<SliceCut> cut_;
   Prediction prediction_;
   linalg::Separation separation_;
   linalg::DensityMap density_;
@@ -82,6 +91,7 @@ class SliceRecovery {
   std::vector<std::uint8_t> chosen_;  // of a column's entries: to be asked for
   std::vector<float> row_sums_;
   std::vector<std::uint32_t> asked_;  // entries that correction asked for
+  std::vector<ReducedColumn> reduced_;
   std::vector<matrix::ScaledColumn> columns_;
   std::vector<Rgb> gathered_;
   RecoveryTally tally_;
