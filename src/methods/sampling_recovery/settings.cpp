@@ -43,6 +43,10 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Whether clusters, once they are chosen, get other representatives than those by "
            "which they were: those stayed unsplit for being dark. Unbiased, and a little noisier."},
           &S::redraw, off_on),
+      choice_field<S>({"visibility", "",
+                       "sampled: few visibilities of a slice are looked at, the others predicted and recovered; "
+                       "traced: all are looked at, one for each of a pixel's surfaces."},
+                      &S::visibility, {"sampled", "traced"}),
       number_field<S>({"rho", "of a column's entries",
                        "How many visibilities are sampled at a time: for splitting, and in each round of "
                        "prediction; at least four. 1: all."},

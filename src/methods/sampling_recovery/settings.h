@@ -18,6 +18,7 @@ struct RecoverySettings {
   bool splitting = true, sparse_visibility = true, redraw = true;
   double alpha = 0.003;
   // Visibility.
+  enum class Visibility { sampled, traced } visibility = Visibility::sampled;
   double rho = 0.01;
   bool prediction = true;
   enum class Predictors { all, nearest, plane, bayes } predictors = Predictors::all;

@@ -50,17 +50,17 @@ void SliceCut::initial_cut(std::size_t count, std::span<const Index> receivers) 
     push(tree_.right(top.node));
   }
   for (const Bounded& b : heap_) clusters_.push_back({b.node, kNoSlot, {}, -1});
+  for (Cluster& c : clusters_) c.column = tree_.scaled(c.node);
   std::sort(clusters_.begin(), clusters_.end(),
             [&](const Cluster& a, const Cluster& b) { return place(a.node) < place(b.node); });
 }
 
 void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries) {
-  const bool look = settings.splitting && settings.sparse_visibility;
+  const bool look = settings.sparse_visibility;
   const auto samples = static_cast<std::size_t>(
       std::max(4.0, std::ceil(settings.rho * static_cast<double>(entries.rows().size()))));
   for (Cluster& c : clusters_) {
     if (c.slot != kNoSlot) continue;
-    c.column = tree_.scaled(c.node);
     c.slot = static_cast<std::uint32_t>(entries.add(c.column));
     if (look) entries.ask_next(c.slot, samples);
   }
@@ -182,15 +182,11 @@ bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
 
 // A cluster stays whole because what was seen of its representative is dark, so that one is darker than the
 // cluster in the mean: the sums would be too small. Who is drawn after all decisions has no such bias.
-void SliceCut::redraw(SliceEntries& entries) {
+void SliceCut::redraw(std::uint64_t key) {
   for (Cluster& c : clusters_) {
-    if (tree_.is_leaf(c.node)) {
-      entries.make_whole(c.slot, c.column);
-      continue;
-    }
-    const std::uint64_t bits = hash_ids(entries.key(), Stage::representatives, c.node);
-    c.column = tree_.drawn(c.node, unit_double(bits));
-    c.slot = static_cast<std::uint32_t>(entries.add_whole(c.column));
+    if (tree_.is_leaf(c.node)) continue;
+    c.column = tree_.drawn(c.node, unit_double(hash_ids(key, Stage::representatives, c.node)));
+    c.slot = kNoSlot;
   }
 }
 
@@ -198,18 +194,15 @@ void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
   const ThreadTimer timer;
   initial_cut(std::min(settings.initial_columns, settings.most_columns), entries.rows().receivers());
   seconds_of_bounds_ = timer.seconds();
-  add_slots(settings, entries);
   if (settings.splitting) {
+    add_slots(settings, entries);
     contributions(settings, entries);
     while (split(settings, entries)) {
       add_slots(settings, entries);
       contributions(settings, entries);
     }
   }
-  if (settings.splitting && settings.redraw)
-    redraw(entries);
-  else
-    for (const Cluster& c : clusters_) entries.make_whole(c.slot, c.column);
+  if (settings.splitting && settings.redraw) redraw(entries.key());
 }
 
 }  // namespace lumirank::methods

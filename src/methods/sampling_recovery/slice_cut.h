@@ -18,9 +18,10 @@ namespace lumirank::methods {
 
 class SliceCut {
  public:
+  static constexpr std::uint32_t kNoSlot = 0xffffffffu;
   struct Cluster {
     LightTree::Node node;
-    std::uint32_t slot;  // of its representative
+    std::uint32_t slot;  // of its representative; kNoSlot: it is not evaluated
     matrix::ScaledColumn column;
     // Of its members at some rows, with visibility: greatest entry over power. < 0: not looked at yet.
     float lit = -1;
@@ -29,7 +30,7 @@ class SliceCut {
   SliceCut(const LightTree& tree, const matrix::LightingMatrix& matrix)
       : tree_(tree), bounds_(matrix.row_bounds()) {}
 
-  // Evaluates the clusters' representatives in `entries`, and samples them for sparse visibility.
+  // Evaluates representatives in `entries`, as far as it takes, and samples them for sparse visibility.
   void choose(const RecoverySettings& settings, SliceEntries& entries);
   // In the order of the tree: neighbours are near.
   std::span<const Cluster> clusters() const { return clusters_; }
@@ -39,13 +40,12 @@ class SliceCut {
  private:
   void initial_cut(std::size_t count, std::span<const matrix::Index> receivers);
   void add_slots(const RecoverySettings& settings, SliceEntries& entries);
-  void redraw(SliceEntries& entries);
+  void redraw(std::uint64_t key);
   void look_at_members(const RecoverySettings& settings, SliceEntries& entries);
   void contributions(const RecoverySettings& settings, SliceEntries& entries);
   bool split(const RecoverySettings& settings, SliceEntries& entries);
   std::uint32_t place(LightTree::Node node) const;
 
-  static constexpr std::uint32_t kNoSlot = 0xffffffffu;
   struct Bounded {
     float bound, power;
     LightTree::Node node;

@@ -1,7 +1,6 @@
 #include "methods/sampling_recovery/slice_entries.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "base/random.h"
 
@@ -31,8 +30,7 @@ void SliceEntries::start(std::span<const Index> slice, std::uint64_t key) {
   std::uint32_t most = 1;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const std::uint32_t count = receivers_of(r);
-    // Four receivers are in four layers by their number, so that a mask of them needs no turning.
-    first_layer_[r] = count > 4 ? static_cast<std::uint8_t>(mix64(key ^ mix64(r)) >> 56) : 0;
+    first_layer_[r] = static_cast<std::uint8_t>(mix64(key ^ mix64(r)) >> 56);
     most = std::max(most, count);
     for (std::uint32_t k = rows_.begin(r); k < rows_.end(r); ++k) row_of_[k] = static_cast<std::uint32_t>(r);
   }
@@ -45,75 +43,29 @@ void SliceEntries::start(std::span<const Index> slice, std::uint64_t key) {
   }
 }
 
-std::size_t SliceEntries::new_slot(const matrix::ScaledColumn& column) {
+std::size_t SliceEntries::add(const matrix::ScaledColumn& column) {
   const std::size_t s = slots_.size(), rows = rows_.size();
   if (seen_.size() < (s + 1) * rows) {
     const std::size_t room = std::max(2 * s, s + 16) * rows;
     seen_.resize(room);
     scalars_.resize(room);
-    lit_.resize(room);
   }
-  const std::uint64_t bits = mix64(key_ ^ mix64(column.column));
-  slots_.push_back({column.column, static_cast<std::uint32_t>(bits % SamplePatterns::kPatterns), 0, 0,
-                    static_cast<std::uint16_t>((bits >> 32) % layer_count_), false});
+  slots_.push_back({column.column,
+                    static_cast<std::uint32_t>(bits(column.column) % SamplePatterns::kPatterns), 0, 0,
+                    layer(column.column), false});
   std::ranges::fill(seen(s), linalg::seen::kUnknown);
-  return s;
-}
-
-std::size_t SliceEntries::add(const matrix::ScaledColumn& column) {
-  const std::size_t s = new_slot(column);
   Slot& slot = slots_[s];
-  const auto out = std::span(scalars_).subspan(s * rows_.size(), rows_.size());
+  const auto out = std::span(scalars_).subspan(s * rows, rows);
   layers_[slot.layer]->unoccluded_scalars(column.column, weights(column.scale), out);
   for (const float e : out) slot.most = std::max(slot.most, e);
   return s;
 }
 
-std::size_t SliceEntries::add_whole(const matrix::ScaledColumn& column) {
-  const std::size_t s = new_slot(column);
-  make_whole(s, column);
-  return s;
-}
-
-void SliceEntries::make_whole(std::size_t s, const matrix::ScaledColumn& column) {
-  slots_[s].layer = kWhole;
-  receiver_scalars_.resize(rows_.receivers().size());
-  reader_->unoccluded_scalars(column.column, weights(column.scale), receiver_scalars_);
-  float* const out = &scalars_[s * rows_.size()];
-  std::uint16_t* const lit = &lit_[s * rows_.size()];
-  const float* const all = receiver_scalars_.data();
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const float* const e = all + rows_.begin(r);
-    const std::uint32_t count = receivers_of(r);
-    if (count == 4) {  // by far most rows of a picture with four samples per pixel
-      out[r] = 0.25f * ((e[0] + e[1]) + (e[2] + e[3]));
-      lit[r] = static_cast<std::uint16_t>((e[0] > 0) | (e[1] > 0) << 1 | (e[2] > 0) << 2 | (e[3] > 0) << 3);
-      continue;
-    }
-    float sum = 0;
-    for (std::uint32_t k = 0; k < count; ++k) sum += e[k];
-    out[r] = sum / static_cast<float>(count);
-    std::uint32_t reached = 0;
-    if (count <= kMostLayers) {
-      for (std::uint32_t l = 0; l < count; ++l) reached |= (all[receiver(r, l)] > 0 ? 1u : 0u) << l;
-    } else if (sum > 0) {
-      reached = static_cast<std::uint32_t>((draw(s, r) * count) >> 32);
-      while (!(e[reached] > 0)) reached = reached + 1 < count ? reached + 1 : 0;
-    }
-    lit[r] = static_cast<std::uint16_t>(reached);
-  }
-}
-
-std::uint32_t SliceEntries::place(std::size_t s, std::size_t row) const {
-  const std::size_t at = s * rows_.size() + row;
-  const Slot& slot = slots_[s];
-  if (slot.layer != kWhole) return scalars_[at] > 0 ? receiver(row, slot.layer) : kNowhere;
-  if (!(scalars_[at] > 0)) return kNowhere;
-  std::uint32_t lit = lit_[at];
-  if (receivers_of(row) > kMostLayers) return rows_.begin(row) + lit;
-  for (auto skip = (draw(s, row) * static_cast<std::uint64_t>(std::popcount(lit))) >> 32; skip > 0; --skip)
-    lit &= lit - 1;
-  return receiver(row, static_cast<std::size_t>(std::countr_zero(lit)));
+void SliceEntries::trace(Index column, std::span<float> out) {
+  answers_.resize(rows_.size());
+  layers_[layer(column)]->column(column, answers_, Part::visibility);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = answers_[i].r;
+  looked_ += rows_.size();
 }
 
 bool SliceEntries::ask(std::size_t s, std::size_t row) {

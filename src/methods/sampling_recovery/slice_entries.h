@@ -1,9 +1,9 @@
 // What is known of a slice's entries: for every column that was looked at, its unoccluded contribution to
 // each row, and the visibilities that were sampled.
 //
-// A row is a pixel with several receivers. While clusters are split, a column is evaluated at one receiver of
-// each row: receivers are dealt to a few layers of one per row, and a column has a random layer. Columns that
-// stay are evaluated at all receivers, of which one number per row is kept, and which of them it reaches.
+// A row is a pixel's receivers of one surface, any of which speaks for the others: they are dealt to a few
+// layers of one per row, and a column is evaluated and seen from a random layer. What reaches each receiver
+// is evaluated again when it is added up.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ class SliceEntries {
     std::uint32_t pattern;
     std::uint32_t sampled;  // the first of the pattern's rows are known where the column reaches them
     float most;             // greatest unoccluded scalar
-    std::uint16_t layer;    // kWhole: evaluated at all receivers
+    std::uint16_t layer;
     bool any_visible;       // among the samples
   };
 
@@ -47,12 +47,11 @@ class SliceEntries {
   // Evaluates a column without visibility, at one receiver of each row; the number of its slot. Colours count
   // by its scale.
   std::size_t add(const matrix::ScaledColumn& column);
-  // The same at all receivers; of a slot that is there already, its samples stay.
-  std::size_t add_whole(const matrix::ScaledColumn& column);
-  void make_whole(std::size_t s, const matrix::ScaledColumn& column);
+  // Visibility, 0 or 1, of all rows.
+  void trace(matrix::Index column, std::span<float> out);
   Slot& slot(std::size_t s) { return slots_[s]; }
-  // Per row, whole: the mean over its receivers of the mean of r, g, b of an entry times the scale that it
-  // was added with, over the mean of that scale.
+  // Per row: the mean of r, g, b of an entry times the scale that it was added with, over the mean of that
+  // scale.
   std::span<const float> scalars(std::size_t s) const {
     return std::span(scalars_).subspan(s * rows_.size(), rows_.size());
   }
@@ -67,10 +66,11 @@ class SliceEntries {
     reader_->add_unoccluded(columns, visibility, row_of_, sums);
   }
 
-  // Where an entry is looked from: one of the row's receivers that the column is known to reach, at random
-  // but always the same until the slot is whole. kNowhere if there is none.
+  // The receiver that an entry is looked from; kNowhere if the column does not reach it.
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
-  std::uint32_t place(std::size_t s, std::size_t row) const;
+  std::uint32_t place(std::size_t s, std::size_t row) const {
+    return scalars_[s * rows_.size() + row] > 0 ? receiver(row, slots_[s].layer) : kNowhere;
+  }
   // Asks for an entry, as seen from its place(). False if there is none. Answered by look().
   bool ask(std::size_t s, std::size_t row);
   // Asks for the next `count` rows of the slot's pattern.
@@ -83,8 +83,7 @@ class SliceEntries {
   std::size_t looked() const { return looked_; }  // entries, since start()
 
  private:
-  static constexpr std::size_t kLayers = 4, kMostLayers = 16;
-  static constexpr std::uint16_t kWhole = 0xffff;
+  static constexpr std::size_t kLayers = 4;
   std::uint32_t receivers_of(std::size_t row) const { return rows_.end(row) - rows_.begin(row); }
   // The receiver of a row in a layer.
   std::uint32_t receiver(std::size_t row, std::size_t layer) const {
@@ -105,15 +104,11 @@ class SliceEntries {
   std::size_t looked_ = 0;
   std::vector<Slot> slots_;
   std::vector<Rgb> answers_;
-  std::vector<float> scalars_, receiver_scalars_;
-  // By whole slot and row: bit l: the column reaches its receiver in layer l; of more receivers than bits,
-  // the number of one that it reaches.
-  std::vector<std::uint16_t> lit_;
-  // 32 random bits of an entry.
-  std::uint64_t draw(std::size_t s, std::size_t row) const {
-    return mix64(key_ ^ mix64((std::uint64_t{slots_[s].column} << 32) | row)) >> 32;
+  std::vector<float> scalars_;
+  std::uint64_t bits(matrix::Index column) const { return mix64(key_ ^ mix64(column)); }
+  std::uint16_t layer(matrix::Index column) const {
+    return static_cast<std::uint16_t>((bits(column) >> 32) % layer_count_);
   }
-  std::size_t new_slot(const matrix::ScaledColumn& column);
   std::vector<std::uint8_t> seen_;
   struct Request {
     std::uint32_t slot, row;

@@ -31,6 +31,20 @@ namespace {
 bool guessed(Entry e) { return e == Entry::predicted_visible || e == Entry::predicted_hidden; }
 }  // namespace
 
+// The columns that splitting has not evaluated, where their shading is asked for.
+void SliceRecovery::evaluate() {
+  if (settings_.visibility == RecoverySettings::Visibility::traced) return;
+  for (ReducedColumn& c : reduced_)
+    if (c.slot == SliceCut::kNoSlot) c.slot = static_cast<std::uint32_t>(entries_.add(c.column));
+}
+
+void SliceRecovery::trace() {
+  const std::size_t rows = entries_.rows().size();
+  visibility_.resize(rows * clusters().size());
+  for (std::size_t c = 0; c < clusters().size(); ++c)
+    entries_.trace(clusters()[c].column.column, std::span(visibility_).subspan(c * rows, rows));
+}
+
 // The scalar reduced matrix, as if all were visible.
 void SliceRecovery::assemble() {
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
@@ -166,7 +180,7 @@ void SliceRecovery::recover_visibility() {
     }
     for (std::size_t i = 0; i < rows; ++i) {
       const float exact = known[i] == seen::kVisible ? 1.0f : 0.0f;
-      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? 0.0f : out[i];
+      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? p[begin + i] : out[i];
     }
   }
 }
@@ -202,6 +216,7 @@ void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::sp
   cut_->choose(settings_, entries_);
   reduced_.clear();
   for (const SliceCut::Cluster& c : cut_->clusters()) reduced_.push_back({c.slot, c.column});
+  evaluate();
   steps.done(1);
   tally_.seconds[0] += cut_->seconds_of_bounds();
   tally_.seconds[1] -= cut_->seconds_of_bounds();
@@ -213,27 +228,33 @@ void SliceRecovery::run(std::span<const Index> slice, std::span<const matrix::Sc
   Steps steps(tally_);
   entries_.start(slice, key);
   reduced_.clear();
-  for (const matrix::ScaledColumn& c : columns)
-    reduced_.push_back({static_cast<std::uint32_t>(entries_.add_whole(c)), c});
+  for (const matrix::ScaledColumn& c : columns) reduced_.push_back({SliceCut::kNoSlot, c});
+  evaluate();
   steps.done(1);
   recover(steps, key, sums);
 }
 
 void SliceRecovery::recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums) {
-  assemble();
-  state_.resize(e_.size());
-  prediction_.run(settings_, clusters(), e_, key, entries_, state_);
-  ask_where_uncertain();
-  tally_.uncertain += asked_.size();
-  look();
-  steps.done(2);
-  separate();
-  steps.done(3);
-  ask_where_dense();
-  tally_.corrected += asked_.size();
-  look();
-  steps.done(4);
-  recover_visibility();
+  if (settings_.visibility == RecoverySettings::Visibility::traced) {
+    trace();
+    steps.done(2);
+  } else {
+    assemble();
+    state_.resize(e_.size());
+    prediction_.run(settings_, clusters(), e_, key, entries_, state_);
+    ask_where_uncertain();
+    tally_.uncertain += asked_.size();
+    look();
+    tally_.prediction += prediction_.tally();
+    steps.done(2);
+    separate();
+    steps.done(3);
+    ask_where_dense();
+    tally_.corrected += asked_.size();
+    look();
+    steps.done(4);
+    recover_visibility();
+  }
   gather(sums);
   steps.done(5);
   ++tally_.slices;
@@ -241,9 +262,8 @@ void SliceRecovery::recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums
   tally_.columns += clusters().size();
   tally_.columns_most = std::max<std::uint64_t>(tally_.columns_most, clusters().size());
   tally_.shades += clusters().size() * entries_.rows().receivers().size();
-  tally_.entries += e_.size();
+  tally_.entries += entries_.rows().size() * clusters().size();
   tally_.sampled += entries_.looked();
-  tally_.prediction += prediction_.tally();
 }
 
 }  // namespace lumirank::methods

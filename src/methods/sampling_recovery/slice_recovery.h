@@ -66,6 +66,8 @@ class SliceRecovery {
  private:
   class Steps;
   void recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums);
+  void evaluate();
+  void trace();
   void assemble();
   void separate();
   void look();

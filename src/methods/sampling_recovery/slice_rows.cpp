@@ -7,6 +7,23 @@ namespace lumirank::methods {
 
 using matrix::Index;
 
+namespace {
+constexpr float kSameNormal = 0.9f;  // cosine, at least
+constexpr float kSamePlane = 0.2f;   // sine of the elevation over the other's plane, at most
+}  // namespace
+
+std::size_t SliceRows::gather_alike(const matrix::RowFeatures& features, std::span<Placed> placed) {
+  if (features.normal.empty() || features.position.empty()) return placed.size();
+  const Vec3f normal = features.normal[placed[0].receiver], at = features.position[placed[0].receiver];
+  const auto alike = [&](const Placed& other) {
+    const Vec3f way = features.position[other.receiver] - at;
+    return dot(normal, features.normal[other.receiver]) >= kSameNormal * length_squared(normal) &&
+           square(dot(normal, way)) <= square(kSamePlane) * length_squared(way);
+  };
+  return static_cast<std::size_t>(
+      std::stable_partition(placed.begin() + 1, placed.end(), alike) - placed.begin());
+}
+
 void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index> slice) {
   const bool with_pixels = !features.pixel.empty();
   const bool with_places = !features.position.empty();
@@ -26,10 +43,13 @@ void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index
   Vec3f normal{}, centre{};
   for (std::size_t k = 0; k < placed_.size();) {
     group_first_.push_back(static_cast<std::uint32_t>(k));
-    const Placed& pixel = placed_[k];
+    const Placed pixel = placed_[k];
+    std::size_t end = k;
+    while (end < placed_.size() && placed_[end].x == pixel.x && placed_[end].y == pixel.y) ++end;
+    end = k + gather_alike(features, std::span(placed_).subspan(k, end - k));
     Vec3f sum{};
     float count = 0;
-    for (; k < placed_.size() && placed_[k].x == pixel.x && placed_[k].y == pixel.y; ++k, ++count) {
+    for (; k < end; ++k, ++count) {
       const Index i = placed_[k].receiver;
       sum = sum + (with_places ? features.position[i] : Vec3f{static_cast<float>(i), 0, 0});
       if (!features.normal.empty()) normal = normal + features.normal[i];

@@ -1,5 +1,8 @@
 // The rows of a slice's reduced matrix: pixels, each with those of its receivers that the slice has (Huo et
 // al. 2015, section 7.2). Receivers of a pixel in another slice are a row of their own there.
+//
+// Ours: a pixel on an edge or among leaves has a row for each of the surfaces that it shows, so that any one
+// of a row's receivers speaks for the others.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +34,8 @@ class SliceRows {
     std::int32_t x, y;
     matrix::Index receiver;
   };
+  // The first of `placed` that are alike come first; how many.
+  static std::size_t gather_alike(const matrix::RowFeatures& features, std::span<Placed> placed);
   std::vector<Placed> placed_;
   std::vector<std::uint32_t> group_first_, first_;
   std::vector<matrix::Index> receivers_;
