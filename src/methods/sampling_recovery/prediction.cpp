@@ -36,13 +36,16 @@ void Prediction::learn(std::size_t c, std::size_t begin, std::size_t end, SliceE
     sample_rows_.push_back(order[k]);
     sample_visible_.push_back(known[order[k]] == seen::kVisible ? 1 : 0);
   }
+  column.known += static_cast<std::uint32_t>(sample_rows_.size());
+  for (const std::uint8_t v : sample_visible_) column.visible += v;
   counts_.add(c, {sample_rows_, sample_visible_});
   column.plane.add(entries.rows().points(), {sample_rows_, sample_visible_});
 }
 
 // Tests what was trained on the first samples of column c by those that came since. True if the best
 // predictor is good enough.
-bool Prediction::validate(const RecoverySettings& settings, std::size_t c, SliceEntries& entries) {
+bool Prediction::validate(const RecoverySettings& settings, std::size_t c, std::span<const float> e,
+                          SliceEntries& entries) {
   using Predictors = RecoverySettings::Predictors;
   Column& column = columns_[c];
   const SliceEntries::Slot& slot = entries.slot(column.slot);
@@ -52,14 +55,23 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, Slice
       entries.patterns().nearest_of_next(slot.pattern, column.trained, slot.sampled - column.trained);
   const SeparatingPlane fitted = column.plane.fit();
   std::array<float, 3> wrong{};
+  const std::size_t known_class = column.tested = size_class(column.known, column.visible);
   float tests = 0;
   for (std::size_t k = column.trained; k < slot.sampled; ++k) {
     const std::uint32_t row = order[k];
     if (known[row] == seen::kUnknown) continue;
     const float v = known[row] == seen::kVisible ? 1.0f : 0.0f;
-    wrong[nearest] += std::abs(v - linalg::nearest_probability(neighbours[k - column.trained], known));
-    wrong[plane] += std::abs(v - fitted.probability(entries.rows().points()[row]));
-    wrong[bayes] += std::abs(v - counts_.probability(c, row / linalg::BayesCounts::kStretch));
+    const std::array<float, 3> p{linalg::nearest_probability(neighbours[k - column.trained], known),
+                                 fitted.probability(entries.rows().points()[row]),
+                                 counts_.probability(c, row / linalg::BayesCounts::kStretch)};
+    const double light = static_cast<double>(e[c * entries.rows().size() + row]) /
+                         static_cast<double>(slot.sampled - column.trained);
+    for (std::size_t kind = 0; kind < p.size(); ++kind) {
+      wrong[kind] += std::abs(v - p[kind]);
+      Tested& tested = tested_[kind][known_class][level(p[kind])];
+      tested.light += light;
+      tested.visible += static_cast<double>(v) * light;
+    }
     ++tests;
   }
   const bool whole = slot.sampled == order.size();
@@ -92,6 +104,22 @@ void Prediction::predict(std::size_t c, SliceEntries& entries, std::span<float> 
   }
 }
 
+// A level of which little light was tested keeps its own meaning.
+void Prediction::calibrate() {
+  for (std::size_t kind = 0; kind < tested_.size(); ++kind)
+    for (std::size_t size = 0; size < kSizes * kMixtures; ++size) {
+      double all = 0;
+      for (const Tested& t : tested_[kind][size]) all += t.light;
+      const double prior = 0.01 * all;
+      for (std::size_t k = 0; k < kLevels; ++k) {
+        const Tested& t = tested_[kind][size][k];
+        const double own = static_cast<double>(k) / (kLevels - 1);
+        worth_[kind][size][k] =
+            static_cast<float>(all > 0 ? (t.visible + prior * own) / (t.light + prior) : own);
+      }
+    }
+}
+
 void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::span<const float> e,
                       SliceEntries& entries, std::span<Entry> state) {
   const std::size_t rows = entries.rows().size();
@@ -100,7 +128,14 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const auto known = entries.seen(columns_[c].slot);
     const auto probability = std::span(probabilities_).subspan(c * rows, rows);
-    if (!settings.prediction) {
+    if (settings.calibration && settings.prediction) {
+      predict(c, entries, probability);
+      const auto& worth = worth_[columns_[c].best][columns_[c].tested];
+      for (float& p : probability) p = worth[level(p)];
+      linalg::draw_visibility(probability,
+                              static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
+                              drawn_);
+    } else if (!settings.prediction) {
       std::ranges::fill(probability, 1.0f);
       std::ranges::fill(drawn_, std::uint8_t{1});
     } else {
@@ -130,6 +165,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
   const auto samples =
       static_cast<std::size_t>(std::max(4.0, std::ceil(settings.rho * static_cast<double>(rows))));
   tally_ = {};
+  tested_ = {};
   counts_.reset(rows, clusters.size());
   stretch_probability_.resize(counts_.stretches());
   columns_.clear();
@@ -163,7 +199,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
     still_active_.clear();
     if (settings.prediction) {
       for (const std::uint32_t c : active_)
-        if (!validate(settings, c, entries)) still_active_.push_back(c);
+        if (!validate(settings, c, e, entries)) still_active_.push_back(c);
     } else {
       still_active_ = active_;
     }
@@ -180,6 +216,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
     for (const Column& column : columns_)
       ++tally_.chosen[column.best], tally_.error += static_cast<double>(column.error);
   }
+  calibrate();
   fill(settings, key, e, entries, state);
 }
 

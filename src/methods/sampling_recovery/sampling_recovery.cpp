@@ -9,8 +9,8 @@
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_recovery.h"
 #include "methods/slices/slice_lights.h"
-#include "methods/slices/slices.h"
 #include "methods/slices/slice_pass.h"
+#include "methods/slices/slices.h"
 #include "methods/unit_pass.h"
 
 namespace lumirank::methods {
@@ -83,12 +83,12 @@ class SamplingRecovery final : public Method {
     lights.neighbours = settings_.neighbours;
     lights.slice_rows = most_receivers(matrix);
     WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(settings_, matrix); });
-    Estimate estimate = run_slices(
-        matrix, options, lights, pool,
-        [&](const SliceLights& slices, std::size_t s, Workspace& w, std::span<Rgb> sums) {
-          w.recovery.run(slices.slices().slice(s), w.lights.chosen,
-                         hash_ids(options.seed, Stage::method, 0x5245434f, s), sums);
-        });
+    Estimate estimate =
+        run_slices(matrix, options, lights, pool,
+                   [&](const SliceLights& slices, std::size_t s, Workspace& w, std::span<Rgb> sums) {
+                     w.recovery.run(slices.slices().slice(s), w.lights.chosen,
+                                    hash_ids(options.seed, Stage::method, 0x5245434f, s), sums);
+                   });
     RecoveryTally tally;
     pool.for_each([&](const Workspace& w) { tally += w.recovery.tally(); });
     write_tally(tally, estimate.trace);

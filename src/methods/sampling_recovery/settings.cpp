@@ -17,14 +17,14 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Most pixels of a slice, whose columns are chosen and recovered together. Larger slices "
            "share their columns' choice among more pixels, and have a higher rank."},
           &S::slice_rows, 1),
-      choice_field<S>({"clusters", "",
-                       "How a slice's lights are clustered. bounds: by bounds and sampled contributions, over "
-                       "the light tree, as in the paper; rows: by one whole row of each slice, as LightSlice "
-                       "does."},
-                      &S::clusters, {"bounds", "rows"}),
+      choice_field<S>(
+          {"clusters", "",
+           "How a slice's lights are clustered. bounds: by bounds and sampled contributions, over "
+           "the light tree, as in the paper; rows: by one whole row of each slice, as LightSlice "
+           "does."},
+          &S::clusters, {"bounds", "rows"}),
       count_field<S>({"columns", "columns", "Clusters of a slice where they are by rows."}, &S::columns, 1),
-      count_field<S>({"neighbours", "slices",
-                      "Slices by whose rows one clusters, itself among them."},
+      count_field<S>({"neighbours", "slices", "Slices by whose rows one clusters, itself among them."},
                      &S::neighbours, 1),
       count_field<S>({"initial-columns", "columns",
                       "Clusters of lights that a slice begins with, by bounds without visibility."},
@@ -43,10 +43,11 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Whether clusters, once they are chosen, get other representatives than those by "
            "which they were: those stayed unsplit for being dark. Unbiased, and a little noisier."},
           &S::redraw, off_on),
-      choice_field<S>({"visibility", "",
-                       "sampled: few visibilities of a slice are looked at, the others predicted and recovered; "
-                       "traced: all are looked at, one for each of a pixel's surfaces."},
-                      &S::visibility, {"sampled", "traced"}),
+      choice_field<S>(
+          {"visibility", "",
+           "sampled: few visibilities of a slice are looked at, the others predicted and recovered; "
+           "traced: all are looked at, one for each of a pixel's surfaces."},
+          &S::visibility, {"sampled", "traced"}),
       number_field<S>({"rho", "of a column's entries",
                        "How many visibilities are sampled at a time: for splitting, and in each round of "
                        "prediction; at least four. 1: all."},
@@ -62,6 +63,9 @@ const Fields<RecoverySettings>& recovery_fields() {
            "random: predictions are drawn by their probability, so that errors have no structure; "
            "likely: the likelier one; mean: none is drawn where nothing is separated, else random."},
           &S::draw, {"random", "likely", "mean"}),
+      choice_field<S>(
+          {"calibration", "", "Whether probabilities are what the slice's tests found them to be worth."},
+          &S::calibration, off_on),
       number_field<S>({"prediction-error", "of the new samples",
                        "A column is sampled on until its best predictor is wrong at less than this share of "
                        "the samples that it has not seen."},

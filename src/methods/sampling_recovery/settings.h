@@ -23,10 +23,11 @@ struct RecoverySettings {
   bool prediction = true;
   enum class Predictors { all, nearest, plane, bayes } predictors = Predictors::all;
   enum class Draw { random, likely, mean } draw = Draw::random;
+  bool calibration = true;
   double prediction_error = 0.1;
   bool weighted = true;
   std::size_t rounds = 20;
-  double uncertain = 0.002;
+  double uncertain = 0.003;
   // Recovery.
   bool separation = true, constraint = true;
   enum class Separated { visibility, shading } separated = Separated::visibility;

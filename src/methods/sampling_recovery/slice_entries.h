@@ -32,7 +32,7 @@ class SliceEntries {
     std::uint32_t sampled;  // the first of the pattern's rows are known where the column reaches them
     float most;             // greatest unoccluded scalar
     std::uint16_t layer;
-    bool any_visible;       // among the samples
+    bool any_visible;  // among the samples
   };
 
   explicit SliceEntries(const matrix::LightingMatrix& matrix)

@@ -20,8 +20,8 @@ std::size_t SliceRows::gather_alike(const matrix::RowFeatures& features, std::sp
     return dot(normal, features.normal[other.receiver]) >= kSameNormal * length_squared(normal) &&
            square(dot(normal, way)) <= square(kSamePlane) * length_squared(way);
   };
-  return static_cast<std::size_t>(
-      std::stable_partition(placed.begin() + 1, placed.end(), alike) - placed.begin());
+  return static_cast<std::size_t>(std::stable_partition(placed.begin() + 1, placed.end(), alike) -
+                                  placed.begin());
 }
 
 void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index> slice) {
