@@ -114,7 +114,7 @@ struct Whole {
 }  // namespace
 
 LightTree::LightTree(const matrix::LightingMatrix& matrix, std::uint64_t seed)
-    : matrix_(matrix), features_(matrix.column_features()) {
+    : seed_(seed), matrix_(matrix), features_(matrix.column_features()) {
   constexpr std::size_t kGrain = 1 << 14;
   const std::size_t n = matrix.columns();
   if (n >= std::size_t{1} << 27) throw InternalError("light tree: too many columns");

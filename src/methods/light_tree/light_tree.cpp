@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/random.h"
+
 namespace lumirank::methods {
 
 using matrix::ColumnSet;
@@ -44,14 +46,12 @@ Index LightTree::representative(Node node) const {
 
 matrix::ScaledColumn LightTree::scaled(Node node) const { return scaled_to(node, representative(node)); }
 
-matrix::ScaledColumn LightTree::drawn(Node node, double u) const {
+matrix::ScaledColumn LightTree::redrawn(Node node, std::uint64_t key) const {
   Node at = node;
   while (!is_leaf(at)) {
     const auto l = static_cast<double>(power(left(at))), r = static_cast<double>(power(right(at)));
     const double p = l + r > 0 ? l / (l + r) : 0.5;
-    const bool to_left = u < p;
-    u = to_left ? u / p : (u - p) / (1 - p);
-    at = to_left ? left(at) : right(at);
+    at = unit_double(hash_ids(key, Stage::representatives, at)) < p ? left(at) : right(at);
   }
   return scaled_to(node, representative(at));
 }

@@ -50,15 +50,17 @@ class LightTree {
   // Σ over its columns of ColumnFeatures::emitted and of its luminance-like scalar.
   Rgb emitted(Node node) const;
   float power(Node node) const;
+  std::uint64_t seed() const { return seed_; }
   // Drawn among its columns in proportion to power, by a tournament from the leaves up: a child has the
   // representative of its parent where it can (so that refining evaluates one new column, not two).
   matrix::Index representative(Node node) const;
   // The representative scaled per channel to the emission of the whole node; where one of its channels is
   // (nearly) black, by the scalar.
   matrix::ScaledColumn scaled(Node node) const;
-  // The same for another of its columns, drawn in proportion to power by `u`, uniform in [0, 1): one that no
-  // decision about the cut has looked at.
-  matrix::ScaledColumn drawn(Node node, double u) const;
+  // The same for another of its columns, drawn in proportion to power as well, but so that no decision about
+  // a cut has looked at it: a second representative, for which a child's is its parent's where it can be, too.
+  // For the same key it is the same wherever a cut has the node, so what it errs by has no edges.
+  matrix::ScaledColumn redrawn(Node node, std::uint64_t key) const;
 
   std::size_t memory_bytes() const;
   // Of one column.
@@ -89,6 +91,7 @@ class LightTree {
   // channels.
   static float power_of(Rgb emitted) { return luminance(emitted); }
 
+  std::uint64_t seed_;
   const matrix::LightingMatrix& matrix_;
   matrix::ColumnFeatures features_;
   std::vector<Inner> nodes_;

@@ -185,7 +185,7 @@ bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
 void SliceCut::redraw(std::uint64_t key) {
   for (Cluster& c : clusters_) {
     if (tree_.is_leaf(c.node)) continue;
-    c.column = tree_.drawn(c.node, unit_double(hash_ids(key, Stage::representatives, c.node)));
+    c.column = tree_.redrawn(c.node, key);
     c.slot = kNoSlot;
   }
 }
@@ -202,7 +202,7 @@ void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
       contributions(settings, entries);
     }
   }
-  if (settings.splitting && settings.redraw) redraw(entries.key());
+  if (settings.splitting && settings.redraw) redraw(tree_.seed() + 1);
 }
 
 }  // namespace lumirank::methods
