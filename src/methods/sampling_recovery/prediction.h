@@ -33,6 +33,10 @@ class Prediction {
            std::span<linalg::Entry> state);
   // P(visible) of every entry: predicted, or 0 or 1 where it is known. Until the next run.
   std::span<const float> probabilities() const { return probabilities_; }
+  // Whether samples of a column differ.
+  bool mixed(std::size_t c) const {
+    return columns_[c].visible > 0 && columns_[c].visible < columns_[c].known;
+  }
   const PredictionTally& tally() const { return tally_; }
 
  private:

@@ -32,7 +32,7 @@ struct RecoverySettings {
   bool separation = true, constraint = true;
   enum class Separated { visibility, shading } separated = Separated::visibility;
   linalg::SeparationSettings::Fit fit = linalg::SeparationSettings::Fit::all;
-  std::size_t rank = 16, iterations = 20;
+  std::size_t rank = 16, iterations = 4;
   bool correction = true;
   double density = 0.4;
 };

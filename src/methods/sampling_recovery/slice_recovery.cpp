@@ -57,21 +57,34 @@ void SliceRecovery::assemble() {
   }
 }
 
+// Columns whose samples all agree are left as they are predicted: they tell nothing about the others.
+void SliceRecovery::choose_separated() {
+  separated_.clear();
+  for (std::size_t c = 0; c < clusters().size(); ++c)
+    if (prediction_.mixed(c)) separated_.push_back(static_cast<std::uint32_t>(c));
+}
+
 void SliceRecovery::separate() {
   if (!settings_.separation) return;
-  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  choose_separated();
+  const std::size_t rows = entries_.rows().size(), columns = separated_.size();
   const bool shading = settings_.separated == RecoverySettings::Separated::shading;
   d_.resize(rows * columns);
-  if (!shading) whole_.resize(rows * columns);
-  for (std::size_t c = 0; c < columns; ++c) {
+  whole_.resize(rows * columns);
+  separated_state_.resize(rows * columns);
+  for (std::size_t k = 0; k < columns; ++k) {
+    const std::size_t c = separated_[k];
     const auto known = entries_.seen(clusters()[c].slot);
+    const Entry* const state = &state_[c * rows];
+    const float* const e = &e_[c * rows];
     for (std::size_t i = 0; i < rows; ++i) {
-      const std::size_t at = c * rows + i;
+      const std::size_t at = k * rows + i;
       const bool visible =
-          state_[at] == Entry::exact ? known[i] == seen::kVisible : state_[at] == Entry::predicted_visible;
-      const float whole = shading ? e_[at] : e_[at] > 0 ? 1.0f : 0.0f;
+          state[i] == Entry::exact ? known[i] == seen::kVisible : state[i] == Entry::predicted_visible;
+      const float whole = shading ? e[i] : e[i] > 0 ? 1.0f : 0.0f;
       d_[at] = visible ? whole : 0.0f;
-      if (!shading) whole_[at] = whole;
+      whole_[at] = whole;
+      separated_state_[at] = state[i];
     }
   }
   linalg::SeparationSettings s;
@@ -79,7 +92,7 @@ void SliceRecovery::separate() {
   s.iterations = settings_.iterations;
   s.constraint = settings_.constraint;
   s.fit = settings_.fit;
-  separation_.run({rows, columns, d_, state_, whole()}, s);
+  separation_.run({rows, columns, d_, separated_state_, whole_}, s);
   tally_.rank += separation_.rank();
   tally_.iterations += separation_.iterations();
   tally_.converged += separation_.converged() ? 1 : 0;
@@ -95,14 +108,14 @@ void SliceRecovery::separate() {
 // Entries whose neighbourhood is full of errors that the separation found (section 6.2).
 void SliceRecovery::ask_where_dense() {
   if (!settings_.separation || !settings_.correction) return;
-  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const std::size_t rows = entries_.rows().size(), columns = separated_.size();
   // Z ≠ 0, up to the rounding of equation 12: an error is all of an entry or nothing, so it counts from half
   // of one on. (What the soft threshold leaves of small differences would make five times as many entries
   // dense.)
-  wrong_.resize(e_.size());
+  wrong_.resize(d_.size());
   const auto z = separation_.sparse();
-  const float *const sparse = z.data(), *const all = whole().data();
-  const Entry* const state = state_.data();
+  const float *const sparse = z.data(), *const all = whole_.data();
+  const Entry* const state = separated_state_.data();
   std::uint8_t* const wrong = wrong_.data();
   for (std::size_t at = 0; at < wrong_.size(); ++at)
     wrong[at] =
@@ -111,10 +124,10 @@ void SliceRecovery::ask_where_dense() {
   const auto density = density_.density();
   const auto least = static_cast<float>(settings_.density);
   chosen_.resize(rows);
-  for (std::size_t c = 0; c < columns; ++c) {
-    const float* const dense = &density[c * rows];
+  for (std::size_t k = 0; k < columns; ++k) {
+    const float* const dense = &density[k * rows];
     for (std::size_t i = 0; i < rows; ++i) chosen_[i] = dense[i] > least ? 1 : 0;
-    ask_chosen(c);
+    ask_chosen(separated_[k]);
   }
 }
 
@@ -159,28 +172,31 @@ void SliceRecovery::look() {
 // What is known, and for the rest L/E; without separation the prediction.
 void SliceRecovery::recover_visibility() {
   const std::size_t rows = entries_.rows().size(), columns = clusters().size();
-  const bool mean = !settings_.separation && settings_.draw == RecoverySettings::Draw::mean;
+  const bool drawn = !settings_.separation && settings_.draw != RecoverySettings::Draw::mean;
   visibility_.resize(rows * columns);
   const auto p = prediction_.probabilities();
+  std::size_t next = 0;  // of those that were separated
   for (std::size_t c = 0; c < columns; ++c) {
     const auto known = entries_.seen(clusters()[c].slot);
     const std::size_t begin = c * rows;
     const Entry* const state = &state_[begin];
+    const float* const predicted = &p[begin];
     float* const out = &visibility_[begin];
-    if (settings_.separation) {
-      const float *const e = &whole()[begin], *const l = &separation_.low_rank()[begin];
+    if (settings_.separation && next < separated_.size() && separated_[next] == c) {
+      const float *const e = &whole_[next * rows], *const l = &separation_.low_rank()[next * rows];
       for (std::size_t i = 0; i < rows; ++i) {
         const float share = l[i] / std::max(e[i], 1e-37f);
         out[i] = share < 0 ? 0.0f : share > 1 ? 1.0f : share;
       }
-    } else if (mean) {
-      std::copy_n(p.begin() + static_cast<std::ptrdiff_t>(begin), rows, out);
-    } else {
+      ++next;
+    } else if (drawn) {
       for (std::size_t i = 0; i < rows; ++i) out[i] = state[i] == Entry::predicted_visible ? 1.0f : 0.0f;
+    } else {
+      std::copy_n(predicted, rows, out);
     }
     for (std::size_t i = 0; i < rows; ++i) {
       const float exact = known[i] == seen::kVisible ? 1.0f : 0.0f;
-      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? p[begin + i] : out[i];
+      out[i] = state[i] == Entry::exact ? exact : state[i] == Entry::free ? predicted[i] : out[i];
     }
   }
 }

@@ -55,8 +55,9 @@ class SliceRecovery {
   const SliceEntries& entries() const { return entries_; }
   std::span<const ReducedColumn> clusters() const { return reduced_; }
   std::span<const float> unoccluded() const { return e_; }
-  std::span<const float> predicted() const { return d_; }
-  std::span<const linalg::Entry> states() const { return state_; }  // after correction
+  std::span<const std::uint32_t> separated() const { return separated_; }  // which columns were
+  std::span<const float> predicted() const { return d_; }                  // of these
+  std::span<const linalg::Entry> states() const { return state_; }         // after correction
   const linalg::Separation& separation() const { return separation_; }
   const linalg::DensityMap& density() const { return density_; }
   std::span<const float> visibility() const { return visibility_; }  // recovered, 0 … 1
@@ -69,6 +70,7 @@ class SliceRecovery {
   void evaluate();
   void trace();
   void assemble();
+  void choose_separated();
   void separate();
   void look();
   void ask_where_dense();
@@ -84,10 +86,9 @@ class SliceRecovery {
   linalg::Separation separation_;
   linalg::DensityMap density_;
   // What a visible entry of the separated matrix would be.
-  std::span<const float> whole() const {
-    return settings_.separated == RecoverySettings::Separated::shading ? e_ : whole_;
-  }
   std::vector<float> e_, d_, whole_, visibility_;
+  std::vector<std::uint32_t> separated_;  // columns, ascending
+  std::vector<linalg::Entry> separated_state_;
   std::vector<linalg::Entry> state_;
   std::vector<std::uint8_t> wrong_;   // by the separation
   std::vector<std::uint8_t> chosen_;  // of a column's entries: to be asked for
