@@ -13,7 +13,7 @@ namespace lumirank::methods {
 
 class SamplePatterns {
  public:
-  static constexpr std::size_t kPatterns = 8;
+  static constexpr std::size_t kPatterns = 4;
   using Few = linalg::SampledNeighbours::Few;
 
   // Orders whose every beginning is spread evenly along the curve (a random bit flip of van der Corput's
