@@ -22,8 +22,15 @@ Looker::Looker(const LookOptions& options, const matrix::LightingMatrix& matrix)
       slices_(methods::make_slices(matrix.row_features(), matrix.rows(), most_receivers())),
       sums_(matrix.rows()),
       pool_([this] {
-        return std::make_unique<Workspace>(Workspace{
-            methods::SliceRecovery(settings_, &tree_, matrix_), matrix_.reader(), {}, {}, {}, {}, {}, {}, {}});
+        return std::make_unique<Workspace>(Workspace{methods::SliceRecovery(settings_, &tree_, matrix_),
+                                                     matrix_.reader(),
+                                                     {},
+                                                     {},
+                                                     {},
+                                                     {},
+                                                     {},
+                                                     {},
+                                                     {}});
       }) {}
 
 // As the method does.
@@ -103,26 +110,20 @@ void Looker::judge(std::size_t s, Workspace& w, const RecoverySettings& settings
 // The same separation once more, through all its iterations, and in two other ways.
 void Looker::separate_endlessly(Workspace& w, Findings& f) const {
   if (!settings_.separation) return;
-  const auto e = w.recovery.unoccluded();
-  std::vector<float> whole(e.begin(), e.end());
-  if (settings_.separated == RecoverySettings::Separated::visibility)
-    for (float& x : whole) x = x > 0 ? 1.0f : 0.0f;
   linalg::SeparationSettings s;
   s.most_rank = settings_.rank;
   s.iterations = kIterations;
   s.tolerance = s.least_progress = 0;
   s.constraint = settings_.constraint;
   s.fit = settings_.fit;
-  const std::size_t rows = w.recovery.entries().rows().size();
-  const linalg::CorruptedMatrix matrix{rows, rows > 0 ? e.size() / rows : 0, w.recovery.predicted(),
-                                       w.recovery.states(), whole};
+  const linalg::CorruptedMatrix matrix = w.recovery.corrupted();
   w.endless.run(matrix, s);
   f.endless.assign(w.endless.residuals().begin(), w.endless.residuals().end());
   std::vector<Entry> guessed(matrix.state.begin(), matrix.state.end());
   for (std::size_t at = 0; at < guessed.size(); ++at)
     if (guessed[at] == Entry::exact)
       guessed[at] = matrix.d[at] > 0 ? Entry::predicted_visible : Entry::predicted_hidden;
-  w.endless.run({matrix.rows, matrix.columns, matrix.d, guessed, whole}, s);
+  w.endless.run({matrix.rows, matrix.columns, matrix.d, guessed, matrix.e}, s);
   f.everywhere.assign(w.endless.residuals().begin(), w.endless.residuals().end());
   s.fit = linalg::SeparationSettings::Fit::exact_only;
   w.endless.run(matrix, s);
@@ -185,9 +186,9 @@ void Looker::look_at(std::size_t s, Workspace& w) {
     f.iterations = static_cast<double>(separation.iterations());
     f.converged = separation.converged();
     f.residuals.assign(separation.residuals().begin(), separation.residuals().end());
-    const bool shading = settings_.separated == RecoverySettings::Separated::shading;
-    for (std::size_t at = 0; at < e.size(); ++at)
-      if (e[at] > 0 && std::abs(separation.sparse()[at]) > 0.5f * (shading ? e[at] : 1.0f)) f.nonzero += 1;
+    const auto whole = w.recovery.corrupted().e;
+    for (std::size_t at = 0; at < whole.size(); ++at)
+      if (whole[at] > 0 && std::abs(separation.sparse()[at]) > 0.5f * whole[at]) f.nonzero += 1;
     separate_endlessly(w, f);
   }
   std::vector<double> right;

@@ -219,11 +219,19 @@ json Looker::write_matrices(std::size_t s, const std::string& name) {
   matrix_picture("light_recovered", [&](std::size_t at) { return e[at] * r.visibility()[at]; });
   matrix_picture("light_error", [&](std::size_t at) { return e[at] * (r.visibility()[at] - w.truth[at]); });
   if (settings_.separation) {
-    matrix_picture("predicted", [&](std::size_t at) { return r.predicted()[at]; });
-    matrix_picture("low_rank", [&](std::size_t at) { return r.separation().low_rank()[at]; });
-    matrix_picture("sparse", [&](std::size_t at) { return r.separation().sparse()[at]; });
-    if (settings_.correction)
-      matrix_picture("density", [&](std::size_t at) { return r.density().density()[at]; });
+    // Of the columns that were separated; the others stay empty.
+    std::vector<std::size_t> place(columns, columns);
+    for (std::size_t k = 0; k < r.separated().size(); ++k) place[r.separated()[k]] = k;
+    const auto of_separated = [&](std::span<const float> values) {
+      return [&, values](std::size_t at) {
+        const std::size_t k = place[at / rows];
+        return k < columns ? values[k * rows + at % rows] : std::numeric_limits<float>::quiet_NaN();
+      };
+    };
+    matrix_picture("predicted", of_separated(r.corrupted().d));
+    matrix_picture("low_rank", of_separated(r.separation().low_rank()));
+    matrix_picture("sparse", of_separated(r.separation().sparse()));
+    if (settings_.correction) matrix_picture("density", of_separated(r.density().density()));
   }
   // Columns after columns are rows of the transposed matrix, which has the same values.
   std::vector<float> seen(e.size()), lit(e.size());

@@ -187,13 +187,13 @@ TEST(SamplingRecovery, MeetsATargetByItself) {
 TEST(SamplingRecovery, ASliceFitsTogether) {
   const RecoverySettings settings;
   const LightTree tree(room(), 1);
-  SliceRecovery slice(settings, tree, room());
+  SliceRecovery slice(settings, &tree, room());
   std::vector<matrix::Index> rows;
   for (matrix::Index i = 100; i < 500; ++i) rows.push_back(i);
   std::vector<Rgb> sums(room().rows(), Rgb(-1));
   slice.run(rows, 7, sums);
   std::vector<int> covered(room().columns());
-  for (const auto& c : slice.clusters())
+  for (const auto& c : slice.cut().clusters())
     for (const matrix::Index j : tree.columns(c.node)) ++covered[j];
   for (std::size_t j = 0; j < covered.size(); ++j) EXPECT_EQ(covered[j], room().power[j] > 0);
   const std::size_t n = slice.entries().rows().size();

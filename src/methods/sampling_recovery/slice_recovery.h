@@ -54,10 +54,14 @@ class SliceRecovery {
   // Of the last slice, for those who look into it: column after column, rows × columns.
   const SliceEntries& entries() const { return entries_; }
   std::span<const ReducedColumn> clusters() const { return reduced_; }
+  const SliceCut& cut() const { return *cut_; }  // where the columns are its own choice
   std::span<const float> unoccluded() const { return e_; }
-  std::span<const std::uint32_t> separated() const { return separated_; }  // which columns were
-  std::span<const float> predicted() const { return d_; }                  // of these
-  std::span<const linalg::Entry> states() const { return state_; }         // after correction
+  // Which columns were separated, and what of them was: the predicted matrix.
+  std::span<const std::uint32_t> separated() const { return separated_; }
+  linalg::CorruptedMatrix corrupted() const {
+    return {entries_.rows().size(), separated_.size(), d_, separated_state_, whole_};
+  }
+  std::span<const linalg::Entry> states() const { return state_; }  // after correction
   const linalg::Separation& separation() const { return separation_; }
   const linalg::DensityMap& density() const { return density_; }
   std::span<const float> visibility() const { return visibility_; }  // recovered, 0 … 1
