@@ -180,35 +180,52 @@ TEST(LightTree, IsTheSameOnAnyNumberOfThreads) {
 
 // Drawn in proportion to power: over 4000 seeds the root of each tree of a small forest. A chi-square of so
 // many degrees of freedom, by Wilson and Hilferty's approximation, is below its limit with probability 0.999
-// for each of the trees.
+// for each of the trees. Second representatives, by 4000 keys, likewise.
 TEST(LightTree, RepresentativesAreDrawnByPower) {
   const MixedLights lights(120, 8);
   const int seeds = 4000;
-  std::vector<int> drawn(lights.columns(), 0);
-  for (int seed = 0; seed < seeds; ++seed) {
-    const LightTree tree(lights, static_cast<std::uint64_t>(seed));
-    for (const Node root : tree.roots()) ++drawn[tree.representative(root)];
-  }
+  std::vector<int> first(lights.columns(), 0), second(lights.columns(), 0);
   const LightTree tree(lights, 0);
-  for (const Node root : tree.roots()) {
-    double chi2 = 0, rare = 0, rare_drawn = 0;
-    int degrees = -1;
-    const auto count = [&](double expected, double seen) {
-      chi2 += (seen - expected) * (seen - expected) / expected;
-      ++degrees;
-    };
-    for (const Index j : tree.columns(root)) {
-      const double expected = seeds * static_cast<double>(luminance(lights.emitted[j])) / tree.power(root);
-      if (expected < 10) {
-        rare += expected, rare_drawn += drawn[j];
-      } else {
-        count(expected, drawn[j]);
+  for (int seed = 0; seed < seeds; ++seed) {
+    const LightTree other(lights, static_cast<std::uint64_t>(seed));
+    for (const Node root : other.roots()) ++first[other.representative(root)];
+    for (const Node root : tree.roots())
+      ++second[tree.redrawn(root, static_cast<std::uint64_t>(seed)).column];
+  }
+  for (const std::vector<int>& drawn : {first, second})
+    for (const Node root : tree.roots()) {
+      double chi2 = 0, rare = 0, rare_drawn = 0;
+      int degrees = -1;
+      const auto count = [&](double expected, double seen) {
+        chi2 += (seen - expected) * (seen - expected) / expected;
+        ++degrees;
+      };
+      for (const Index j : tree.columns(root)) {
+        const double expected = seeds * static_cast<double>(luminance(lights.emitted[j])) / tree.power(root);
+        if (expected < 10) {
+          rare += expected, rare_drawn += drawn[j];
+        } else {
+          count(expected, drawn[j]);
+        }
       }
+      if (rare > 10) count(rare, rare_drawn);
+      if (degrees < 1) continue;
+      const double h = 2.0 / (9 * degrees), z = 3.1;
+      EXPECT_LT(chi2, degrees * std::pow(1 - h + z * std::sqrt(h), 3)) << degrees;
     }
-    if (rare > 10) count(rare, rare_drawn);
-    if (degrees < 1) continue;
-    const double h = 2.0 / (9 * degrees), z = 3.1;
-    EXPECT_LT(chi2, degrees * std::pow(1 - h + z * std::sqrt(h), 3)) << degrees;
+}
+
+// So that a finer cut keeps what a coarser one had.
+TEST(LightTree, SecondRepresentativesAreThoseOfAChild) {
+  const MixedLights lights(120, 8);
+  const LightTree tree(lights, 1);
+  for (const Node node : all_nodes(tree)) {
+    const matrix::Index own = tree.redrawn(node, 7).column;
+    if (tree.is_leaf(node))
+      EXPECT_EQ(own, tree.representative(node));
+    else
+      EXPECT_TRUE(own == tree.redrawn(tree.left(node), 7).column ||
+                  own == tree.redrawn(tree.right(node), 7).column);
   }
 }
 

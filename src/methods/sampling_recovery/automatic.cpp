@@ -156,7 +156,9 @@ class Search {
       return k > 0 ? std::optional(k - 1) : std::nullopt;
     };
     if (const auto a = step(at.alpha, kAlpha.size()); a && may_try()) found.push_back(trial({*a, at.wrong}));
-    if (const auto w = step(at.wrong, kWrong.size()); w && may_try()) found.push_back(trial({at.alpha, *w}));
+    const bool predicts = given_.visibility == RecoverySettings::Visibility::sampled;
+    if (const auto w = step(at.wrong, kWrong.size()); predicts && w && may_try())
+      found.push_back(trial({at.alpha, *w}));
     return found;
   }
 
