@@ -179,7 +179,7 @@ def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=600, hei
         out.append(f'<line x1="{left}" y1="{py(t):.1f}" x2="{width - right}" y2="{py(t):.1f}" class="g"/><text x="{left - 6}" y="{py(t) + 4:.1f}" text-anchor="end">{t:g}</text>')
     out.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">{html.escape(x_label)}</text>'
                f'<text transform="translate(14 {(top + height - bottom) / 2}) rotate(-90)" text-anchor="middle">{html.escape(y_label)}</text>')
-    colours = ("#1b6ca8", "#c8502a", "#3a8f4d", "#8a4fa3", "#b08a1e", "#4b4b4b", "#d0679c", "#3aa6a6")
+    colours = ("#1b6ca8", "#c8502a", "#3a8f4d", "#8a4fa3", "#b08a1e", "#4b4b4b", "#d0679c", "#3aa6a6", "#7a5230", "#8fae3c")
     for k, (name, curve) in enumerate(curves.items()):
         colour = colours[k % len(colours)]
         good = [p for p in curve if p[1] > 0]
