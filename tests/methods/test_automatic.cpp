@@ -7,6 +7,7 @@
 #include "methods/column_pass.h"
 #include "methods/row_column/planner.h"
 #include "methods/row_column/settings.h"
+#include "support/sanitizers.h"
 
 namespace lumirank::methods {
 namespace {
@@ -38,21 +39,23 @@ Spread over_seeds(const matrix::DenseMatrix& m, double target, int seeds) {
   return s;
 }
 
-// Of 8 runs, each with 64 held-out rows: an L1 error at one row varies by about its own size, so the mean
-// over 512 rows by 4.4 %; 1.25 is more than five times that. Predicted errors are those of normal deviates;
-// of the same variance, errors with heavier tails have a smaller mean, so the prediction may only be too
-// large.
+// Of 8 runs (2 under sanitizers), each with 64 held-out rows: an L1 error at one row varies by about its own
+// size, so the mean over 512 (128) rows by 4.4 % (8.8 %); five and a half times that is allowed. Predicted
+// errors are those of normal deviates; of the same variance, errors with heavier tails have a smaller mean,
+// so the prediction may only be too large.
 TEST(Automatic, ReachesItsTargetAndSaysSo) {
+  const int runs = lumirank::test::kSanitized ? 2 : 8;
+  const double wide = 1 + 5.5 / std::sqrt(64.0 * runs);
   const auto smooth = matrix::low_rank_matrix({2048, 3000, 1}, 60);
   const auto sparse = matrix::sparse_matrix({2048, 3000, 1}, 0.2);
   for (const matrix::DenseMatrix* m : {&smooth, &sparse})
     for (double target : {0.1, 0.05}) {
-      const Spread s = over_seeds(*m, target, 8);
-      EXPECT_EQ(s.met, 8);
+      const Spread s = over_seeds(*m, target, runs);
+      EXPECT_EQ(s.met, runs);
       EXPECT_LE(s.stated, target);
-      EXPECT_LT(s.error, 1.25 * s.stated);
-      EXPECT_GT(s.error, s.stated / 1.25);
-      EXPECT_LT(s.error, 1.25 * s.predicted);
+      EXPECT_LT(s.error, wide * s.stated);
+      EXPECT_GT(s.error, s.stated / wide);
+      EXPECT_LT(s.error, wide * s.predicted);
       EXPECT_GT(s.error, 0.5 * s.predicted);
     }
 }
@@ -81,7 +84,7 @@ TEST(Automatic, GivesUpOnClusteringWhereItDoesNotPay) {
 }
 
 TEST(Automatic, KeepsGivenNumbers) {
-  const auto m = matrix::low_rank_matrix({2000, 3000, 1}, 40);
+  const auto m = matrix::low_rank_matrix({600, 1000, 1}, 40);
   const Estimate rows = run(m, {{"rows", "123"}}, {});
   EXPECT_EQ(rows.trace.numbers.at("rows"), 123);
   const Estimate columns = run(m, {{"columns", "200"}}, {});
@@ -89,8 +92,8 @@ TEST(Automatic, KeepsGivenNumbers) {
 }
 
 TEST(Automatic, TimeBudgetGivesACompleteEstimate) {
-  const auto m = matrix::low_rank_matrix({3000, 4000, 1}, 40);
-  for (double seconds : {1e-6, 0.05}) {
+  const auto m = matrix::low_rank_matrix({1000, 2000, 1}, 40);
+  for (double seconds : {1e-6, 0.01}) {
     RunOptions options;
     options.time_seconds = seconds;
     const Estimate e = run(m, {}, options);

@@ -8,6 +8,7 @@
 #include "base/warp.h"
 #include "matrix/synthetic.h"
 #include "methods/light_tree/light_tree.h"
+#include "methods/statistics.h"
 
 namespace lumirank::methods {
 namespace {
@@ -178,12 +179,12 @@ TEST(LightTree, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-// Drawn in proportion to power: over 4000 seeds the root of each tree of a small forest. A chi-square of so
-// many degrees of freedom, by Wilson and Hilferty's approximation, is below its limit with probability 0.999
-// for each of the trees. Second representatives, by 4000 keys, likewise.
+// Drawn in proportion to power: over 4000 seeds (800 under sanitizers) the root of each tree of a small
+// forest. A chi-square of so many degrees of freedom, by Wilson and Hilferty's approximation, is below its
+// limit with probability 0.999 for each of the trees. Second representatives, by as many keys, likewise.
 TEST(LightTree, RepresentativesAreDrawnByPower) {
   const MixedLights lights(120, 8);
-  const int seeds = 4000;
+  const auto seeds = static_cast<int>(test::runs(4000));
   std::vector<int> first(lights.columns(), 0), second(lights.columns(), 0);
   const LightTree tree(lights, 0);
   for (int seed = 0; seed < seeds; ++seed) {
