@@ -32,20 +32,21 @@ from experiment_page import Page, bars, percent, plot, read_pfm, run_parts, to_d
 HERE = pathlib.Path(__file__).resolve().parent
 OWN = ("courtyard", "fair", "room", "arcade")
 OURS = "sampling-recovery"
-TRACED = "sampling-recovery, traced"
-# Budgets, from poor to good: method, parameters, values. LightSlice's slices are swept with its columns, since at a million lights most of its time goes into
-# reading rows and clustering for each slice. Ours twice: as the paper has it, and with all visibilities traced, one for each surface of a pixel.
+TRACED = "slice-cuts"
+# Budgets, from poor to good: parameters, values. LightSlice's slices are swept with its columns, since at a million lights most of its time goes into
+# reading rows and clustering for each slice. slice-cuts has the
+# clusters of sampling-recovery and all their visibilities, one for each surface of a pixel.
 LADDERS = {
-    "lightcuts": ("lightcuts", "most-nodes", (100, 300, 1000)),
-    "multidimensional-lightcuts": ("multidimensional-lightcuts", "most-pairs", (60, 250, 500, 1000)),
-    "lightslice": ("lightslice", "columns:slice-rows:neighbours", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
-    "stochastic-lightcuts": ("stochastic-lightcuts", "nodes", (16, 64, 256)),
-    "row-column-sampling": ("row-column-sampling", "rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
-    "visibility-completion": ("visibility-completion", "columns:slice-rows:neighbours", ("100:16384:8", "300:16384:8", "300:8192:8", "600:8192:8")),
-    "power-sampling": ("power-sampling", "columns", (100, 300, 1000)),
-    "instant-radiosity": ("instant-radiosity", "lights", (100, 300, 1000)),
-    OURS: (OURS, "initial-columns:alpha", ("100:0.02", "250:0.008", "500:0.003", "1000:0.001")),
-    TRACED: (OURS, "visibility:initial-columns:alpha", ("traced:100:0.02", "traced:250:0.008", "traced:500:0.003", "traced:1000:0.001")),
+    "lightcuts": ("most-nodes", (100, 300, 1000)),
+    "multidimensional-lightcuts": ("most-pairs", (60, 250, 500, 1000)),
+    "lightslice": ("columns:slice-rows:neighbours", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
+    "stochastic-lightcuts": ("nodes", (16, 64, 256)),
+    "row-column-sampling": ("rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
+    "visibility-completion": ("columns:slice-rows:neighbours", ("100:16384:8", "300:16384:8", "300:8192:8", "600:8192:8")),
+    "power-sampling": ("columns", (100, 300, 1000)),
+    "instant-radiosity": ("lights", (100, 300, 1000)),
+    OURS: ("initial-columns:alpha", ("100:0.02", "250:0.008", "500:0.003", "1000:0.001")),
+    TRACED: ("initial-columns:alpha", ("100:0.02", "250:0.008", "500:0.003", "1000:0.001")),
 }
 PREDICTORS = {"nearest": "Nearest samples", "plane": "Plane", "bayes": "Naive Bayes", "all": "Best of the three"}
 LOOKED = (("guessed", (20, 20, 30)), ("sampled", (235, 235, 220)), ("uncertain", (250, 170, 40)), ("corrected", (225, 50, 60)))
@@ -123,13 +124,10 @@ class Experiments:
         page.heading("Table 1: equal quality and equal rays")
         page.say(f"{self.size}, 4 receivers per pixel, {self.lights} lights. Every method is swept by its budget; times and errors at the level of {OURS} are read off its curve "
                  "by straight lines in logarithms, and left open where the curve does not reach it. Curves are the best of each method's runs: none that another beats in both.")
-        ladders = {series: ladder for series, ladder in LADDERS.items() if ladder[0] in self.known}
+        ladders = {m: ladder for m, ladder in LADDERS.items() if m in self.known}
         for scene in self.scenes:
-            runs = self.compare("table", scene, list(dict.fromkeys(ladder[0] for ladder in ladders.values())),
-                                [f"{method}.{key}=" + ",".join(map(str, values)) for method, key, values in ladders.values()])
-            for r in runs:
-                r["series"] = TRACED if "traced" in r["label"] else r["method"]
-            curves = {m: [r for r in runs if r["series"] == m] for m in ladders}
+            runs = self.compare("table", scene, list(ladders), [f"{m}.{key}=" + ",".join(map(str, values)) for m, (key, values) in ladders.items()])
+            curves = {m: [r for r in runs if r["method"] == m] for m in ladders}
             page.heading(scene)
             page.table(("", "seconds", "rays per pixel", "relative L1", "bias", "sampling rate", "columns"),
                        [(r["label"], f"{r['seconds']:.2f}", f"{r['rays']:.0f}", percent(r["l1"]), percent(r["bias"]), percent(r["numbers"].get("sampling_rate", 1)),
@@ -157,21 +155,21 @@ class Experiments:
         whole = sum(steps.values())
         return [(k, f"{v:.1f}", percent(v / whole)) for k, v in sorted(steps.items(), key=lambda s: -s[1])] if whole > 0 else []
 
-    def switched(self, title, words, name, settings):
-        """Runs of our method with single settings changed, scene by scene."""
+    def switched(self, title, words, name, settings, beside=()):
+        """Runs of our method with single settings changed, scene by scene; other methods as they are beside it."""
         page = self.page
         page.heading(title)
         page.say(words)
         for scene in self.scenes:
-            runs = self.compare(name, scene, [OURS], [f"{OURS}.{key}=" + ",".join(map(str, values)) for key, values in settings])
+            runs = self.compare(name, scene, [OURS, *beside], [f"{OURS}.{key}=" + ",".join(map(str, values)) for key, values in settings])
             page.table((scene, "relative L1", "bias", "rays per pixel", "sampling rate", "columns", "seconds"),
                        [(r["label"], percent(r["l1"]), percent(r["bias"]), f"{r['rays']:.1f}", percent(r["numbers"].get("sampling_rate", 1)),
                          f"{r['numbers'].get('columns', 0):.0f}", f"{r['seconds']:.2f}") for r in runs])
             page.write()
 
     def steps(self):
-        self.switched("Figure 8: steps switched off", "Each row without one step; the first with all, the last with all visibilities traced, which is what recovery could reach at best.", "steps",
-                      [("prediction", ("on",)), *((s, ("off",)) for s in STEPS), ("visibility", ("traced",))])
+        self.switched("Figure 8: steps switched off", "Each row without one step; the first with all, slice-cuts knows all visibilities, which is what recovery could reach at best.", "steps",
+                      [("prediction", ("on",)), *((s, ("off",)) for s in STEPS)], (TRACED,))
 
     def rays(self):
         self.switched("Figure 9: rays per pixel", "The error ratio that a predictor must keep on fresh samples, and the splitting threshold.", "rays",

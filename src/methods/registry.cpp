@@ -15,11 +15,17 @@
 namespace lumirank::methods {
 
 const std::vector<MethodInfo>& all_methods() {
-  static const std::vector<MethodInfo> methods{
-      brute_force_info(),          instant_radiosity_info(), power_sampling_info(),
-      row_column_info(),           lightcuts_info(),         multidimensional_lightcuts_info(),
-      stochastic_lightcuts_info(), lightslice_info(),        sampling_recovery_info(),
-      visibility_completion_info()};
+  static const std::vector<MethodInfo> methods{brute_force_info(),
+                                               instant_radiosity_info(),
+                                               power_sampling_info(),
+                                               row_column_info(),
+                                               lightcuts_info(),
+                                               multidimensional_lightcuts_info(),
+                                               stochastic_lightcuts_info(),
+                                               lightslice_info(),
+                                               sampling_recovery_info(),
+                                               slice_cuts_info(),
+                                               visibility_completion_info()};
   return methods;
 }
 

@@ -14,10 +14,11 @@ namespace {
 
 using Settings = std::map<std::string, std::string>;
 
-Estimate estimate(const matrix::LightingMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
+Estimate estimate(const matrix::LightingMatrix& m, const Settings& settings, std::uint64_t seed = 1,
+                  const std::string& method = "sampling-recovery") {
   RunOptions options;
   options.seed = seed;
-  return find_method("sampling-recovery").make(settings)->run(m, options);
+  return find_method(method).make(settings)->run(m, options);
 }
 
 const matrix::DenseMatrix& room() {
@@ -49,9 +50,7 @@ TEST(SamplingRecovery, AllColumnsTracedAreBruteForce) {
   m.pixel.clear();
   for (const Settings& all : {Settings{{"alpha", "0"}, {"most-columns", "400"}},
                               Settings{{"clusters", "rows"}, {"columns", "400"}}}) {
-    Settings settings = all;
-    settings["visibility"] = "traced";
-    const Estimate e = estimate(m, settings);
+    const Estimate e = estimate(m, all, 1, "slice-cuts");
     EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
     EXPECT_EQ(e.trace.numbers.at("columns"), 400);
   }
@@ -156,7 +155,6 @@ TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
                                                         {"constraint", "off"},
                                                         {"correction", "off"},
                                                         {"calibration", "off"},
-                                                        {"visibility", "traced"},
                                                         {"clusters", "rows"},
                                                         {"weighted", "off"},
                                                         {"uncertain", "0"},
@@ -193,18 +191,18 @@ TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
 }
 
 TEST(SamplingRecovery, SameBitsForAnyNumberOfThreads) {
-  for (const Settings& settings :
-       {Settings{}, Settings{{"visibility", "traced"}}, Settings{{"clusters", "rows"}, {"columns", "60"}}}) {
+  const auto same = [](const std::string& method, const Settings& settings) {
     std::vector<Rgb> first;
     for (const int threads : {1, 3, 4})
       with_threads(threads, [&] {
-        Settings all = settings;
-        all["slice-rows"] = "60";
-        const Estimate e = estimate(room(), all);
+        const Estimate e = estimate(room(), settings, 1, method);
         if (threads == 1) first = e.sums;
         EXPECT_EQ(e.sums, first);
       });
-  }
+  };
+  same("sampling-recovery", {{"slice-rows", "60"}});
+  same("sampling-recovery", {{"slice-rows", "60"}, {"clusters", "rows"}, {"columns", "60"}});
+  same("slice-cuts", {{"slice-rows", "60"}});
 }
 
 // A pixel whose receivers lie on two surfaces is two rows, one whose receivers share a plane is one.

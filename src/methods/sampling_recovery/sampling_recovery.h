@@ -3,7 +3,7 @@
 // predicted and recovered as a matrix of low rank.
 //
 // Where we deviate: section 7.2's super-samples share their pixel's visibility, but each keeps its own
-// shading; samples of a column follow one of eight evenly spread orders instead of uniform draws; predictors
+// shading; samples of a column follow one of four evenly spread orders instead of uniform draws; predictors
 // are judged by their probabilities; clusters above the splitting threshold are split together
 // (slice_cut.h); the separation fits all entries (linalg/separation.h). Biased: what is recovered is no
 // estimate of a sum.
@@ -14,5 +14,7 @@
 namespace lumirank::methods {
 
 MethodInfo sampling_recovery_info();
+// Its clusters with all visibilities of theirs.
+MethodInfo slice_cuts_info();
 
 }  // namespace lumirank::methods

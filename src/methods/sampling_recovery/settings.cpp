@@ -1,5 +1,7 @@
 #include "methods/sampling_recovery/settings.h"
 
+#include <algorithm>
+
 namespace lumirank::methods {
 
 const Fields<RecoverySettings>& recovery_fields() {
@@ -43,15 +45,11 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Whether clusters, once they are chosen, get other representatives than those by "
            "which they were: those stayed unsplit for being dark. Unbiased, and a little noisier."},
           &S::redraw, off_on),
-      choice_field<S>(
-          {"visibility", "",
-           "sampled: few visibilities of a slice are looked at, the others predicted and recovered; "
-           "traced: all are looked at, one for each of a pixel's surfaces."},
-          &S::visibility, {"sampled", "traced"}),
-      number_field<S>({"rho", "of a column's entries",
-                       "How many visibilities are sampled at a time: for splitting, and in each round of "
-                       "prediction; at least four. 1: all."},
-                      &S::rho, 0, 1),
+      number_field<S>(
+          {"rho", "of a column's entries",
+           "How many visibilities are sampled at a time, at least four: for splitting, and where the others "
+           "are predicted in each round of that. 1: all."},
+          &S::rho, 0, 1),
       choice_field<S>({"prediction", "",
                        "Whether visibilities in between are predicted. off: they are taken as visible, after "
                        "five rounds of samples."},
@@ -101,6 +99,19 @@ const Fields<RecoverySettings>& recovery_fields() {
           {"correction", "", "Whether entries are sampled where the separation's errors are dense."},
           &S::correction, off_on),
       number_field<S>({"density", "of entries", "What counts as dense there."}, &S::density, 0, 1)};
+  return fields;
+}
+
+const Fields<RecoverySettings>& slice_cut_fields() {
+  static const Fields<RecoverySettings> fields = [] {
+    const std::vector<std::string> of_clusters{"slice-rows",        "clusters",     "columns",   "neighbours",
+                                               "initial-columns",   "most-columns", "splitting", "alpha",
+                                               "sparse-visibility", "redraw",       "rho"};
+    Fields<RecoverySettings> some;
+    for (const auto& field : recovery_fields())
+      if (std::ranges::find(of_clusters, field.info.key) != of_clusters.end()) some.push_back(field);
+    return some;
+  }();
   return fields;
 }
 

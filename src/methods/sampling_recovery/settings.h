@@ -17,7 +17,7 @@ struct RecoverySettings {
   std::size_t initial_columns = 500, most_columns = 2000;
   bool splitting = true, sparse_visibility = true, redraw = true;
   double alpha = 0.003;
-  // Visibility.
+  // Visibility: few looked at and the others recovered, or all looked at.
   enum class Visibility { sampled, traced } visibility = Visibility::sampled;
   double rho = 0.01;
   bool prediction = true;
@@ -38,5 +38,7 @@ struct RecoverySettings {
 };
 
 const Fields<RecoverySettings>& recovery_fields();
+// Of these, what clusters depend on.
+const Fields<RecoverySettings>& slice_cut_fields();
 
 }  // namespace lumirank::methods
