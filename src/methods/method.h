@@ -70,6 +70,9 @@ struct MethodInfo {
   // instant-radiosity wants fewer lights rather than all of them: how many of the generated columns it uses
   // (0: all).
   std::function<std::size_t(const std::map<std::string, std::string>& settings)> lights_wanted;
+  // For a method that does not aim at RunOptions::target_error though its sums err: the parameters that
+  // decide its error, for a warning. "error-bound or most-nodes"; empty for all others.
+  std::string error_decided_by{};
 };
 
 // The list: adding a method here enrols it in the command line, the documentation and the tests that all

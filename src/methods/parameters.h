@@ -91,6 +91,7 @@ S read_settings(const std::string& method, const Fields<S>& fields, const Settin
 struct MethodText {
   std::string name, summary;
   std::string paper = "";
+  std::string error_decided_by = "";  // as in MethodInfo
 };
 
 // The entry of a method M whose constructor takes its settings S, and which uses all generated lights.
@@ -103,7 +104,8 @@ MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
           [name = text.name, fields](const SettingsMap& settings) -> std::unique_ptr<Method> {
             return std::make_unique<M>(read_settings(name, fields, settings));
           },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+          [](const SettingsMap&) -> std::size_t { return 0; },
+          text.error_decided_by};
 }
 
 // Every parameter of the method with the value that a run with these settings uses: what a report records.

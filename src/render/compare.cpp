@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -16,6 +17,7 @@
 #include "render/aovs.h"
 #include "render/compare_page.h"
 #include "render/compare_plan.h"
+#include "render/error_advice.h"
 #include "render/html_text.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
@@ -52,6 +54,7 @@ class Comparison {
     fs::create_directories(folder_, code);
     if (code)
       throw InputError({folder_, 0}, "the folder cannot be made: " + code.message(), "choose another place");
+    warn_of_errors();
     try {
       make_reference();
       for (std::size_t k = 0; k < plan_.size(); ++k) {
@@ -67,6 +70,15 @@ class Comparison {
   }
 
  private:
+  // Of methods that --error does not steer, once each.
+  void warn_of_errors() const {
+    std::set<std::string> warned;
+    for (const PlannedRun& run : plan_)
+      if (const auto& info = methods::find_method(run.method); warned.insert(run.method).second)
+        if (const std::string text = error_not_aimed_at(info, settings_.base.error); !text.empty())
+          sinks_.warn(text);
+  }
+
   std::string path(const std::string& name) const { return (fs::path(folder_) / name).string(); }
 
   // Receivers and lights for a run; kept while the next run wants the same.

@@ -33,6 +33,13 @@ double lights_for_error(const ErrorAsked& asked, double lights_part, double clam
   return std::ceil(count / step * (1 - 1e-12)) * step;
 }
 
+std::string error_not_aimed_at(const methods::MethodInfo& method, double target) {
+  if (target <= 0 || method.error_decided_by.empty()) return {};
+  return method.name + " does not aim at --error (" + percent(target) +
+         "), it only measures what it reaches: " + method.error_decided_by +
+         " (--set) decide; power-sampling, row-column-sampling and sampling-recovery aim at it";
+}
+
 std::string error_advice(const ErrorAsked& asked, const std::map<std::string, double>& numbers) {
   const auto total = numbers.find("error.estimate");
   if (asked.target <= 0 || total == numbers.end() || total->second <= asked.target) return {};
@@ -43,7 +50,9 @@ std::string error_advice(const ErrorAsked& asked, const std::map<std::string, do
                      ", number of lights " + percent(lights) + ", clamping " + percent(clamping);
   if (std::hypot(methods::target_for_sampling(asked.target, lights, clamping), lights) + clamping <=
       asked.target * (1 + 1e-9))
-    return text + "; more columns can still reach it: give more time";
+    return text + (asked.decided_by.empty()
+                       ? "; more columns can still reach it: give more time"
+                       : "; a smaller one takes other values of " + asked.decided_by + " (--set)");
   const double count = lights_for_error(asked, lights, clamping);
   text += "; more columns cannot help";
   if (count > kMostLights)

@@ -5,18 +5,24 @@
 #include <map>
 #include <string>
 
+#include "methods/method.h"
+
 namespace lumirank::rendering {
 
 struct ErrorAsked {
   double target = 0;                // --error
   std::size_t lights = 0;           // asked for
   std::string option = "--lights";  // how to ask for more
+  std::string decided_by = {};      // MethodInfo::error_decided_by
 };
 
 // How many lights should bring the error under the target if half of it is left to sampling: the lights' part
 // falls like 1/√N, and so does clamping, which darkens strips along edges as wide as the lights are apart.
 // Two significant digits, rounded up.
 double lights_for_error(const ErrorAsked& asked, double lights_part, double clamping_part);
+
+// A warning beforehand where the method will not aim at the target: who decides instead. Else empty.
+std::string error_not_aimed_at(const methods::MethodInfo& method, double target);
 
 // A warning that names the parts and the remedy. Empty if the target was met, or if the error is not known.
 // `numbers`: of the method's trace.

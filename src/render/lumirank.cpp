@@ -222,6 +222,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     setup.view = rendering::make_view(scene.impl().desc, settings);
     const methods::MethodInfo& info = rendering::chosen_method(settings);
     const auto method = info.make(settings.method_settings);
+    if (const std::string text = rendering::error_not_aimed_at(info, settings.error); !text.empty())
+      sinks.warn(text);
     const world::World world = build_world(scene, sinks);
     setup.world = &world;
     setup.seconds["build"] = timer.seconds();
@@ -274,7 +276,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     setup.seconds["method"] = method_timer.seconds();
     result.interrupted = estimate.interrupted;
     const bool own_lights = info.lights_wanted && info.lights_wanted(settings.method_settings) > 0;
-    const rendering::ErrorAsked asked{settings.error, count, own_lights ? "--set lights=" : "--lights"};
+    const rendering::ErrorAsked asked{settings.error, count, own_lights ? "--set lights=" : "--lights",
+                                      info.error_decided_by};
     if (const std::string advice = rendering::error_advice(asked, estimate.trace.numbers); !advice.empty()) {
       sinks.warn(advice);
       estimate.trace.notes["error.advice"] = advice;

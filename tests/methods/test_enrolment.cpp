@@ -125,6 +125,32 @@ TEST_P(EveryMethod, CancelledRunsReturnWhatTheyHave) {
   }
 }
 
+// A target steers the method, or the method says what does instead. Methods that sum all columns of theirs
+// have no error to steer.
+TEST_P(EveryMethod, AimsAtAnErrorOrSaysWhatDecidesIt) {
+  const auto m = matrix::occluded_matrix({1200, 900, 3}, 8);
+  const auto has = [&](const std::string& key) {
+    return std::any_of(info().parameters.begin(), info().parameters.end(),
+                       [&](const Parameter& p) { return p.key == key; });
+  };
+  // A search on a few slices wants many.
+  const auto method = info().make(has("slice-rows") ? SettingsMap{{"slice-rows", "40"}} : SettingsMap{});
+  const auto with_target = [&](double target) {
+    RunOptions options;
+    options.target_error = target;
+    return method->run(m, options).sums;
+  };
+  const auto coarse = with_target(0.2), fine = with_target(0.012);
+  if (info().error_decided_by.empty()) {
+    const double error = relative_l1_difference(fine, m.exact_sums());
+    EXPECT_TRUE(error < 900 * 0x1p-24 || error < relative_l1_difference(coarse, m.exact_sums())) << error;
+    return;
+  }
+  EXPECT_EQ(coarse, fine);
+  std::stringstream named(info().error_decided_by);
+  for (std::string word; named >> word;) EXPECT_TRUE(word == "or" || has(word)) << word;
+}
+
 TEST_P(EveryMethod, CopesWithTinyAndDarkMatrices) {
   for (std::size_t n : {1u, 2u, 50u, 200u}) {
     const matrix::DenseMatrix dark(3, n, std::vector<Rgb>(3 * n));

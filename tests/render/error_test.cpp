@@ -173,6 +173,30 @@ TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
   EXPECT_NE(warnings[1].find("--set lights="), std::string::npos) << warnings[1];
 }
 
+TEST(StatedError, MethodsThatDoNotAimAtItSaySo) {
+  const Scene scene = box();
+  RenderSettings settings;
+  settings.width = 16, settings.height = 12;
+  settings.lights = 300;
+  std::vector<std::string> warnings;
+  Sinks sinks;
+  sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
+  for (const methods::MethodInfo& info : methods::all_methods()) {
+    settings.method = info.name;
+    for (const double error : {0.0, 5.0}) {  // of which nobody falls short
+      settings.error = error;
+      warnings.clear();
+      const json report = json::parse(render(scene, settings, sinks).report_json);
+      const bool expected = error > 0 && !info.error_decided_by.empty();
+      ASSERT_EQ(warnings.size(), expected ? 1u : 0u) << info.name;
+      if (!expected) continue;
+      EXPECT_TRUE(report.contains("error.estimate")) << info.name;
+      for (const std::string& part : {info.name, std::string("--error"), info.error_decided_by})
+        EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+    }
+  }
+}
+
 TEST(ErrorAdvice, NumbersFollowTheRoot) {
   using rendering::lights_for_error;
   // Half of 0.08 is left to sampling: √(0.04² + l²) = 0.08 at l = 0.0693; from 0.2 by 8.33 times as many
@@ -199,6 +223,11 @@ TEST(ErrorAdvice, NamesWhatHelps) {
   EXPECT_NE(advice(0.02, 0.01, 0.06).find("--clamp"), std::string::npos);
   EXPECT_NE(advice(0.02, 9, 0.01).find("larger error"), std::string::npos);
   EXPECT_EQ(error_advice({0.05, 1000, "--lights"}, {}), "");
+  const std::string fixed = error_advice(
+      {0.05, 1000, "--lights", "nodes"},
+      {{"error.estimate", 0.07}, {"error.sampling", 0.06}, {"error.lights", 0}, {"error.clamping", 0.01}});
+  EXPECT_NE(fixed.find("nodes (--set)"), std::string::npos) << fixed;
+  EXPECT_EQ(fixed.find("more time"), std::string::npos) << fixed;
 }
 
 }  // namespace

@@ -144,7 +144,8 @@ MethodInfo lightcuts_info() {
   return method_info<Lightcuts>(
       {"lightcuts", "For each receiver a cut through a tree of lights, refined by error bounds.",
        "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
-       "illumination, SIGGRAPH 2005"},
+       "illumination, SIGGRAPH 2005",
+       "error-bound or most-nodes"},
       kFields);
 }
 

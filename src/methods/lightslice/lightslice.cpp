@@ -44,7 +44,7 @@ class LightSlice final : public Method {
 MethodInfo lightslice_info() {
   return method_info<LightSlice>(
       {"lightslice", "Clusters columns for every slice of receivers on their own.",
-       "Ou, Pellacini 2011, LightSlice: matrix slice sampling for the many-lights problem"},
+       "Ou, Pellacini 2011, LightSlice: matrix slice sampling for the many-lights problem", "columns"},
       slice_light_fields());
 }
 

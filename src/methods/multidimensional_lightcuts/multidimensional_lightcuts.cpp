@@ -179,7 +179,8 @@ MethodInfo multidimensional_lightcuts_info() {
   return method_info<MultidimensionalLightcuts>(
       {"multidimensional-lightcuts",
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
-       "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006"},
+       "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
+       "error-bound or most-pairs"},
       kFields);
 }
 

@@ -149,7 +149,8 @@ MethodInfo visibility_completion_info() {
   return method_info<VisibilityCompletion>(
       {"visibility-completion", "Columns of slices as in lightslice, with few of their shadow rays.",
        "Wang, Holzschuch 2020, Adaptive matrix completion for fast visibility computations with many lights "
-       "rendering"},
+       "rendering",
+       "columns or spacing"},
       fields());
 }
 
