@@ -11,31 +11,23 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
+#include "bench_scene.h"
 #include "geometry/embree.h"
-#include "scenedesc/readers.h"
 #include "transport/kernels/lanes.h"
-#include "transport/receivers.h"
 #include "transport/scene_matrix.h"
-#include "transport/virtual_lights.h"
-#include "world/world.h"
 
 namespace {
 
 using namespace lumirank;
+using bench::setting;
 using transport::Lane;
 using transport::Lane3;
 using transport::LightKind;
-
-int setting(const char* name, int otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::atoi(text) : otherwise;
-}
 
 // All that blocks, as one flat Embree scene.
 struct BareScene {
@@ -162,20 +154,17 @@ double median(std::vector<double> v) {
 }
 
 struct Bench {
-  scenedesc::SceneDesc desc;
-  world::World world;
-  transport::Receivers receivers;
+  bench::BenchScene scene;
+  const world::World& world = scene.world;
+  const transport::Receivers& receivers = scene.receivers;
   transport::VirtualLights lights;
   transport::SceneMatrix matrix;
   BareScene bare;
   BareReceivers bare_receivers;
 
   explicit Bench(const std::string& file)
-      : desc(read(file)),
-        world(build(desc)),
-        receivers(transport::trace_receivers(world, world::Camera(desc.sensors.at(0)),
-                                             {1, setting("BENCH_SPP", 4)})),
-        lights(make_lights(world)),
+      : scene(file, 800, 600),
+        lights(scene.lights(100000, {}, false)),
         matrix(world, receivers, lights, {}),
         bare(world.rays()),
         bare_receivers(receivers) {
@@ -189,22 +178,6 @@ struct Bench {
                 100.0 * static_cast<double>(scattering_rows) / static_cast<double>(receivers.size()),
                 lights.size(),
                 100.0 * static_cast<double>(scattering_columns) / static_cast<double>(lights.size()));
-  }
-
-  static scenedesc::SceneDesc read(const std::string& file) {
-    scenedesc::SceneDesc desc = scenedesc::read_scene(file);
-    desc.sensors.at(0).film.width = setting("BENCH_WIDTH", 800);
-    desc.sensors.at(0).film.height = setting("BENCH_HEIGHT", 600);
-    return desc;
-  }
-  static world::World build(const scenedesc::SceneDesc& desc) {
-    std::vector<scenedesc::Warning> warnings;
-    return world::World::build(desc, {}, warnings);
-  }
-  static transport::VirtualLights make_lights(const world::World& world) {
-    transport::LightSettings settings;
-    settings.count = static_cast<std::size_t>(setting("BENCH_LIGHTS", 100000));
-    return transport::trace_virtual_lights(world, settings);
   }
 
   std::vector<matrix::ScaledColumn> pick_columns() const {

@@ -9,31 +9,23 @@
 //   BENCH_ONLY (0: all ways)
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <functional>
 #include <string>
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "bench_scene.h"
 #include "matrix/entry_reader.h"
 #include "methods/slices/slices.h"
-#include "scenedesc/readers.h"
-#include "transport/receivers.h"
 #include "transport/scene_matrix.h"
-#include "transport/virtual_lights.h"
-#include "world/world.h"
 
 namespace {
 
 using namespace lumirank;
+using bench::setting;
 using matrix::Index;
 using matrix::Part;
-
-int setting(const char* name, int otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::atoi(text) : otherwise;
-}
 
 // Each slice on one thread.
 void for_slices(const matrix::LightingMatrix& matrix, const methods::Slices& slices,
@@ -45,18 +37,9 @@ void for_slices(const matrix::LightingMatrix& matrix, const methods::Slices& sli
 }
 
 void run(const std::string& file) {
-  scenedesc::SceneDesc desc = scenedesc::read_scene(file);
-  desc.sensors.at(0).film.width = setting("BENCH_WIDTH", 800);
-  desc.sensors.at(0).film.height = setting("BENCH_HEIGHT", 600);
-  std::vector<scenedesc::Warning> warnings;
-  const world::World world = world::World::build(desc, {}, warnings);
-  const transport::Receivers receivers =
-      transport::trace_receivers(world, world::Camera(desc.sensors.at(0)), {1, setting("BENCH_SPP", 4)});
-  transport::LightSettings light_settings;
-  light_settings.count = static_cast<std::size_t>(setting("BENCH_LIGHTS", 100000));
-  light_settings.receivers = &receivers;
-  const transport::VirtualLights lights = transport::trace_virtual_lights(world, light_settings);
-  const transport::SceneMatrix matrix(world, receivers, lights, {});
+  const bench::BenchScene scene(file, 800, 600);
+  const transport::VirtualLights lights = scene.lights(100000);
+  const transport::SceneMatrix matrix(scene.world, scene.receivers, lights, {});
   const methods::Slices slices = methods::make_slices(matrix.row_features(), matrix.rows());
 
   Rng rng(1, Stage::benchmark);

@@ -8,28 +8,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <string>
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "bench_scene.h"
 #include "methods/method.h"
-#include "scenedesc/readers.h"
-#include "transport/receivers.h"
 #include "transport/scene_matrix.h"
 #include "transport/sphere_lights.h"
-#include "transport/virtual_lights.h"
-#include "world/world.h"
 
 namespace {
 
 using namespace lumirank;
-
-int setting(const char* name, int otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::atoi(text) : otherwise;
-}
+using bench::setting;
 
 transport::SceneMatrixSettings with_seed(int seed) {
   transport::SceneMatrixSettings settings;
@@ -49,17 +41,12 @@ std::vector<matrix::ScaledColumn> pick_columns(const transport::SceneMatrix& mat
 }
 
 void run(const std::string& file) {
-  scenedesc::SceneDesc desc = scenedesc::read_scene(file);
-  desc.sensors.at(0).film.width = setting("BENCH_WIDTH", 200);
-  desc.sensors.at(0).film.height = setting("BENCH_HEIGHT", 150);
-  std::vector<scenedesc::Warning> warnings;
-  const world::World world = world::World::build(desc, {}, warnings);
-  const transport::Receivers receivers =
-      transport::trace_receivers(world, world::Camera(desc.sensors.at(0)), {1, setting("BENCH_SPP", 4)});
-  transport::LightSettings light_settings;
-  light_settings.count = static_cast<std::size_t>(setting("BENCH_LIGHTS", 60000));
-  light_settings.direct = false, light_settings.receivers = &receivers;
-  const transport::VirtualLights points = transport::trace_virtual_lights(world, light_settings);
+  const bench::BenchScene scene(file, 200, 150);
+  const world::World& world = scene.world;
+  const transport::Receivers& receivers = scene.receivers;
+  transport::LightSettings indirect;
+  indirect.direct = false;
+  const transport::VirtualLights points = scene.lights(60000, indirect);
   transport::VirtualLights spheres = points;
   make_spherical(spheres, world, {static_cast<float>(setting("BENCH_SCALE", 0))});
 

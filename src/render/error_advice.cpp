@@ -37,7 +37,7 @@ std::string error_not_aimed_at(const methods::MethodInfo& method, double target)
   if (target <= 0 || method.error_decided_by.empty()) return {};
   return method.name + " does not aim at --error (" + percent(target) +
          "), it only measures what it reaches: " + method.error_decided_by +
-         " (--set) decide; power-sampling, row-column-sampling and sampling-recovery aim at it";
+         " (--set) decide; row-column-sampling, for one, aims at it";
 }
 
 std::string error_advice(const ErrorAsked& asked, const std::map<std::string, double>& numbers) {

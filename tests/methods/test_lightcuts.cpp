@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/cut_matrices.h"
 #include "methods/lightcuts/cut.h"
 
 namespace lumirank::methods {
@@ -10,16 +9,8 @@ namespace {
 using matrix::DenseMatrix;
 using matrix::Index;
 
-std::vector<DenseMatrix> matrices() {
-  std::vector<DenseMatrix> m;
-  m.push_back(matrix::low_rank_matrix({120, 300, 1}, 6, 3));
-  m.push_back(matrix::sparse_matrix({120, 300, 2}, 0.3));
-  m.push_back(matrix::recess_matrix({120, 300, 3}));
-  return m;
-}
-
 TEST(Lightcuts, WithoutBoundAndLimitEqualsBruteForce) {
-  for (const DenseMatrix& m : matrices()) {
+  for (const DenseMatrix& m : test::cut_matrices()) {
     const Estimate e = find_method("lightcuts")
                            .make({{"error-bound", "0"}, {"most-nodes", "1000000"}, {"reconstruction", "off"}})
                            ->run(m, {});
@@ -29,19 +20,8 @@ TEST(Lightcuts, WithoutBoundAndLimitEqualsBruteForce) {
 }
 
 TEST(Lightcuts, ErrorFallsToNothingAsCutsGrow) {
-  for (const DenseMatrix& m : matrices()) {
-    std::vector<double> errors;
-    for (const char* nodes : {"5", "75", "1000"}) {
-      const Estimate e = find_method("lightcuts")
-                             .make({{"error-bound", "0"}, {"most-nodes", nodes}, {"reconstruction", "off"}})
-                             ->run(m, {});
-      errors.push_back(relative_difference(e.sums, m.exact_sums()));
-      EXPECT_LE(e.trace.numbers.at("columns_max"), std::stod(nodes));
-    }
-    EXPECT_GT(errors[0], errors[1]);
-    EXPECT_GT(errors[1], errors[2]);
-    EXPECT_LT(errors[2], 1e-6);
-  }
+  test::expect_error_falls_to_nothing("lightcuts", {{"error-bound", "0"}, {"reconstruction", "off"}},
+                                      "most-nodes", {"5", "75", "1000"});
 }
 
 // What refining one node after another would reach is reached by rounds as well: every node on the cut has a

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "matrix/synthetic.h"
-#include "methods/column_pass.h"
-#include "methods/method.h"
+#include "methods/cut_matrices.h"
 #include "methods/statistics.h"
 #include "methods/stochastic_lightcuts/light_walk.h"
 
@@ -12,14 +10,6 @@ namespace {
 using matrix::DenseMatrix;
 using matrix::Index;
 
-std::vector<DenseMatrix> matrices() {
-  std::vector<DenseMatrix> m;
-  m.push_back(matrix::low_rank_matrix({120, 300, 1}, 6, 3));
-  m.push_back(matrix::sparse_matrix({120, 300, 2}, 0.3));
-  m.push_back(matrix::recess_matrix({120, 300, 3}));
-  return m;
-}
-
 Estimate run(const DenseMatrix& m, const std::map<std::string, std::string>& settings, std::uint64_t seed) {
   RunOptions options;
   options.seed = seed;
@@ -28,7 +18,7 @@ Estimate run(const DenseMatrix& m, const std::map<std::string, std::string>& set
 
 // 11 two-sided t-tests at a joint confidence of 99.9 %.
 TEST(StochasticLightcuts, AreUnbiased) {
-  for (const DenseMatrix& m : matrices())
+  for (const DenseMatrix& m : test::cut_matrices())
     for (const std::map<std::string, std::string>& settings :
          {std::map<std::string, std::string>{{"nodes", "1"}},
           {{"nodes", "25"}},
@@ -40,17 +30,7 @@ TEST(StochasticLightcuts, AreUnbiased) {
 }
 
 TEST(StochasticLightcuts, ErrorFallsToNothingAsCutsGrow) {
-  for (const DenseMatrix& m : matrices()) {
-    std::vector<double> errors;
-    for (const char* nodes : {"5", "75", "300"}) {
-      const Estimate e = run(m, {{"nodes", nodes}}, 1);
-      errors.push_back(relative_difference(e.sums, m.exact_sums()));
-      EXPECT_LE(e.trace.numbers.at("columns_max"), std::stod(nodes));
-    }
-    EXPECT_GT(errors[0], errors[1]);
-    EXPECT_GT(errors[1], errors[2]);
-    EXPECT_LT(errors[2], 1e-6);  // sums of 300 floats in another order
-  }
+  test::expect_error_falls_to_nothing("stochastic-lightcuts", {}, "nodes", {"5", "75", "300"});
 }
 
 TEST(StochasticLightcuts, AnErrorBoundSavesColumns) {
