@@ -107,6 +107,15 @@ TEST_F(Render, TheReportHasTheStableKeys) {
   }
 }
 
+// Of the reduced matrices, which slice-cuts looks at entirely; of all entries it is a small share.
+TEST_F(Render, TheSamplingRateIsTheMethodsOwn) {
+  const std::string file = folder_ / "report.json";
+  render({"--method", "slice-cuts", "--set", "initial-columns=4", "--set", "alpha=0.2", "--report", file});
+  const auto report = read_json(file);
+  EXPECT_GE(report["sampling_rate"].get<double>(), 1);
+  EXPECT_LT(report["columns"].get<double>(), report["virtual_lights"].get<double>());
+}
+
 TEST_F(Render, ReplayGivesTheSameBits) {
   const std::string file = folder_ / "report.json";
   const Pixels first = render({"--report", file, "--seed", "3", "--method", "row-column-sampling", "--set",

@@ -19,18 +19,24 @@ namespace {
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
-void write_tally(const RecoveryTally& t, Trace& trace) {
+// traced: nothing was predicted, separated or corrected.
+void write_tally(const RecoveryTally& t, bool traced, Trace& trace) {
   auto& numbers = trace.numbers;
-  for (std::size_t k = 0; k < t.seconds.size(); ++k)
-    numbers[std::string("cpu_seconds.") + RecoveryTally::kSteps[k]] = t.seconds[k];
+  for (std::size_t k = 0; k < t.seconds.size(); ++k) {
+    const std::string step = RecoveryTally::kSteps[k];
+    const bool recovers = step == "separation" || step == "correction";
+    if (!traced || !recovers)
+      numbers["cpu_seconds." + (traced && step == "prediction" ? "visibility" : step)] = t.seconds[k];
+  }
   const auto number = [](std::uint64_t n) { return static_cast<double>(n); };
   const double slices = number(t.slices), entries = number(t.entries);
   numbers["columns"] = ratio(number(t.columns), slices);
   numbers["columns_max"] = number(t.columns_most);
   numbers["sampling_rate"] = entries > 0 ? number(t.sampled) / entries : 1.0;
+  numbers["samples_per_row"] = ratio(number(t.sampled), number(t.rows));
+  if (traced) return;
   numbers["sampled_uncertain"] = ratio(number(t.uncertain), entries);
   numbers["corrected"] = ratio(number(t.corrected), entries);
-  numbers["samples_per_row"] = ratio(number(t.sampled), number(t.rows));
   numbers["rank"] = ratio(number(t.rank), slices);
   numbers["iterations"] = ratio(number(t.iterations), slices);
   numbers["converged"] = ratio(number(t.converged), slices);
@@ -91,7 +97,7 @@ class SamplingRecovery : public Method {
                    });
     RecoveryTally tally;
     pool.for_each([&](const Workspace& w) { tally += w.recovery.tally(); });
-    write_tally(tally, estimate.trace);
+    write_tally(tally, traced(), estimate.trace);
     return estimate;
   }
 
@@ -129,7 +135,7 @@ class SamplingRecovery : public Method {
     RecoveryTally tally;
     pool.for_each([&](const SliceRecovery& slice) { tally += slice.tally(); });
     numbers["seconds.columns"] = result.seconds;
-    write_tally(tally, estimate.trace);
+    write_tally(tally, traced(), estimate.trace);
     note_stop(result, estimate);
     if (!estimate.interrupted) {
       look_at_rows(matrix, options, estimate.sums,
@@ -140,6 +146,7 @@ class SamplingRecovery : public Method {
     return estimate;
   }
 
+  bool traced() const { return settings_.visibility == RecoverySettings::Visibility::traced; }
   // Slices are cut by receivers, of which a pixel has several.
   std::size_t most_receivers(const matrix::LightingMatrix& matrix) const {
     const std::size_t pixels = UnitRows::pixels(matrix).size();
@@ -155,10 +162,10 @@ class SamplingRecovery : public Method {
 // clusters alone.
 class SliceCuts final : public SamplingRecovery {
  public:
-  explicit SliceCuts(const RecoverySettings& settings) : SamplingRecovery(traced(settings)) {}
+  explicit SliceCuts(const RecoverySettings& settings) : SamplingRecovery(with_traced(settings)) {}
 
  private:
-  static RecoverySettings traced(RecoverySettings settings) {
+  static RecoverySettings with_traced(RecoverySettings settings) {
     settings.visibility = RecoverySettings::Visibility::traced;
     return settings;
   }
