@@ -156,7 +156,8 @@ def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=600, hei
         y0 = 0.0
     x0, x1 = (x0 - 0.5, x1 + 0.5) if x0 == x1 else (x0 - 0.03 * (x1 - x0), x1 + 0.03 * (x1 - x0))
     y0, y1 = (y0 - 0.5, y1 + 0.5) if y0 == y1 else (y0 - 0.06 * (y1 - y0) * log_y, y1 + 0.06 * (y1 - y0))
-    left, right, top, bottom = 62, 170, 34, 46
+    left, right, top, bottom = 62, max(170, 44 + 7 * max(map(len, curves))), 34, 46  # names stand on the right
+    width += right - 170
 
     def px(x):
         return left + (fx(x) - x0) / (x1 - x0) * (width - left - right)
