@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "matrix/synthetic.h"
 #include "methods/column_pass.h"
@@ -251,6 +252,13 @@ TEST(SamplingRecovery, MeetsATargetByItself) {
   EXPECT_LT(relative_l1_difference(strict.sums, exact()), relative_l1_difference(loose.sums, exact()));
   EXPECT_FALSE(estimate(room(), {}).trace.numbers.contains("automatic.alpha"));
   EXPECT_TRUE(estimate(room(), {{"parameters", "automatic"}}).trace.numbers.contains("automatic.alpha"));
+}
+
+TEST(SamplingRecovery, ClustersByRowsHaveNoParametersByTarget) {
+  RunOptions options;
+  options.target_error = 0.05;
+  EXPECT_THROW(find_method("sampling-recovery").make({{"clusters", "rows"}})->run(room(), options),
+               InputError);
 }
 
 // A slice's parts fit together: clusters partition the lights, samples agree with the matrix, and what is

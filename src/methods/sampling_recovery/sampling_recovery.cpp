@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "base/timer.h"
 #include "methods/known_rows.h"
@@ -70,8 +71,16 @@ class SamplingRecovery : public Method {
   explicit SamplingRecovery(const RecoverySettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    if (settings_.clusters == RecoverySettings::Clusters::rows) return by_rows(matrix, options);
-    return by_bounds(matrix, options);
+    const bool search =
+        settings_.parameters == RecoverySettings::Parameters::automatic ||
+        (settings_.parameters == RecoverySettings::Parameters::by_target && options.target_error > 0);
+    if (settings_.clusters == RecoverySettings::Clusters::rows) {
+      if (search)
+        throw InputError("no parameters can be found for a target error with clusters=rows",
+                         "use clusters=bounds, or parameters=given without a target");
+      return by_rows(matrix, options);
+    }
+    return by_bounds(matrix, options, search);
   }
 
  private:
@@ -101,7 +110,7 @@ class SamplingRecovery : public Method {
     return estimate;
   }
 
-  Estimate by_bounds(const matrix::LightingMatrix& matrix, const RunOptions& options) const {
+  Estimate by_bounds(const matrix::LightingMatrix& matrix, const RunOptions& options, bool search) const {
     const Timer timer;
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
@@ -113,8 +122,7 @@ class SamplingRecovery : public Method {
     numbers["slices"] = static_cast<double>(slices.count());
     numbers["rows"] = 0;
     RecoverySettings settings = settings_;
-    if (settings.parameters == RecoverySettings::Parameters::automatic ||
-        (settings.parameters == RecoverySettings::Parameters::by_target && options.target_error > 0)) {
+    if (search) {
       const double before = timer.seconds();
       const AutomaticChoice choice = choose_parameters(settings_, tree, matrix, slices, options);
       settings = choice.settings;
