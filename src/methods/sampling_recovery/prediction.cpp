@@ -55,7 +55,7 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, std::
       entries.patterns().nearest_of_next(slot.pattern, column.trained, slot.sampled - column.trained);
   const SeparatingPlane fitted = column.plane.fit();
   std::array<float, 3> wrong{};
-  const std::size_t known_class = column.tested = size_class(column.known, column.visible);
+  column.tested = Calibration::kind_of(column.known, column.visible);
   float tests = 0;
   for (std::size_t k = column.trained; k < slot.sampled; ++k) {
     const std::uint32_t row = order[k];
@@ -68,9 +68,7 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, std::
                          static_cast<double>(slot.sampled - column.trained);
     for (std::size_t kind = 0; kind < p.size(); ++kind) {
       wrong[kind] += std::abs(v - p[kind]);
-      Tested& tested = tested_[kind][known_class][level(p[kind])];
-      tested.light += light;
-      tested.visible += static_cast<double>(v) * light;
+      calibration_.add(kind, column.tested, p[kind], v > 0, light);
     }
     ++tests;
   }
@@ -104,22 +102,6 @@ void Prediction::predict(std::size_t c, SliceEntries& entries, std::span<float> 
   }
 }
 
-// A level of which little light was tested keeps its own meaning.
-void Prediction::calibrate() {
-  for (std::size_t kind = 0; kind < tested_.size(); ++kind)
-    for (std::size_t size = 0; size < kSizes * kMixtures; ++size) {
-      double all = 0;
-      for (const Tested& t : tested_[kind][size]) all += t.light;
-      const double prior = 0.01 * all;
-      for (std::size_t k = 0; k < kLevels; ++k) {
-        const Tested& t = tested_[kind][size][k];
-        const double own = static_cast<double>(k) / (kLevels - 1);
-        worth_[kind][size][k] =
-            static_cast<float>(all > 0 ? (t.visible + prior * own) / (t.light + prior) : own);
-      }
-    }
-}
-
 void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::span<const float> e,
                       SliceEntries& entries, std::span<Entry> state) {
   const std::size_t rows = entries.rows().size();
@@ -128,18 +110,12 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const auto known = entries.seen(columns_[c].slot);
     const auto probability = std::span(probabilities_).subspan(c * rows, rows);
-    if (settings.calibration && settings.prediction) {
-      predict(c, entries, probability);
-      const auto& worth = worth_[columns_[c].best][columns_[c].tested];
-      for (float& p : probability) p = worth[level(p)];
-      linalg::draw_visibility(probability,
-                              static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
-                              drawn_);
-    } else if (!settings.prediction) {
+    if (!settings.prediction) {
       std::ranges::fill(probability, 1.0f);
       std::ranges::fill(drawn_, std::uint8_t{1});
     } else {
       predict(c, entries, probability);
+      if (settings.calibration) calibration_.apply(columns_[c].best, columns_[c].tested, probability);
       if (settings.draw == RecoverySettings::Draw::likely)
         for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability[i] > 0.5f ? 1 : 0;
       else
@@ -165,7 +141,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
   const auto samples =
       static_cast<std::size_t>(std::max(4.0, std::ceil(settings.rho * static_cast<double>(rows))));
   tally_ = {};
-  tested_ = {};
+  calibration_.reset();
   counts_.reset(rows, clusters.size());
   stretch_probability_.resize(counts_.stretches());
   columns_.clear();
@@ -216,7 +192,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
     for (const Column& column : columns_)
       ++tally_.chosen[column.best], tally_.error += static_cast<double>(column.error);
   }
-  calibrate();
+  calibration_.finish();
   fill(settings, key, e, entries, state);
 }
 

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <span>
 #include <vector>
 
 #include "linalg/separation.h"
 #include "linalg/visibility_predictors.h"
+#include "methods/sampling_recovery/calibration.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_entries.h"
 
@@ -48,27 +48,9 @@ class Prediction {
     float error = 0;
     float allowed = 0;                     // error
     std::uint32_t known = 0, visible = 0;  // of these
-    std::size_t tested = 0;                // class of what the predictors knew in the last test
+    std::size_t tested = 0;                // kind of its last test (Calibration)
     linalg::PlaneSums plane = {};
   };
-
-  // What a predictor's answer was worth in this slice: of all tests, how often what it called visible with a
-  // probability near p was visible, by light.
-  static constexpr std::size_t kLevels = 4, kSizes = 8, kMixtures = 5;
-  struct Tested {
-    double light = 0, visible = 0;
-  };
-  static std::size_t level(float p) { return static_cast<std::size_t>(p * (kLevels - 1) + 0.5f); }
-  // By how many samples of a column were known, and which share of them was visible: none, few, …, all.
-  static std::size_t size_class(std::size_t samples, std::size_t visible) {
-    const std::size_t size =
-        std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(samples / 8)), kSizes - 1);
-    const std::size_t mixture = visible == 0         ? 0
-                                : visible == samples ? kMixtures - 1
-                                                     : 1 + (kMixtures - 2) * visible / (samples + 1);
-    return size * kMixtures + mixture;
-  }
-  void calibrate();
 
   void learn(std::size_t c, std::size_t begin, std::size_t end, SliceEntries& entries);
   bool validate(const RecoverySettings& settings, std::size_t c, std::span<const float> e,
@@ -84,8 +66,7 @@ class Prediction {
   std::vector<std::uint8_t> sample_visible_, drawn_;
   std::vector<float> probabilities_, stretch_probability_;
   std::vector<double> column_sums_;  // of e
-  std::array<std::array<std::array<Tested, kLevels>, kSizes * kMixtures>, 3> tested_{};
-  std::array<std::array<std::array<float, kLevels>, kSizes * kMixtures>, 3> worth_{};
+  Calibration calibration_;
   PredictionTally tally_;
 };
 
