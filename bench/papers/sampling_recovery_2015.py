@@ -40,7 +40,7 @@ LADDERS = {
     "lightcuts": ("most-nodes", (100, 300, 1000)),
     "multidimensional-lightcuts": ("most-pairs", (60, 250, 500, 1000)),
     "lightslice": ("columns:slice-rows:neighbours", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
-    "stochastic-lightcuts": ("nodes", (16, 64, 256)),
+    "stochastic-lightcuts": ("nodes", (8, 16, 64)),
     "row-column-sampling": ("rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
     "visibility-completion": ("columns:slice-rows:neighbours", ("100:16384:8", "300:16384:8", "300:8192:8", "600:8192:8")),
     "power-sampling": ("columns", (100, 300, 1000)),
