@@ -40,7 +40,7 @@ double error(const Settings& settings) {
 TEST(SamplingRecovery, AllColumnsAndAllSamplesAreBruteForce) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
-  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"most-columns", "400"}});
+  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"most-columns", "400"}, {"scouts", "0"}});
   EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
   EXPECT_EQ(e.trace.numbers.at("columns"), 400);
   EXPECT_DOUBLE_EQ(e.trace.numbers.at("sampling_rate"), 1);

@@ -40,6 +40,11 @@ const Fields<RecoverySettings>& recovery_fields() {
       choice_field<S>(
           {"sparse-visibility", "", "Whether clusters that a few shadow rays do not see are left unsplit."},
           &S::sparse_visibility, off_on),
+      count_field<S>(
+          {"scouts", "pixels",
+           "Of a slice, evenly spread, by which its clusters are chosen; 0: all of them, as in the "
+           "paper. Without redraw always all."},
+          &S::scouts, 0),
       choice_field<S>(
           {"redraw", "",
            "Whether clusters, once they are chosen, get other representatives than those by "
@@ -106,7 +111,7 @@ const Fields<RecoverySettings>& slice_cut_fields() {
   static const Fields<RecoverySettings> fields = [] {
     const std::vector<std::string> of_clusters{"slice-rows",        "clusters",     "columns",   "neighbours",
                                                "initial-columns",   "most-columns", "splitting", "alpha",
-                                               "sparse-visibility", "redraw",       "rho"};
+                                               "sparse-visibility", "scouts",       "redraw",    "rho"};
     Fields<RecoverySettings> some;
     for (const auto& field : recovery_fields())
       if (std::ranges::find(of_clusters, field.info.key) != of_clusters.end()) some.push_back(field);

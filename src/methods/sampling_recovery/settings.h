@@ -16,6 +16,7 @@ struct RecoverySettings {
   std::size_t columns = 300, neighbours = 16;
   std::size_t initial_columns = 500, most_columns = 2000;
   bool splitting = true, sparse_visibility = true, redraw = true;
+  std::size_t scouts = 128;  // rows by which clusters are chosen; 0: all
   double alpha = 0.003;
   // Visibility: few looked at and the others recovered, or all looked at.
   enum class Visibility { sampled, traced } visibility = Visibility::sampled;

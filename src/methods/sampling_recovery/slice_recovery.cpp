@@ -31,6 +31,35 @@ namespace {
 bool guessed(Entry e) { return e == Entry::predicted_visible || e == Entry::predicted_hidden; }
 }  // namespace
 
+// Splitting asks for a cluster's greatest contribution alone, which few rows tell as well as all. What they
+// know of columns is of no use to the others, so it is left behind; without redrawing it would be the columns
+// themselves.
+void SliceRecovery::choose_columns(std::uint64_t key) {
+  const SliceRows& rows = entries_.rows();
+  const std::size_t scouts = settings_.scouts;
+  const bool few = scouts > 0 && scouts < rows.size() && settings_.splitting && settings_.redraw;
+  scouted_ = few;
+  if (few) {
+    scout_receivers_.clear();
+    for (std::size_t k = 0; k < scouts; ++k) {
+      const std::size_t row = k * rows.size() / scouts;
+      for (std::uint32_t r = rows.begin(row); r < rows.end(row); ++r)
+        scout_receivers_.push_back(rows.receivers()[r]);
+    }
+    scouts_->start(scout_receivers_, key);
+    // As many samples of a column as of the whole slice's rows.
+    RecoverySettings settings = settings_;
+    settings.rho =
+        std::min(1.0, settings.rho * static_cast<double>(rows.size()) / static_cast<double>(scouts));
+    cut_->choose(settings, *scouts_);
+  } else {
+    cut_->choose(settings_, entries_);
+  }
+  reduced_.clear();
+  for (const SliceCut::Cluster& c : cut_->clusters())
+    reduced_.push_back({few ? SliceCut::kNoSlot : c.slot, c.column});
+}
+
 // The columns that splitting has not evaluated, where their shading is asked for.
 void SliceRecovery::evaluate() {
   if (settings_.visibility == RecoverySettings::Visibility::traced) return;
@@ -229,9 +258,7 @@ class SliceRecovery::Steps {
 void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::span<Rgb> sums) {
   Steps steps(tally_);
   entries_.start(slice, key);
-  cut_->choose(settings_, entries_);
-  reduced_.clear();
-  for (const SliceCut::Cluster& c : cut_->clusters()) reduced_.push_back({c.slot, c.column});
+  choose_columns(key);
   evaluate();
   steps.done(1);
   tally_.seconds[0] += cut_->seconds_of_bounds();
@@ -243,6 +270,7 @@ void SliceRecovery::run(std::span<const Index> slice, std::span<const matrix::Sc
                         std::uint64_t key, std::span<Rgb> sums) {
   Steps steps(tally_);
   entries_.start(slice, key);
+  scouted_ = false;
   reduced_.clear();
   for (const matrix::ScaledColumn& c : columns) reduced_.push_back({SliceCut::kNoSlot, c});
   evaluate();
@@ -279,7 +307,7 @@ void SliceRecovery::recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums
   tally_.columns_most = std::max<std::uint64_t>(tally_.columns_most, clusters().size());
   tally_.shades += clusters().size() * entries_.rows().receivers().size();
   tally_.entries += entries_.rows().size() * clusters().size();
-  tally_.sampled += entries_.looked();
+  tally_.sampled += entries_.looked() + (scouted_ ? scouts_->looked() : 0);
 }
 
 }  // namespace lumirank::methods

@@ -41,7 +41,9 @@ class SliceRecovery {
   // tree: for those who leave the choice of columns to it.
   SliceRecovery(const RecoverySettings& settings, const LightTree* tree, const matrix::LightingMatrix& matrix)
       : settings_(settings), entries_(matrix) {
-    if (tree) cut_.emplace(*tree, matrix);
+    if (!tree) return;
+    cut_.emplace(*tree, matrix);
+    scouts_.emplace(matrix);
   }
 
   void use(const RecoverySettings& settings) { settings_ = settings; }
@@ -71,6 +73,7 @@ class SliceRecovery {
  private:
   class Steps;
   void recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums);
+  void choose_columns(std::uint64_t key);
   void evaluate();
   void trace();
   void assemble();
@@ -85,6 +88,10 @@ class SliceRecovery {
 
   RecoverySettings settings_;
   SliceEntries entries_;
+  // Few of the slice's rows, by which its columns are chosen.
+  std::optional<SliceEntries> scouts_;
+  std::vector<matrix::Index> scout_receivers_;
+  bool scouted_ = false;
   std::optional<SliceCut> cut_;
   Prediction prediction_;
   linalg::Separation separation_;
