@@ -159,6 +159,7 @@ TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
                                                         {"clusters", "rows"},
                                                         {"weighted", "off"},
                                                         {"uncertain", "0"},
+                                                        {"bright", "0"},
                                                         {"fit", "exact"},
                                                         {"separated", "shading"},
                                                         {"draw", "likely"},
@@ -252,6 +253,15 @@ TEST(SamplingRecovery, MeetsATargetByItself) {
   EXPECT_LT(relative_l1_difference(strict.sums, exact()), relative_l1_difference(loose.sums, exact()));
   EXPECT_FALSE(estimate(room(), {}).trace.numbers.contains("automatic.alpha"));
   EXPECT_TRUE(estimate(room(), {{"parameters", "automatic"}}).trace.numbers.contains("automatic.alpha"));
+}
+
+// With a threshold that every column passes, all is looked at.
+TEST(SamplingRecovery, BrightColumnsAreLookedAtWholly) {
+  auto m = matrix::occluded_matrix({500, 400, 4}, 6);
+  m.pixel.clear();
+  const Estimate e = estimate(
+      m, {{"alpha", "0"}, {"bright", "1e-9"}, {"most-columns", "400"}, {"scouts", "0"}, {"rho", "0.01"}});
+  EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-4);
 }
 
 TEST(SamplingRecovery, ClustersByRowsHaveNoParametersByTarget) {

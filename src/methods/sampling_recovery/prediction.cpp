@@ -146,26 +146,26 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
   stretch_probability_.resize(counts_.stretches());
   columns_.clear();
   active_.clear();
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    columns_.push_back({clusters[c].slot});
-    Column& column = columns_.back();
-    column.trained = entries.slot(column.slot).sampled;
-    learn(c, 0, column.trained, entries);
-    active_.push_back(static_cast<std::uint32_t>(c));
-  }
   // A wrong entry of a bright column costs more: so that all columns may bring as much error, the brighter
   // ones may be wrong so much less often.
   double sum = 0;
-  column_sums_.resize(columns_.size());
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
+  column_sums_.resize(clusters.size());
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
     column_sums_[c] = static_cast<double>(linalg::fixed_sum(&e[c * rows], rows));
     sum += column_sums_[c];
   }
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    columns_.push_back({clusters[c].slot});
+    Column& column = columns_.back();
     const double own = column_sums_[c];
-    const double brighter = sum > 0 ? own / sum * static_cast<double>(columns_.size()) : 0;
-    columns_[c].allowed =
+    const double brighter = sum > 0 ? own / sum * static_cast<double>(clusters.size()) : 0;
+    column.allowed =
         static_cast<float>(settings.prediction_error / (settings.weighted ? std::max(brighter, 1.0) : 1.0));
+    const bool whole = settings.bright > 0 && own > settings.bright * sum;
+    if (whole) entries.look_whole(column.slot);
+    column.trained = entries.slot(column.slot).sampled;
+    learn(c, 0, column.trained, entries);
+    if (!whole) active_.push_back(static_cast<std::uint32_t>(c));
   }
   const std::size_t rounds = settings.prediction ? settings.rounds : kRoundsWithoutPrediction;
   for (std::size_t round = 0; round < rounds && !active_.empty(); ++round) {

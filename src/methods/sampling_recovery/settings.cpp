@@ -83,6 +83,11 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Entries whose prediction is expected to be wrong by more than this are sampled as well; "
            "0: none, as in the paper."},
           &S::uncertain, 0, 1),
+      number_field<S>(
+          {"bright", "of a slice's unoccluded light",
+           "Columns above this share are looked at wholly: the sun, lamps close by; 0: none, as in "
+           "the paper."},
+          &S::bright, 0, 1),
       choice_field<S>({"separation", "",
                        "Whether the predicted matrix is separated into one of low rank and sparse errors."},
                       &S::separation, off_on),

@@ -28,7 +28,7 @@ struct RecoverySettings {
   double prediction_error = 0.1;
   bool weighted = true;
   std::size_t rounds = 20;
-  double uncertain = 0.003;
+  double uncertain = 0.003, bright = 0.03;
   // Recovery.
   bool separation = true, constraint = true;
   enum class Separated { visibility, shading } separated = Separated::visibility;

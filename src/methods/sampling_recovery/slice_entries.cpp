@@ -61,6 +61,22 @@ std::size_t SliceEntries::add(const matrix::ScaledColumn& column) {
   return s;
 }
 
+void SliceEntries::look_whole(std::size_t s) {
+  Slot& slot = slots_[s];
+  answers_.resize(rows_.size());
+  layers_[slot.layer]->column(slot.column, answers_, Part::visibility);
+  const auto reach = scalars(s);
+  const auto known = seen(s);
+  for (std::size_t i = 0; i < answers_.size(); ++i) {
+    if (!(reach[i] > 0)) continue;
+    const bool visible = answers_[i].r > 0.5f;
+    known[i] = visible ? linalg::seen::kVisible : linalg::seen::kHidden;
+    slot.any_visible |= visible;
+    ++looked_;
+  }
+  slot.sampled = static_cast<std::uint32_t>(rows_.size());
+}
+
 void SliceEntries::trace(Index column, std::span<float> out) {
   answers_.resize(rows_.size());
   layers_[layer(column)]->column(column, answers_, Part::visibility);

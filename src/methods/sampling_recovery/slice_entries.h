@@ -47,6 +47,8 @@ class SliceEntries {
   // Evaluates a column without visibility, at one receiver of each row; the number of its slot. Colours count
   // by its scale.
   std::size_t add(const matrix::ScaledColumn& column);
+  // Looks at all rows of a slot that it reaches.
+  void look_whole(std::size_t s);
   // Visibility, 0 or 1, of all rows.
   void trace(matrix::Index column, std::span<float> out);
   Slot& slot(std::size_t s) { return slots_[s]; }
