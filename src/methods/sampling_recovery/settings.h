@@ -1,6 +1,8 @@
-// What a user can set of matrix sampling and recovery; the defaults are those of the paper (section 7.1),
-// but for the columns: its 200 and 0.02 give 270 columns per slice here, where the paper
-// reports about a thousand (rays per pixel over sampling rate in table 1).
+// What a user can set of matrix sampling and recovery, and of the cuts of slices. Defaults are those of the
+// paper (section 7.1), but for the columns (its 200 and 0.02 give 270 per slice here, where it reports about
+// a thousand: rays per pixel over sampling rate in table 1) and the separation's iterations (20 there, with
+// no gain over four here). What is ours (redraw, scouts, calibration, weighted, uncertain, bright) is
+// explained in docs/sampling-recovery.md.
 #pragma once
 
 #include "linalg/separation.h"

@@ -3,7 +3,9 @@
 //
 // Where we deviate: the paper splits node after node and looks again at the neighbours of each; here all
 // clusters above the threshold are split together, then all contributions and the threshold are taken anew,
-// until nothing is above it. The result does not depend on an order, and costs O(log) rounds.
+// until nothing is above it. The result does not depend on an order, and costs O(log) rounds. The rows that
+// equation 7 takes its maximum over are those that `entries` was started with: some of the slice's, for a
+// maximum over all is often that of one pixel beside a light (SliceRecovery::choose_columns).
 #pragma once
 
 #include <span>
