@@ -43,7 +43,7 @@ bool png_is_whole(std::string_view bytes) {
 
 bool has_file_end(std::string_view bytes) {
   if (bytes.starts_with("\xff\xd8\xff")) return jpeg_is_whole(bytes);
-  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return png_is_whole(bytes);
+  if (bytes.starts_with("\x89PNG")) return png_is_whole(bytes);
   return true;
 }
 

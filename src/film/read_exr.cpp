@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <filesystem>
 #include <stdexcept>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct ExrSample {
 
 class ExrReader {
  public:
-  explicit ExrReader(const std::string& filename) : file_(filename.c_str(), exr_threads()) {}
+  explicit ExrReader(const std::string& filename)
+      : file_(filename.c_str(), exr_threads(std::filesystem::file_size(filename))) {}
 
   void read(PixelSink& sink) {
     const Imf::Header& header = file_.header(0);
@@ -110,11 +112,12 @@ class ExrReader {
 
 }  // namespace
 
-int exr_threads() {
+int exr_threads(std::size_t bytes) {
+  if (bytes < (1 << 20)) return 0;
   static const int threads = [] {
     const int count = current_threads();
     if (count > 1) Imf::setGlobalThreadCount(count);
-    return count > 1 ? count : 0;  // none: the caller's own
+    return count > 1 ? count : 0;
   }();
   return threads;
 }

@@ -26,7 +26,7 @@ enum class Format { pfm, exr, png, jpeg, radiance, other };
 // By the first bytes: names lie.
 Format format_of(std::string_view start) {
   if (start.starts_with("\x76\x2f\x31\x01")) return Format::exr;
-  if (start.starts_with("\x89PNG\r\n\x1a\n")) return Format::png;
+  if (start.starts_with("\x89PNG")) return Format::png;
   if (start.starts_with("\xff\xd8\xff")) return Format::jpeg;
   if (start.starts_with("#?")) return Format::radiance;
   if (start.size() > 2 && start[0] == 'P' && (start[1] == 'F' || start[1] == 'f') &&

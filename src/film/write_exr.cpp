@@ -66,8 +66,8 @@ class ExrPlanes {
     }
   }
 
-  void write(Imf::OStream& out, int height) const {
-    Imf::OutputFile file(out, header_, exr_threads());
+  void write(Imf::OStream& out, int height, std::size_t bytes) const {
+    Imf::OutputFile file(out, header_, exr_threads(bytes));
     file.setFrameBuffer(frame_);
     file.writePixels(height);
   }
@@ -92,7 +92,7 @@ void write_exr(std::ostream& out, const LayeredImage& image, Precision precision
     planes.add(name + ".", layer);
   }
   ExrStream stream(out);
-  planes.write(stream, color.height);
+  planes.write(stream, color.height, (1 + image.layers.size()) * color.pixels.size() * sizeof(Rgb));
   out.flush();
   if (!out) throw std::runtime_error("not all of it could be written; is the disk full?");
 }

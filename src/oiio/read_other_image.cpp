@@ -102,7 +102,8 @@ class OtherReader {
                                    spec.z + 1, range.begin, range.end, type, strip.data())
               : input_->read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, range.begin, range.end, type,
                                        strip.data());
-      if (!read) fail(input_->geterror());
+      // Some of its readers leave out what a file lacks, and say so only here.
+      if (!read || input_->has_error()) fail(input_->geterror());
       sink_.add(strip.data(), pixels);
     }
   }
