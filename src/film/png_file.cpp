@@ -122,8 +122,8 @@ class PngReader {
     png_set_user_limits(png_, kMost, kMost);
     // What is not looked at is not unpacked either.
     static const unsigned char ignored[] =
-        "iCCP\0zTXt\0iTXt\0tEXt\0eXIf\0sPLT\0hIST\0tIME\0pCAL\0sCAL\0cHRM\0gAMA\0sRGB\0pHYs\0oFFs\0bKGD\0sBI"
-        "T";
+        "iCCP\0zTXt\0iTXt\0tEXt\0eXIf\0sPLT\0hIST\0tIME\0pCAL\0"
+        "sCAL\0cHRM\0gAMA\0sRGB\0pHYs\0oFFs\0bKGD\0sBIT";
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, ignored, sizeof ignored / 5);
     png_read_info(png_, info_);
     int compression = 0, filter = 0;

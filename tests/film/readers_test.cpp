@@ -1,14 +1,16 @@
 // The readers of the formats, one by one, against OpenImageIO and against files that are not what they say.
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <sstream>
 #include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "film/exr_channels.h"
+#include "film/exr_file.h"
 #include "film/image_builder.h"
 #include "film/image_io.h"
 #include "film/other_formats.h"
@@ -200,6 +202,45 @@ TEST_F(Readers, ExrChannelsWithFewerPixels) {
   kind.channels.push_back("unused");
   write_sample_exr(path("b.exr"), kind);
   EXPECT_EQ(refusal(path("b.exr")), "");
+}
+
+// A file that takes only so many bytes.
+class FullDisk : public std::stringbuf {
+ public:
+  explicit FullDisk(std::streamsize room) : room_(room) {}
+
+ protected:
+  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+    const std::streamsize taken = std::min(count, room_);
+    room_ -= taken;
+    return std::stringbuf::xsputn(bytes, taken);
+  }
+
+ private:
+  std::streamsize room_;
+};
+
+// OpenEXR writes its table of chunks when it closes the file, and keeps quiet about what goes wrong there.
+TEST(ExrWriter, AFullDiskIsAnErrorAtEveryByte) {
+  LayeredImage image{Image(6, 40, Rgb(0.25f)), {{"direct", Image(6, 40, Rgb(2))}}};
+  const auto written = [&](std::streamsize room) {
+    FullDisk disk(room);
+    std::ostream out(&disk);
+    write_exr(out, image, Precision::single);
+    return disk.str();
+  };
+  const std::string whole = written(1 << 20);
+  EXPECT_EQ(whole.substr(0, 4), "\x76\x2f\x31\x01");
+  // The table is written twice: room for it first, and what belongs there in the end.
+  std::streamsize room = 0;
+  for (bool full = true; full; ++room) try {
+      EXPECT_EQ(written(room), whole);
+      full = false;
+    } catch (const std::exception& error) {
+      EXPECT_NE(std::string(error.what()).find("disk full"), std::string::npos)
+          << room << ": " << error.what();
+    }
+  EXPECT_GT(room, static_cast<std::streamsize>(whole.size()));
 }
 
 TEST(ExrChannelNames, WhichBecomeColour) {
