@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstring>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "film/exr_channels.h"
 #include "film/exr_file.h"
 #include "film/image_builder.h"
@@ -123,11 +123,12 @@ TEST_F(Readers, TheSameFromAnyNumberOfThreads) {
   const std::vector<std::string> files = write_all_samples(path(""), false);
   std::vector<LoadedImage> alone(files.size()), together(4 * files.size());
   for (std::size_t i = 0; i < files.size(); ++i) alone[i] = read_image(files[i]);
-  with_threads(8, [&] {
-    parallel_for(together.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) together[i] = read_image(files[i % files.size()]);
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < 8; ++t)
+    threads.emplace_back([&, t] {
+      for (std::size_t i = t; i < together.size(); i += 8) together[i] = read_image(files[i % files.size()]);
     });
-  });
+  for (std::thread& thread : threads) thread.join();
   for (std::size_t i = 0; i < together.size(); ++i)
     EXPECT_TRUE(same_picture(together[i], alone[i % files.size()])) << files[i % files.size()];
 }
