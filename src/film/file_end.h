@@ -1,5 +1,5 @@
-// Some decoders are too kind to truncated files, or too loud: libjpeg paints the missing part grey, libpng
-// prints. So the skeleton of these two formats is walked before they are decoded.
+// Some decoders are too kind to truncated files: libjpeg paints the missing part grey. So the skeleton of
+// JPEG and PNG files is walked before they are decoded.
 #pragma once
 
 #include <string_view>
