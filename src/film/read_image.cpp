@@ -48,6 +48,8 @@ LoadedImage guarded(const std::string& name, const Read& read) {
     throw;
   } catch (const InternalError&) {
     throw;
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throw InputError(SourceLocation{name, 0}, "the image needs more memory than there is");
   } catch (const std::exception& failure) {

@@ -41,6 +41,8 @@ void guarded_write(const std::string& filename, const Write& write) {
     throw;
   } catch (const InternalError&) {
     throw;
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::exception& failure) {
     throw InputError(SourceLocation{filename, 0}, std::string("cannot write the image: ") + failure.what());
   }
