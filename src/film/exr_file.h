@@ -18,8 +18,8 @@ void read_exr(const std::string& filename, PixelSink& sink);
 // All layers, as `precision` says, packed losslessly. `out` has to be seekable. Throws std::exception.
 void write_exr(std::ostream& out, const LayeredImage& image, Precision precision);
 
-// Threads of OpenEXR's own for so many bytes of pixels or file, 0 if the caller's one does it as fast: as many
-// as the arena had when the first large file was opened.
+// Threads of OpenEXR's own for so many bytes of pixels or file, 0 if the caller's one does it as fast: as
+// many as the arena had when the first large file was opened.
 int exr_threads(std::size_t bytes);
 
 }  // namespace lumirank::film

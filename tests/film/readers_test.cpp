@@ -28,7 +28,8 @@ bool same_picture(const LoadedImage& a, const LoadedImage& b) {
          a.color.pixels.size() == b.color.pixels.size() && a.alpha.size() == b.alpha.size() &&
          std::memcmp(a.color.pixels.data(), b.color.pixels.data(), a.color.pixels.size() * sizeof(Rgb)) ==
              0 &&
-         std::memcmp(a.alpha.data(), b.alpha.data(), a.alpha.size() * sizeof(float)) == 0;
+         (a.alpha.empty() ||
+          std::memcmp(a.alpha.data(), b.alpha.data(), a.alpha.size() * sizeof(float)) == 0);
 }
 
 LoadedImage by_openimageio(const std::string& file, bool raw) {

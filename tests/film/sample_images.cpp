@@ -132,7 +132,7 @@ void write_sample_exr(const std::string& file, const ExrKind& kind) {
       const float value = 1 + static_cast<float>(c) + static_cast<float>(i % kind.width) / 8 +
                           3 * static_cast<float>(i / kind.width) / 4;
       const half small(value);
-      const auto whole = static_cast<std::uint32_t>(value * 300000001.0f);
+      const auto whole = letter == 'u' ? static_cast<std::uint32_t>(value * 300000001.0f) : 0u;
       const void* from = letter == 'h'   ? static_cast<const void*>(&small)
                          : letter == 'f' ? static_cast<const void*>(&value)
                                          : &whole;
