@@ -17,6 +17,7 @@ ROOMS = {
     "scatter": ["base"],
     "emitters": ["base"],
     "film": ["base"],
+    "oiio": ["film"],
     "scenedesc": ["base"],
     "world": ["scenedesc", "geometry", "scatter", "emitters", "film"],
     "transport": ["world", "matrix"],

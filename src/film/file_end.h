@@ -1,15 +1,12 @@
-// Some decoders are too kind to truncated files, or too loud: libjpeg paints the missing part grey, libpng
-// prints. So the skeleton of these two formats is walked before they are decoded.
+// Some decoders are too kind to truncated files: libjpeg paints the missing part grey. So the skeleton of
+// JPEG and PNG files is walked before they are decoded.
 #pragma once
 
-#include <istream>
-#include <string>
+#include <string_view>
 
 namespace lumirank::film {
 
-// Throws InputError if the file begins as a JPEG or PNG and does not go on to the end marker of its format.
-void require_file_end(const std::string& filename);
-// The same of a file in memory; `name` names it in messages.
-void require_file_end(std::istream& in, const std::string& name);
+// Whether a file that begins as a JPEG or PNG goes on to the end marker of its format; true of any other.
+bool has_file_end(std::string_view bytes);
 
 }  // namespace lumirank::film

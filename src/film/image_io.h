@@ -22,8 +22,9 @@ std::string encode_exr(const Image& image, Precision precision);
 // Throws before any work is done if write_image could not write there.
 void check_writable(const std::string& filename);
 
-// .exr, .pfm, .hdr, and what else OpenImageIO reads. Float values as stored; 8-bit files are decoded from
-// sRGB unless raw. Throws InputError (missing, truncated, not an image, larger than max_pixels).
+// EXR, PFM, Radiance, PNG and JPEG files, told apart by their first bytes, and what else OpenImageIO reads
+// (see other_formats.h). Float values as stored; files of whole numbers are decoded from sRGB unless raw.
+// Throws InputError (missing, truncated, not an image, larger than max_pixels).
 struct LoadedImage {
   Image color;
   std::vector<float> alpha;  // empty if the file has none

@@ -1,13 +1,16 @@
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "film/atomic_file.h"
+#include "film/exr_file.h"
 #include "film/image_io.h"
 #include "film/pfm.h"
+#include "film/png_file.h"
 
 namespace lumirank::film {
 namespace {
@@ -29,80 +32,37 @@ std::string require_known_extension(const std::string& filename) {
   return extension;
 }
 
-void write_with_oiio(const std::string& filename, const char* format, const OIIO::ImageSpec& spec,
-                     const OIIO::TypeDesc& type, const void* data) {
-  AtomicFile file(filename);
-  const auto fail = [&](const std::string& why) {
-    throw InputError(SourceLocation{filename, 0}, "cannot write the image: " + why);
-  };
+// Whatever an encoder throws, as an InputError.
+template <typename Write>
+void guarded_write(const std::string& filename, const Write& write) {
   try {
-    const auto output = OIIO::ImageOutput::create(format);
-    if (!output) fail(OIIO::geterror());
-    output->threads(1);
-    if (!output->open(file.temporary(), spec)) fail(output->geterror());
-    if (!output->write_image(type, data) || !output->close()) fail(output->geterror());
+    write();
   } catch (const InputError&) {
     throw;
-  } catch (const std::exception& error) {
-    fail(error.what());
+  } catch (const InternalError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception& failure) {
+    throw InputError(SourceLocation{filename, 0}, std::string("cannot write the image: ") + failure.what());
   }
+}
+
+void write_exr_file(const std::string& filename, const LayeredImage& image) {
+  AtomicFile file(filename);
+  std::ofstream out(file.temporary(), std::ios::binary);
+  write_exr(out, image, Precision::single);
+  out.close();
+  if (!out) throw std::runtime_error("not all of it could be written; is the disk full?");
   file.commit();
-}
-
-struct Interleaved {
-  OIIO::ImageSpec spec;
-  std::vector<float> data;
-};
-
-Interleaved as_exr(const LayeredImage& image) {
-  const std::size_t pixels = image.color.pixels.size();
-  const int channels = 3 * static_cast<int>(1 + image.layers.size());
-  OIIO::ImageSpec spec(image.color.width, image.color.height, channels, OIIO::TypeDesc::FLOAT);
-  spec.channelnames = {"R", "G", "B"};
-  std::vector<float> data(pixels * channels);
-  const auto interleave = [&](const Image& source, std::size_t first) {
-    for (std::size_t i = 0; i < pixels; ++i)
-      for (int c = 0; c < 3; ++c) data[i * channels + first + c] = source.pixels[i][c];
-  };
-  interleave(image.color, 0);
-  for (std::size_t k = 0; k < image.layers.size(); ++k) {
-    const auto& [name, layer] = image.layers[k];
-    if (layer.width != image.color.width || layer.height != image.color.height)
-      throw InternalError("layer '" + name + "' differs in size from its picture");
-    for (const char* channel : {".R", ".G", ".B"}) spec.channelnames.push_back(name + channel);
-    interleave(layer, 3 * (k + 1));
-  }
-  spec.attribute("compression", "zip");
-  spec.attribute("oiio:ColorSpace", "Linear");
-  return {std::move(spec), std::move(data)};
-}
-
-void write_exr(const std::string& filename, const LayeredImage& image) {
-  const Interleaved exr = as_exr(image);
-  write_with_oiio(filename, "openexr", exr.spec, OIIO::TypeDesc::FLOAT, exr.data.data());
-}
-
-void write_png(const std::string& filename, const Image& image, const DisplayOptions& display) {
-  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  const std::vector<unsigned char> bytes = to_display(image, display);
-  write_with_oiio(filename, "png", spec, OIIO::TypeDesc::UINT8, bytes.data());
 }
 
 }  // namespace
 
 std::string encode_exr(const Image& image, Precision precision) {
-  Interleaved exr = as_exr({image, {}});
-  if (precision == Precision::half) exr.spec.set_format(OIIO::TypeDesc::HALF);
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("openexr", &memory);
-  if (!output) throw InternalError("OpenImageIO cannot write OpenEXR: " + OIIO::geterror());
-  output->threads(1);
-  if (!output->open("picture.exr", exr.spec) ||
-      !output->write_image(OIIO::TypeDesc::FLOAT, exr.data.data()) || !output->close())
-    throw InternalError("a picture in memory cannot be encoded: " + output->geterror());
-  return {bytes.begin(), bytes.end()};
+  std::ostringstream out(std::ios::binary);
+  write_exr(out, {image, {}}, precision);
+  return std::move(out).str();
 }
 
 void check_writable(const std::string& filename) {
@@ -116,13 +76,15 @@ void write_image(const std::string& filename, const LayeredImage& image, const D
   if (color.width <= 0 || color.height <= 0 ||
       color.pixels.size() != static_cast<std::size_t>(color.width) * color.height)
     throw InternalError("an image to be written is empty or lacks pixels");
-  if (extension == ".exr") {
-    write_exr(filename, image);
-  } else if (extension == ".pfm") {
-    write_pfm(filename, color);
-  } else {
-    write_png(filename, color, display);
-  }
+  guarded_write(filename, [&] {
+    if (extension == ".exr") {
+      write_exr_file(filename, image);
+    } else if (extension == ".pfm") {
+      write_pfm(filename, color);
+    } else {
+      write_whole_file(filename, encode_png(color.width, color.height, to_display(color, display)));
+    }
+  });
 }
 
 }  // namespace lumirank::film

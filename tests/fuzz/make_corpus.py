@@ -206,7 +206,28 @@ def curves():
     write("curves", "binary", b"\6BINARY_HAIR" + struct.pack("<I13f", 4, float("inf"), 0, 0, 0, 1, 0, 0, float("inf"), 0, 1, 0, 0, 2) + struct.pack("<f", 0))
 
 
+def images():
+    # The JPEG seeds beside these are of write_sample_jpeg in tests/film.
+    def png(name, depth, color, interlace, rows, *more):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        head = struct.pack(">IIBBBBB", 3, 2, depth, color, 0, 0, interlace)
+        chunks = [(b"IHDR", head), *more, (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
+        write("images", name, b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*c) for c in chunks))
+
+    png("colour.png", 8, 2, 0, b"\0abcdefghi" b"\1ihgfedcba")
+    png("deep_alpha.png", 16, 6, 0, (b"\0" + bytes(range(24))) * 2)
+    png("palette.png", 2, 3, 0, b"\0\x1b" * 2, (b"PLTE", bytes(range(12))), (b"tRNS", b"\0\x80"))
+    png("interlaced_grey.png", 8, 0, 1, b"\0a\0b\0cc\0dd\0eee", (b"gAMA", struct.pack(">I", 45455)))
+
+    head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n\n"
+    write("images", "flat.hdr", head + b"+X 2 -Y 2\n" + bytes([9, 8, 128, 129]) * 4)
+    write("images", "runs.hdr", head + b"-Y 1 +X 8\n" + bytes([2, 2, 0, 8, 136, 64, 131, 128, 5, 1, 2, 3, 4, 5, 136, 0, 136, 129]))
+    write("images", "old_runs.hdr", head + b"-Y 1 +X 515\n" + bytes([64, 128, 0, 129, 1, 1, 1, 1, 1, 1, 1, 2, 128, 0, 0, 129]))
+
+
 def main():
+    images()
     curves()
     obj()
     ply()

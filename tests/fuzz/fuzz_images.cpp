@@ -1,0 +1,39 @@
+// Whatever the bytes, the readers of PNG, JPEG and Radiance files return as many pixels as the file says, or
+// throw.
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "base/error.h"
+#include "film/image_builder.h"
+#include "film/image_io.h"
+#include "film/radiance_file.h"
+
+namespace {
+
+void require_whole(const lumirank::film::LoadedImage& image) {
+  const auto pixels =
+      static_cast<std::size_t>(image.color.width) * static_cast<std::size_t>(image.color.height);
+  if (image.color.pixels.size() != pixels) __builtin_trap();
+  if (!image.alpha.empty() && image.alpha.size() != pixels) __builtin_trap();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace lumirank::film;
+  constexpr std::size_t kMostPixels = 1 << 16;
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    if (!bytes.starts_with("#?")) {
+      require_whole(decode_image(bytes, "fuzz", size % 2 == 0, kMostPixels));
+      return 0;
+    }
+    ImageBuilder builder("fuzz.hdr", size % 2 == 0, kMostPixels);
+    read_radiance(bytes, builder);
+    require_whole(builder.take());
+  } catch (const std::runtime_error&) {  // InputError is one, InternalError is not
+  }
+  return 0;
+}
