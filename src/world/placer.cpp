@@ -116,6 +116,7 @@ std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, No
 
 Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
   Geometry g;
+  std::erase_if(placed, [&](const Placed& p) { return store.is_empty(p.source); });
   std::vector<std::size_t> uses(store.size(), 0);
   for (const Placed& p : placed) ++uses[static_cast<std::size_t>(p.source)];
   for (std::size_t s = 0; s < store.size(); ++s)

@@ -107,6 +107,9 @@ Resource resolve_uri(const Element& uri) {
 
 std::string read_resource(const std::string& filename, const Element& user) {
   std::string bytes;
+  if (std::error_code error; !fs::exists(fs::status(filename, error)))
+    throw MissingFile(user.where(), user.path() + " names " + filename + ", which does not exist",
+                      "check the name, or leave out what needs it (--allow-missing)");
   const std::string problem = try_read_file(filename, bytes);
   if (!problem.empty()) user.fail("names " + filename + ", which " + problem, "check the name");
   return bytes;
