@@ -198,15 +198,25 @@ std::size_t MeshStore::left_out() const {
       std::count_if(sources_.begin(), sources_.end(), [](const Source& s) { return s.empty; }));
 }
 
+std::string MeshStore::why_left_out() const {
+  for (const Source& source : sources_)
+    if (source.empty) return why_empty(source);
+  return {};
+}
+
+std::string MeshStore::why_empty(const Source& source) {
+  const std::string name = mesh_name(*source.shape);
+  if (is_missing(*source.shape)) return name + " is missing";
+  std::string why;
+  for (const std::string& what : source.left_out) why += (why.empty() ? " (" : ", ") + what;
+  return name + " has no triangle to show" + why + (why.empty() ? "" : ")");
+}
+
 void MeshStore::warn_of_empty(const Source& source, Notes& notes) const {
   const sd::ShapeDesc& shape = *source.shape;
   // The reader has warned of a missing file, but the light that is gone with it is no small thing.
   if (is_missing(shape) && source.lamps == 0) return;
-  std::string why;
-  for (const std::string& what : source.left_out) why += (why.empty() ? " (" : ", ") + what;
-  if (!why.empty()) why += ")";
-  std::string text =
-      mesh_name(shape) + (is_missing(shape) ? " is missing" : " has no triangle to show" + why);
+  std::string text = why_empty(source);
   text += source.uses == 1 ? ": " + shape_name(shape) + " is left out"
                            : ": " + std::to_string(source.uses) + " shapes are left out";
   if (source.lamps > 0)

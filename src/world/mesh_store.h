@@ -27,7 +27,8 @@ class MeshStore {
   std::size_t size() const { return sources_.size(); }
   // Without a triangle or segment, after load(), which has warned of it: its shapes are to be left out.
   bool is_empty(int index) const { return sources_[static_cast<std::size_t>(index)].empty; }
-  std::size_t left_out() const;  // how many are empty
+  std::size_t left_out() const;      // how many are empty
+  std::string why_left_out() const;  // of the first of these, for a message; "" if there is none
   const geometry::TriangleMesh& mesh(int index) const { return meshes_[static_cast<std::size_t>(index)]; }
   geometry::TriangleMesh take(int index) { return std::move(meshes_[static_cast<std::size_t>(index)]); }
 
@@ -44,6 +45,7 @@ class MeshStore {
     bool empty = false;
   };
   geometry::TriangleMesh make(Source& source) const;
+  static std::string why_empty(const Source& source);
   void warn_of_empty(const Source& source, Notes& notes) const;
 
   std::map<Key, int> index_;

@@ -89,7 +89,9 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   const std::size_t meshes = store.size() - store.left_out(), left_out = store.left_out();
   Geometry geometry = assemble(std::move(placed), store, notes);
   if (geometry.placements.empty())
-    throw InputError(SourceLocation{desc.source_file, 0}, "no shape of the scene has any area",
+    throw InputError(SourceLocation{desc.source_file, 0},
+                     "no shape of the scene has any area" +
+                         (store.left_out() > 0 ? ": " + store.why_left_out() : std::string()),
                      "add a shape that has");
   step(sinks, 0.5);
 

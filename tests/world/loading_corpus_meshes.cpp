@@ -67,7 +67,7 @@ std::vector<LoadingCase> meshes_without_triangles() {
        "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"obj\"><string "
        "name=\"filename\" "
        "value=\"flat.obj\"/></shape></scene>",
-       refused, "no shape of the scene has any area"},
+       refused, "no shape of the scene has any area: "},
       {"pbrt_ply", pbrt, pbrt_shape("\"plymesh\" \"string filename\" \"flat.ply\""), warned, nothing, 4, 1},
       {"pbrt_ply_lamp", pbrt, pbrt_lamp("\"plymesh\" \"string filename\" \"no_face.ply\""), warned, gone, 4,
        1},
