@@ -20,7 +20,7 @@ ExpansionCases(Visitors...) -> ExpansionCases<Visitors...>;
 constexpr std::size_t kPlainBsdfs = 64;     // behind one BSDF
 constexpr std::size_t kBsdfLevels = 100;    // nested in each other: as deep as Mitsuba's elements may refer
 constexpr std::size_t kLookUps = 1'000;     // of textures, for one of a texture
-constexpr std::size_t kPlaced = 32u << 20;  // shapes by all instances; each takes some hundred bytes
+constexpr std::size_t kPlaced = 8'000'000;  // shapes by all instances; each takes some hundred bytes
 
 struct Size {
   std::size_t parts = 0, levels = 0;
@@ -137,7 +137,7 @@ void check_instances(const SceneDesc& scene) {
     const auto& target = scene.shapes[static_cast<std::size_t>(instance->group)].kind;
     if (const auto* group = std::get_if<ShapeGroupDesc>(&target)) placed += group->shapes.size();
     if (placed > kPlaced)
-      throw InputError(shape.where, "with this instance the scene places more than 33 million shapes",
+      throw InputError(shape.where, "with this instance the scene places more than 8 million shapes",
                        "join the shapes of a group into fewer meshes, or place it less often");
   }
 }

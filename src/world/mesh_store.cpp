@@ -38,7 +38,8 @@ geometry::TriangleMesh convert(sd::MeshData data, std::vector<std::string>& left
 // What messages about a shape's mesh call it.
 std::string mesh_name(const sd::ShapeDesc& shape) {
   if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind)) return held->name;
-  if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) return curves->filename;
+  if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind))
+    return curves->filename.empty() ? "a shape of curves" : curves->filename;
   return std::get<sd::MeshFileDesc>(shape.kind).filename;
 }
 

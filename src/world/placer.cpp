@@ -136,7 +136,9 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
       if (!all_finite(mesh))
         throw InputError(p.shape->where, "to_world moves the shape out of the range of numbers", "mend it");
       if (!(total_area(mesh) > 0)) {
-        notes.warn(p.shape->where, "the shape has no area", "");
+        notes.warn(p.shape->where,
+                   p.shines ? "the shape has no area, so its light is gone too" : "the shape has no area",
+                   "");
         continue;
       }
       placement.mesh = static_cast<std::uint32_t>(g.meshes.size());

@@ -114,6 +114,13 @@ std::vector<LoadingCase> missing_files() {
       gltf_scene(textured, material + "\"images\": [{\"bufferView\": 2, \"mimeType\": \"image/png\"}]",
                  "{\"byteLength\": 48, \"uri\": \"absent.bin\"}"),
       squares, 0);
+  cases.push_back({"gltf_picture_from_afar", gltf,
+                   gltf_scene(textured, material + "\"images\": [{\"uri\": \"http://host/a.png\"}]"), warned,
+                   "images[0].uri is not a file name", 11, 0, true});
+  cases.push_back({"gltf_buffer_from_afar", gltf,
+                   gltf_scene("{\"attributes\": {\"POSITION\": 2}}", "",
+                              "{\"byteLength\": 48, \"uri\": \"http://host/a.bin\"}"),
+                   warned, "buffers[1].uri is not a file name", 5, 1, true});
   // What nothing can stand in for stays an error.
   cases.push_back(
       {"include", xml, xml_scene("\n<include filename=\"absent.xml\"/>"), refused, "absent.xml", 4, 0, true});

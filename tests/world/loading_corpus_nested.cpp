@@ -135,6 +135,14 @@ std::vector<LoadingCase> nested_without_end() {
        pbrt_scene(t0 + doubling(30, texture("checkerboard", "tex1", "tex2")) +
                   "Shape \"disk\" \"texture alpha\" \"m30\""),
        loads},
+      {"instances", pbrt,
+       pbrt_scene("ObjectBegin \"o\"\n" +
+                  doubling(3000, [](const std::string&,
+                                    const std::string&) { return std::string("Shape \"disk\""); }) +
+                  "ObjectEnd\n" +
+                  doubling(3000, [](const std::string&,
+                                    const std::string&) { return std::string("ObjectInstance \"o\""); })),
+       refused, "more than 8 million shapes"},
       {"gltf_instances", gltf,
        gltf_scene("{\"attributes\": {\"POSITION\": 0}}")
            .replace(gltf_scene("").find("\"mesh\": 1, "), 10,

@@ -160,10 +160,7 @@ void Reader::build_shapes(const Node& node, const Element& mesh_index) {
     build_present_shapes(node, mesh_index);
   } catch (const MissingFile& error) {
     if (!options_.allow_missing) throw;
-    std::string text = error.what();
-    text = text.substr(0, text.find("; "));  // without the way out, which has been taken
-    if (const std::string place = to_string(error.where()) + ": "; text.starts_with(place))
-      text.erase(0, place.size());
+    const std::string text = what_is_missing(error);
     if (warned_.insert(text).second) missing_file(scene_, options_, error.where(), text, "");
     scene_.shapes.resize(before);
     ShapeDesc shape;

@@ -24,6 +24,9 @@ class MissingFile : public InputError {
   using InputError::InputError;
 };
 
+// The message without its place and without the way out, which has been taken.
+std::string what_is_missing(const MissingFile& error);
+
 // The whole file. InputError at `user` if it is missing (a MissingFile), a folder, or cannot be read.
 std::string read_resource(const std::string& filename, const Element& user);
 
