@@ -28,7 +28,7 @@ void add_methods(CLI::App& app, Action& action);
 struct CommonOptions {
   std::string scene, environment;
   std::vector<std::string> defines;
-  bool strict = false, quiet = false, verbose = false;
+  bool strict = false, allow_missing = false, quiet = false, verbose = false;
   std::map<std::string, std::string> fields;  // render settings that were given, by key
   std::vector<std::string> method_settings;   // KEY=VALUE
   std::string replay;

@@ -20,6 +20,7 @@ LoadOptions CommonOptions::load_options() const {
   LoadOptions options;
   options.strict = strict;
   options.environment = environment;
+  options.allow_missing = allow_missing;
   for (const auto& text : defines)
     options.defines.insert_or_assign(split_assignment(text, "--define").first,
                                      split_assignment(text, "--define").second);
@@ -56,6 +57,8 @@ void add_scene_options(CLI::App& command, CommonOptions& common) {
       ->allow_extra_args(false);
   command.add_option("--environment", common.environment,
                      "FILE.exr (or .hdr): light from all around, in place of the scene's own environment");
+  command.add_flag("--allow-missing", common.allow_missing,
+                   "files that do not exist: a warning and a stand-in instead of an error");
   command.add_flag("--strict", common.strict, "warnings about the scene are errors");
   auto* quiet = command.add_flag("--quiet", common.quiet, "print nothing but errors");
   command.add_flag("--verbose", common.verbose, "say more")->excludes(quiet);

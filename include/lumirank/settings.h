@@ -13,6 +13,7 @@ struct LoadOptions {
   std::map<std::string, std::string> defines;  // values for the scene's $parameters
   bool strict = false;                         // warnings about the scene are errors
   std::string environment = {};                // an image that replaces the scene's own environment
+  bool allow_missing = false;                  // files that do not exist get a stand-in, with a warning
 };
 
 struct RenderSettings {

@@ -140,6 +140,7 @@ nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
   json["triangles.unique"] = info.unique_triangles;
   json["fibre_segments"] = info.segments;
   json["meshes"] = info.meshes;
+  json["meshes.left_out"] = info.meshes_left_out;
   json["instances"] = info.instances;
   json["textures"] = info.textures;
   json["materials"] = info.materials;
@@ -174,6 +175,7 @@ Scene Scene::load(const std::string& filename, const LoadOptions& options, const
   read.defines = options.defines;
   read.strict = options.strict;
   read.environment = options.environment;
+  read.allow_missing = options.allow_missing;
   impl->desc = scenedesc::read_scene(filename, read);
   tell(sinks, impl->desc.warnings);
   Scene scene;
@@ -190,6 +192,8 @@ std::string Scene::info_text(const Sinks& sinks) const {
           " unique) in " + json["meshes"].dump() + " meshes and " + json["instances"].dump() +
           " instances, " + json["textures"].dump() + " textures, " + json["materials"].dump() +
           " materials\n";
+  if (json["meshes.left_out"] > 0)
+    text += "left out: " + json["meshes.left_out"].dump() + " meshes without a triangle, or without a file\n";
   text +=
       "bounds: " + json["bounds"].dump() + "\nemitters: " + std::to_string(json["emitters"].size()) + "\n";
   std::size_t shown = 0;

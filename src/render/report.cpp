@@ -50,6 +50,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   json["clamp.removed_fraction"] = setup.matrix->clamped_fraction();
   json["traced_direct.below_roughness"] = setup.traced_direct.empty() ? 0.0 : setup.traced_below;
 
+  json["meshes.left_out"] = setup.world->info().meshes_left_out;
   json["memory.peak_bytes"] = peak_memory_bytes();
   json["memory.scene_bytes"] = setup.world->info().memory_bytes;
   json["memory.receivers_bytes"] = setup.receivers.memory_bytes();

@@ -24,7 +24,7 @@ std::string try_read_file(const std::string& filename, std::string& bytes) {
   const fs::file_status status = fs::status(filename, error);
   if (!fs::exists(status)) return kMissing;
   if (fs::is_directory(status)) return "is a folder";
-  if (!fs::is_regular_file(status)) return "is not a file";
+  if (!fs::is_regular_file(status)) return "is a device or a pipe, not a file";
   const std::uintmax_t size = fs::file_size(filename, error);
   std::ifstream in(filename, std::ios::binary);
   if (error || !in) return "cannot be opened";

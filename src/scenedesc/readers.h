@@ -15,6 +15,8 @@ struct ReadOptions {
   std::map<std::string, std::string> defines;  // --define NAME=VALUE: win over <default>
   bool strict = false;                         // the first warning becomes an error
   std::string environment = {};  // read_scene: an image that replaces whatever environment the scene has
+  // Pictures, meshes and profiles that do not exist are a warning, and something visible stands in for them.
+  bool allow_missing = false;
 };
 
 // Any supported format, chosen by the file's extension. A glTF scene without any light gets a white
@@ -38,14 +40,15 @@ SceneDesc parse_pbrt(const std::string& text, const std::string& filename, const
 
 MeshData read_mesh(const MeshFileDesc& file);
 // From memory; `filename` only names the source in messages. Indices are validated, non-finite vertices are
-// an error, degenerate triangles are left out, and all that was mended is noted.
+// an error, degenerate triangles are left out, and all that was mended is noted. A mesh that has no triangle,
+// or none with an area, comes out empty: the world leaves it out.
 MeshData parse_obj(const std::string& bytes, const std::string& filename);
 MeshData parse_ply(const std::string& bytes, const std::string& filename);
 MeshData parse_serialized(const std::string& bytes, const std::string& filename, int shape_index);
 
 // For readers whose scene files hold meshes themselves: what parse_* do to every mesh. Lists that are not as
-// long as the positions and indices beyond them are an error at `where`, as are a vertex that is not finite
-// and a mesh without any triangle that has an area; the rest is mended and noted.
+// long as the positions and indices beyond them are an error at `where`, as is a vertex that is not finite;
+// the rest is mended and noted, and there may be no triangle left.
 MeshData check_mesh(MeshData mesh, const SourceLocation& where);
 
 // The image (latitude-longitude, +y up) in place of every environment that the scene has. InputError if there
@@ -55,9 +58,14 @@ void replace_environment(SceneDesc& scene, const std::string& filename);
 // strict.
 void light_if_dark(SceneDesc& scene, const ReadOptions& options = {});
 
-// The points of curves, from their file where they have one. Text: "x y z radius" in every line, or "x y z"
-// where file_radius is given; empty lines part the curves. With file_radius also the binary form of Mitsuba
-// 0.6. InputError also where a curve has fewer points than its basis needs.
+// An InputError, at its place, for the first BSDF or texture that is made of more others than any picture
+// could mean (each use counts: mixtures of mixtures double), or of itself, and for groups of shapes that are
+// placed more often than any memory could hold. Every reader ends with it.
+void check_expansion(const SceneDesc& scene);
+
+// The points of curves, from their file where they have one; none if it holds no curve. Text: "x y z radius"
+// in every line, or "x y z" where file_radius is given; empty lines part the curves. With file_radius also
+// the binary form of Mitsuba 0.6. InputError also where a curve has fewer points than its basis needs.
 CurvesDesc read_curves(const CurvesDesc& curves);
 CurvesDesc parse_curves(const std::string& bytes, const CurvesDesc& curves);
 

@@ -56,6 +56,8 @@ struct BitmapTextureDesc {
   std::string filename;
   // A PNG or JPEG file that the scene file holds; then `filename` only names it, in messages.
   std::shared_ptr<const std::string> bytes = nullptr;
+  // There is no such file, and that was allowed: the world shows a stand-in (see --allow-missing).
+  bool missing = false;
   // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear
   // anyway).
   bool raw = false;
@@ -245,7 +247,8 @@ struct MeshFileDesc {
   bool smooth_without_normals = true;     // false: a file without normals has face normals (pbrt)
 };
 // A mesh that the reader already holds: checked (see check_mesh) and never changed again. Shapes that share
-// it share its geometry.
+// it share its geometry. Null: its file does not exist, and that was allowed (--allow-missing); like a mesh
+// without a triangle it is left out, and counted, when the world is built.
 struct InlineMeshDesc {
   std::shared_ptr<const MeshData> mesh;
   std::string name;  // for messages and listings

@@ -15,4 +15,13 @@ void add_note(SceneDesc& scene, const SourceLocation& where, const std::string& 
   scene.warnings.push_back({where, what, "", true});
 }
 
+void missing_file(SceneDesc& scene, const ReadOptions& options, const SourceLocation& where,
+                  const std::string& what, const std::string& stand_in) {
+  if (!options.allow_missing || options.strict)
+    throw InputError(where, what,
+                     options.allow_missing ? "--strict is given: check the name"
+                                           : "check the name, or let a stand-in be shown (--allow-missing)");
+  scene.warnings.push_back({where, what, stand_in});
+}
+
 }  // namespace lumirank::scenedesc

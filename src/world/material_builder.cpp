@@ -44,6 +44,7 @@ MaterialBuilder::MaterialBuilder(const sd::SceneDesc& desc, TextureBuilder& text
       index_on_fibres_(index_) {}
 
 int MaterialBuilder::add(sc::Material material) {
+  traits_.push_back(traits_of(material));
   materials_.push_back(std::move(material));
   return static_cast<int>(materials_.size()) - 1;
 }
@@ -126,58 +127,36 @@ int MaterialBuilder::instead_around_hair(const sd::BsdfDesc& b) {
   return sd::kNone;
 }
 
-bool MaterialBuilder::transmits(int material) const {
-  struct Ask {
-    const MaterialBuilder& all;
-    bool operator()(const sc::NullMaterial&) const { return true; }
-    bool operator()(const sc::DielectricMaterial&) const { return true; }
-    bool operator()(const sc::ThinDielectricMaterial&) const { return true; }
-    bool operator()(const sc::MaskMaterial&) const { return true; }
-    bool operator()(const sc::PrincipledMaterial& m) const {
-      return m.spec_trans.texture >= 0 || m.spec_trans.value > 0;
-    }
-    bool operator()(const sc::PrincipledThinMaterial&) const { return true; }
-    bool operator()(const sc::DiffuseTransmitterMaterial&) const { return true; }
-    bool operator()(const sc::CoatingMaterial& m) const { return all.transmits(m.nested); }
-    bool operator()(const sc::SheenMaterial& m) const { return all.transmits(m.nested); }
-    bool operator()(const sc::BumpMaterial& m) const { return all.transmits(m.nested); }
-    bool operator()(const sc::NormalMapMaterial& m) const { return all.transmits(m.nested); }
-    bool operator()(const sc::MixtureMaterial& m) const {
-      for (const auto& part : m.parts)
-        if (all.transmits(part.nested)) return true;
-      return false;
-    }
-    bool operator()(const sc::DiffuseMaterial&) const { return false; }
-    bool operator()(const sc::RoughDiffuseMaterial&) const { return false; }
-    bool operator()(const sc::ConductorMaterial&) const { return false; }
-    bool operator()(const sc::PlasticMaterial&) const { return false; }
-    bool operator()(const sc::PhongMaterial&) const { return false; }
-    bool operator()(const sc::WardMaterial&) const { return false; }
-    bool operator()(const sc::HairMaterial&) const { return false; }
-    bool operator()(const sc::TwoSidedMaterial&) const { return false; }
+MaterialBuilder::Traits MaterialBuilder::traits_of(const sc::Material& material) const {
+  const auto join = [](Traits a, Traits b) {
+    return Traits{a.transmits || b.transmits, a.coated || b.coated, a.sheen || b.sheen};
   };
-  return std::visit(Ask{*this}, materials_[static_cast<std::size_t>(material)]);
-}
-
-template <typename Sought>
-bool MaterialBuilder::holds(int material) const {
   return std::visit(
       [&](const auto& m) {
         using Kind = std::decay_t<decltype(m)>;
-        if constexpr (std::is_same_v<Kind, Sought>) {
-          return true;
-        } else if constexpr (std::is_same_v<Kind, sc::TwoSidedMaterial>) {
-          return holds<Sought>(m.front) || holds<Sought>(m.back);
+        Traits out;
+        if constexpr (std::is_same_v<Kind, sc::TwoSidedMaterial>) {
+          out = join(of(m.front), of(m.back));
+          out.transmits = false;
         } else if constexpr (std::is_same_v<Kind, sc::MixtureMaterial>) {
-          return std::any_of(m.parts.begin(), m.parts.end(),
-                             [&](const auto& part) { return holds<Sought>(part.nested); });
+          for (const auto& part : m.parts) out = join(out, of(part.nested));
         } else if constexpr (requires { m.nested; }) {
-          return holds<Sought>(m.nested);
+          out = of(m.nested);
+          out.transmits |= std::is_same_v<Kind, sc::MaskMaterial>;
+          out.coated |= std::is_same_v<Kind, sc::CoatingMaterial>;
+          out.sheen |= std::is_same_v<Kind, sc::SheenMaterial>;
+        } else if constexpr (std::is_same_v<Kind, sc::PrincipledMaterial>) {
+          out.transmits = m.spec_trans.texture >= 0 || m.spec_trans.value > 0;
         } else {
-          return false;
+          out.transmits = std::is_same_v<Kind, sc::NullMaterial> ||
+                          std::is_same_v<Kind, sc::DielectricMaterial> ||
+                          std::is_same_v<Kind, sc::ThinDielectricMaterial> ||
+                          std::is_same_v<Kind, sc::PrincipledThinMaterial> ||
+                          std::is_same_v<Kind, sc::DiffuseTransmitterMaterial>;
         }
+        return out;
       },
-      materials_[static_cast<std::size_t>(material)]);
+      material);
 }
 
 int MaterialBuilder::instead_of_two_sided(const sd::TwoSidedDesc& d, const SourceLocation& where) {
@@ -292,7 +271,7 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
     sc::Material operator()(const sd::CoatingDesc& d) const {
       sc::CoatingMaterial m;
       m.nested = nested(d.nested);
-      if (self.holds<sc::CoatingMaterial>(m.nested)) {
+      if (self.of(m.nested).coated) {
         self.notes_.warn(where, "a coating over a BSDF that has a coating", "the inner one alone");
         return self.materials_[static_cast<std::size_t>(m.nested)];
       }
@@ -308,10 +287,10 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
     sc::Material operator()(const sd::SheenDesc& d) const {
       sc::SheenMaterial m;
       m.nested = nested(d.nested);
-      const char* below = self.transmits(m.nested)                    ? "that lets light pass"
-                          : self.holds<sc::CoatingMaterial>(m.nested) ? "that has a coating"
-                          : self.holds<sc::SheenMaterial>(m.nested)   ? "that has sheen"
-                                                                      : nullptr;
+      const char* below = self.transmits(m.nested)   ? "that lets light pass"
+                          : self.of(m.nested).coated ? "that has a coating"
+                          : self.of(m.nested).sheen  ? "that has sheen"
+                                                     : nullptr;
       if (below) {
         self.notes_.warn(where, std::string("sheen over a BSDF ") + below, "that BSDF alone");
         return self.materials_[static_cast<std::size_t>(m.nested)];
@@ -320,7 +299,8 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
       return m;
     }
     sc::Material operator()(const sd::MaskDesc& d) const {
-      return sc::MaskMaterial{number(d.opacity), nested(d.nested)};
+      const sc::FloatInput opacity = self.textures_.number(d.opacity, where, 1);
+      return sc::MaskMaterial{opacity, nested(d.nested)};
     }
     sc::Material operator()(const sd::TwoSidedDesc& d) const {
       const int front = nested(d.front);
@@ -329,13 +309,16 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
     sc::Material operator()(const sd::BumpMapDesc& d) const {
       if (!std::isfinite(d.scale))
         throw InputError(where, "the bump map's scale is not finite", "give a number");
-      return sc::BumpMaterial{texture(d.texture), d.scale, nested(d.nested)};
+      const int map = texture(d.texture), below = nested(d.nested);
+      if (self.textures_.is_missing(d.texture)) return self.materials_[static_cast<std::size_t>(below)];
+      return sc::BumpMaterial{map, d.scale, below};
     }
     sc::Material operator()(const sd::NormalMapDesc& d) const {
       if (!std::isfinite(d.scale))
         throw InputError(where, "the normal map's scale is not finite", "give a number");
-      const int map = texture(d.texture);
-      return sc::NormalMapMaterial{map, nested(d.nested), d.scale, d.follow_uv};
+      const int map = texture(d.texture), below = nested(d.nested);
+      if (self.textures_.is_missing(d.texture)) return self.materials_[static_cast<std::size_t>(below)];
+      return sc::NormalMapMaterial{map, below, d.scale, d.follow_uv};
     }
     sc::Material operator()(const sd::MixtureDesc& d) const {
       sc::MixtureMaterial m;

@@ -23,10 +23,14 @@ class MaterialBuilder {
 
  private:
   int add(scatter::Material material);
-  bool transmits(int material) const;
-  // The material, or one nested in it, is a Sought.
-  template <typename Sought>
-  bool holds(int material) const;
+  bool transmits(int material) const { return of(material).transmits; }
+  // What a material is, those nested in it included: noted when it is added, after them, because sides and
+  // mixtures may share what they nest many times over.
+  struct Traits {
+    bool transmits = false, coated = false, sheen = false;
+  };
+  const Traits& of(int material) const { return traits_[static_cast<std::size_t>(material)]; }
+  Traits traits_of(const scatter::Material& material) const;
 
   scatter::Material convert(const scenedesc::BsdfDesc& b, Carrier carrier);
   bool holds_hair(int bsdf, std::size_t depth = 0) const;
@@ -40,6 +44,7 @@ class MaterialBuilder {
   TextureBuilder& textures_;
   Notes& notes_;
   std::vector<scatter::Material> materials_;
+  std::vector<Traits> traits_;
   // Of each description: ≥ 0 built, -1 not yet, -2 being built. Those with hair differ between the carriers.
   std::vector<int> index_, index_on_fibres_;
   int default_ = -1;

@@ -1,5 +1,6 @@
 #include "world/mesh_store.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -35,15 +36,27 @@ geometry::TriangleMesh convert(sd::MeshData data, std::vector<std::string>& left
 }
 
 // What messages about a shape's mesh call it.
-const std::string& mesh_name(const sd::ShapeDesc& shape) {
+std::string mesh_name(const sd::ShapeDesc& shape) {
   if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind)) return held->name;
+  if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind))
+    return curves->filename.empty() ? "a shape of curves" : curves->filename;
   return std::get<sd::MeshFileDesc>(shape.kind).filename;
+}
+
+std::string shape_name(const sd::ShapeDesc& shape) {
+  return shape.id.empty() ? "the shape" : "the shape \"" + shape.id + "\"";
+}
+
+bool is_missing(const sd::ShapeDesc& shape) {
+  const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind);
+  return held && !held->mesh;
 }
 
 geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesDesc& desc) {
   const sd::CurvesDesc curves = sd::read_curves(desc);
   using Basis = sd::CurvesDesc::Basis;
   const std::size_t count = curves.first.empty() ? 0 : curves.first.size() - 1;
+  if (count == 0 && !desc.filename.empty()) return {};
   bool good = count > 0 && curves.radii.size() == curves.points.size() && curves.first[0] == 0 &&
               curves.first.back() == curves.points.size();
   for (std::size_t c = 0; good && c < count; ++c) {
@@ -99,8 +112,8 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
                file->face_normals ? 1.0f : 0.0f,       file->flip_tex_coords ? 1.0f : 0.0f,
                file->max_smooth_angle.value_or(-1.0f), file->smooth_without_normals ? 1.0f : 0.0f};
   } else if (const auto* mesh = std::get_if<sd::InlineMeshDesc>(&shape.kind)) {
-    if (!mesh->mesh) throw InternalError("MeshStore: an inline mesh without its data");
     held = mesh->mesh.get();
+    if (!held) name = mesh->name;
   } else if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) {
     name = curves->filename;
     if (name.empty()) held = curves;
@@ -119,6 +132,9 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
   shining_spheres_ += shines ? 1 : 0;
   const auto [it, fresh] = index_.try_emplace(key, static_cast<int>(sources_.size()));
   if (fresh) sources_.push_back({&shape, shines, {}, {}});
+  Source& source = sources_[static_cast<std::size_t>(it->second)];
+  ++source.uses;
+  source.lamps += shape.emitter && !shape.in_group ? 1 : 0;
   return it->second;
 }
 
@@ -127,7 +143,7 @@ geometry::TriangleMesh MeshStore::make(Source& source) const {
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind))
     return convert(sd::read_mesh(*file), source.left_out, source.mended);
   if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind))
-    return convert(*held->mesh, source.left_out, source.mended);
+    return held->mesh ? convert(*held->mesh, source.left_out, source.mended) : geometry::TriangleMesh{};
   if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) return from_curves(shape, *curves);
   if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
   if (std::holds_alternative<sd::CubeDesc>(shape.kind)) return geometry::make_cube();
@@ -152,6 +168,14 @@ void MeshStore::load(Notes& notes) {
   parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) try {
         meshes_[i] = make(sources_[i]);
+        sources_[i].empty = meshes_[i].indices.empty() && meshes_[i].fibres.empty();
+      } catch (const InputError& e) {
+        // What the scene's own numbers are to blame for has its place in the scene already.
+        const sd::ShapeDesc& shape = *sources_[i].shape;
+        failures[i] = e.where().file == shape.where.file
+                          ? std::current_exception()
+                          : std::make_exception_ptr(InputError(
+                                shape.where, "the mesh of " + shape_name(shape) + ": " + e.what()));
       } catch (...) {
         failures[i] = std::current_exception();
       }
@@ -159,11 +183,47 @@ void MeshStore::load(Notes& notes) {
   for (const auto& failure : failures)
     if (failure) std::rethrow_exception(failure);
   for (const auto& source : sources_) {
+    if (source.empty) {
+      warn_of_empty(source, notes);
+      continue;
+    }
     for (const std::string& what : source.left_out)
       notes.note(source.shape->where, mesh_name(*source.shape) + ": " + what + " left out");
     for (const auto& mended : source.mended)
       notes.warn(source.shape->where, mesh_name(*source.shape) + ": " + mended.what, mended.used_instead);
   }
+}
+
+std::size_t MeshStore::left_out() const {
+  return static_cast<std::size_t>(
+      std::count_if(sources_.begin(), sources_.end(), [](const Source& s) { return s.empty; }));
+}
+
+std::string MeshStore::why_left_out() const {
+  for (const Source& source : sources_)
+    if (source.empty) return why_empty(source);
+  return {};
+}
+
+std::string MeshStore::why_empty(const Source& source) {
+  const std::string name = mesh_name(*source.shape);
+  if (is_missing(*source.shape)) return name + " is missing";
+  std::string why;
+  for (const std::string& what : source.left_out) why += (why.empty() ? " (" : ", ") + what;
+  return name + " has no triangle to show" + why + (why.empty() ? "" : ")");
+}
+
+void MeshStore::warn_of_empty(const Source& source, Notes& notes) const {
+  const sd::ShapeDesc& shape = *source.shape;
+  // The reader has warned of a missing file, but the light that is gone with it is no small thing.
+  if (is_missing(shape) && source.lamps == 0) return;
+  std::string text = why_empty(source);
+  text += source.uses == 1 ? ": " + shape_name(shape) + " is left out"
+                           : ": " + std::to_string(source.uses) + " shapes are left out";
+  if (source.lamps > 0)
+    text += source.uses == 1 ? ", and its light is gone too"
+                             : ", and the light of " + std::to_string(source.lamps) + " of them is gone too";
+  notes.warn(shape.where, text, "");
 }
 
 }  // namespace lumirank::world

@@ -116,6 +116,7 @@ std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, No
 
 Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
   Geometry g;
+  std::erase_if(placed, [&](const Placed& p) { return store.is_empty(p.source); });
   std::vector<std::size_t> uses(store.size(), 0);
   for (const Placed& p : placed) ++uses[static_cast<std::size_t>(p.source)];
   for (std::size_t s = 0; s < store.size(); ++s)
@@ -135,7 +136,9 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
       if (!all_finite(mesh))
         throw InputError(p.shape->where, "to_world moves the shape out of the range of numbers", "mend it");
       if (!(total_area(mesh) > 0)) {
-        notes.warn(p.shape->where, "the shape has no area", "");
+        notes.warn(p.shape->where,
+                   p.shines ? "the shape has no area, so its light is gone too" : "the shape has no area",
+                   "");
         continue;
       }
       placement.mesh = static_cast<std::uint32_t>(g.meshes.size());

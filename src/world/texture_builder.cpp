@@ -55,10 +55,37 @@ std::vector<Rgb> take_pixels(film::LoadedImage& image, scenedesc::TextureChannel
   return pixels;
 }
 
+// In place of a picture that is missing: nobody takes it for one that is meant.
+void draw_stand_in(scatter::TexturePixels& pixels) {
+  constexpr int kSquares = 8;
+  pixels.width = pixels.height = kSquares;
+  pixels.rgb.clear();
+  for (int y = 0; y < kSquares; ++y)
+    for (int x = 0; x < kSquares; ++x)
+      pixels.rgb.push_back((x + y) % 2 == 0 ? Rgb(0.9f, 0, 0.9f) : Rgb(0.3f));
+}
+
+// What went wrong with a picture, with the texture's place and who needs it.
+InputError broken_picture(const scenedesc::TextureDesc& texture, const scenedesc::ShapeDesc* shape,
+                          const InputError& error) {
+  std::string who = "the picture of the texture";
+  if (!texture.id.empty()) who += " \"" + texture.id + "\"";
+  if (shape) {
+    who += ", which the shape";
+    if (!shape->id.empty()) who += " \"" + shape->id + "\"";
+    const std::string place = to_string(shape->where);
+    who += (place.empty() ? "" : " at " + place) + std::string(" needs");
+  }
+  const std::string what = error.what();
+  // A message that names no way out gets one.
+  return InputError(texture.where, who + ": " + what,
+                    what.find("; ") == std::string::npos ? "give a whole picture" : "");
+}
+
 }  // namespace
 
 TextureBuilder::TextureBuilder(const scenedesc::SceneDesc& desc)
-    : desc_(desc), index_(desc.textures.size(), kNotBuilt) {}
+    : desc_(desc), index_(desc.textures.size(), kNotBuilt), missing_(desc.textures.size()) {}
 
 int TextureBuilder::add(scatter::Texture texture) {
   set_.textures.push_back(std::move(texture));
@@ -85,11 +112,12 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
     check_uv(bitmap->to_uv, t.where);
     File& file =
         files_[{bitmap->filename, bitmap->bytes.get(), bitmap->raw, bitmap->channel, bitmap->alpha_may_lack}];
-    if (!file.pixels) file = {t.where, std::make_shared<scatter::TexturePixels>()};
+    if (!file.pixels) file = {&t, shape_, bitmap->missing, std::make_shared<scatter::TexturePixels>()};
     scatter::BitmapTexture out;
     out.pixels = file.pixels;
-    out.filter = bitmap->filter == scenedesc::FilterMode::nearest ? scatter::TexFilter::nearest
-                                                                  : scatter::TexFilter::bilinear;
+    out.filter = bitmap->filter == scenedesc::FilterMode::nearest || bitmap->missing
+                     ? scatter::TexFilter::nearest
+                     : scatter::TexFilter::bilinear;
     out.wrap_u = convert(bitmap->wrap_u), out.wrap_v = convert(bitmap->wrap_v);
     copy(bitmap->to_uv, out.to_uv);
     built = add(std::move(out));
@@ -121,6 +149,7 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
   } else {
     built = add(scatter::VertexColorTexture{});
   }
+  missing_[slot] = lacks_file(t);
   return index_[slot] = built;
 }
 
@@ -132,8 +161,30 @@ scatter::ColorInput TextureBuilder::color(const scenedesc::ColorInput& input, co
   return {input.value, -1};
 }
 
-scatter::FloatInput TextureBuilder::number(const scenedesc::FloatInput& input, const SourceLocation& user) {
-  if (input.texture != scenedesc::kNone) return {input.value, use(input.texture, user)};
+// Its inputs are built, so they need not be followed: they may share theirs many times over.
+bool TextureBuilder::lacks_file(const scenedesc::TextureDesc& texture) const {
+  const auto& kind = texture.kind;
+  const auto any = [&](const auto&... inputs) {
+    return ((inputs.texture != scenedesc::kNone && is_missing(inputs.texture)) || ...);
+  };
+  if (const auto* t = std::get_if<scenedesc::BitmapTextureDesc>(&kind)) return t->missing;
+  if (const auto* t = std::get_if<scenedesc::CheckerboardTextureDesc>(&kind))
+    return any(t->color0, t->color1);
+  if (const auto* t = std::get_if<scenedesc::ScaleTextureDesc>(&kind)) return any(t->input);
+  if (const auto* t = std::get_if<scenedesc::ProductTextureDesc>(&kind)) return any(t->a, t->b);
+  if (const auto* t = std::get_if<scenedesc::MixTextureDesc>(&kind)) return any(t->a, t->b, t->amount);
+  if (const auto* t = std::get_if<scenedesc::RootTextureDesc>(&kind)) return any(t->input);
+  if (const auto* t = std::get_if<scenedesc::ThresholdTextureDesc>(&kind)) return any(t->input);
+  return false;
+}
+
+scatter::FloatInput TextureBuilder::number(const scenedesc::FloatInput& input, const SourceLocation& user,
+                                           float stand_in) {
+  if (input.texture != scenedesc::kNone) {
+    const int built = use(input.texture, user);
+    return is_missing(input.texture) ? scatter::FloatInput{stand_in, -1}
+                                     : scatter::FloatInput{input.value, built};
+  }
   if (!std::isfinite(input.value))
     throw InputError(user, "a parameter is not finite", "give a finite number");
   if (input.value < 0) throw InputError(user, "a parameter is negative", "give 0 or more");
@@ -146,6 +197,10 @@ scatter::TextureSet TextureBuilder::finish() {
   std::vector<std::exception_ptr> failures(files.size());
   parallel_for(files.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) try {
+        if (files[i]->second.missing) {
+          draw_stand_in(*files[i]->second.pixels);
+          continue;
+        }
         const auto& [name, bytes, raw, channel, alpha_may_lack] = files[i]->first;
         film::LoadedImage image = bytes ? film::decode_image(*bytes, name, raw) : film::read_image(name, raw);
         auto& pixels = *files[i]->second.pixels;
@@ -155,7 +210,8 @@ scatter::TextureSet TextureBuilder::finish() {
           for (int k = 0; k < 3; ++k)
             if (!std::isfinite(c[k])) throw InputError(name, "has pixels that are not finite");
       } catch (const InputError& e) {
-        failures[i] = std::make_exception_ptr(InputError(files[i]->second.where, e.what()));
+        const File& file = files[i]->second;
+        failures[i] = std::make_exception_ptr(broken_picture(*file.texture, file.shape, e));
       } catch (...) {
         failures[i] = std::current_exception();
       }

@@ -77,6 +77,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   TextureBuilder textures(desc);
   MaterialBuilder materials(desc, textures, notes);
   for (const Placed& p : placed) {
+    textures.needed_by(*p.shape);
     materials.use(p.shape->bsdf, p.shape->where, carrier(*p.shape));
     if (p.shines) textures.color(p.shape->emitter->radiance, p.shape->emitter->where);
   }
@@ -85,10 +86,12 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   auto impl = std::make_unique<Impl>();
   Impl& w = *impl;
 
-  const std::size_t meshes = store.size();
+  const std::size_t meshes = store.size() - store.left_out(), left_out = store.left_out();
   Geometry geometry = assemble(std::move(placed), store, notes);
   if (geometry.placements.empty())
-    throw InputError(SourceLocation{desc.source_file, 0}, "no shape of the scene has any area",
+    throw InputError(SourceLocation{desc.source_file, 0},
+                     "no shape of the scene has any area" +
+                         (store.left_out() > 0 ? ": " + store.why_left_out() : std::string()),
                      "add a shape that has");
   step(sinks, 0.5);
 
@@ -134,7 +137,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   if (w.emitters.empty())
     notes.warn(SourceLocation{desc.source_file, 0}, "the scene has no light", "a black picture");
 
-  w.info.meshes = meshes;
+  w.info.meshes = meshes, w.info.meshes_left_out = left_out;
   w.info.instances = geometry.placements.size();
   w.info.triangles = geometry.triangles;
   w.info.segments = geometry.segments;

@@ -23,7 +23,8 @@ struct BuildOptions {
 
 struct WorldInfo {
   std::size_t meshes = 0, instances = 0, triangles = 0, unique_triangles = 0;
-  std::size_t segments = 0;  // of fibres
+  std::size_t meshes_left_out = 0;  // without a triangle, or without their file; not among `meshes`
+  std::size_t segments = 0;         // of fibres
   std::size_t textures = 0, materials = 0, emitters = 0;
   std::size_t memory_bytes = 0;  // meshes, textures and acceleration structure
 };

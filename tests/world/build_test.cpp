@@ -167,6 +167,7 @@ TEST(Build, WarnsAboutLightsWithoutEffect) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0].where.line, 7);
   EXPECT_EQ(warnings[1].where.line, 10);
+  EXPECT_NE(warnings[1].what.find("its light is gone too"), std::string::npos) << warnings[1].what;
   EXPECT_THROW(build(desc, nullptr, true), InputError);
 
   auto dark = empty_scene();

@@ -76,7 +76,7 @@ void add_default_camera(SceneDesc& scene, const Element& root) {
   Vec3f low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
   for (const ShapeDesc& shape : scene.shapes) {
     const auto* held = std::get_if<InlineMeshDesc>(&shape.kind);
-    if (!held) continue;
+    if (!held || !held->mesh) continue;
     for (const Vec3f& p : held->mesh->positions) {
       const Vec3f at = shape.to_world.point(p);
       for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "scenedesc/gltf/reader.h"
+#include "scenedesc/gltf/uri.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {
@@ -104,10 +105,6 @@ std::shared_ptr<const MeshData> Reader::build_mesh(const Element& primitive, int
     }
   }
   mesh.indices = triangles(primitive, std::move(corners), mode);
-  if (mesh.indices.empty()) {
-    warn(primitive, "a primitive of less than three corners", "");
-    return nullptr;
-  }
   morph(primitive, weights, mesh);
   skin(primitive, joints, mesh);
   try {
@@ -130,6 +127,10 @@ std::vector<Transform> Reader::instances(const Node& node) {
     const auto attribute = attributes.find(name);
     Numbers n;
     if (!attribute) return n;
+    // Each becomes a shape, of which a file without data (see Accessors::read) could ask for millions.
+    if (count == 0)
+      buffers_.budget().take(static_cast<double>(accessors_.count(*attribute)) * sizeof(ShapeDesc),
+                             *attribute);
     n = accessors_.floats(*attribute, components, components);
     if (count > 0) check_count(*attribute, n.count, count);
     count = n.count;
@@ -152,7 +153,25 @@ std::vector<Transform> Reader::instances(const Node& node) {
   return out;
 }
 
+// A buffer that does not exist takes along all that it holds: the mesh is left out and counted.
 void Reader::build_shapes(const Node& node, const Element& mesh_index) {
+  const std::size_t before = scene_.shapes.size();
+  try {
+    build_present_shapes(node, mesh_index);
+  } catch (const MissingFile& error) {
+    if (!options_.allow_missing) throw;
+    const std::string text = what_is_missing(error);
+    if (warned_.insert(text).second) missing_file(scene_, options_, error.where(), text, "");
+    scene_.shapes.resize(before);
+    ShapeDesc shape;
+    shape.id = name_of(node);
+    shape.where = mesh_index.where();
+    shape.kind = InlineMeshDesc{nullptr, meshes_[index_of(mesh_index, meshes_.size(), "mesh")].path()};
+    scene_.shapes.push_back(std::move(shape));
+  }
+}
+
+void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
   const Element& mesh = meshes_[index_of(mesh_index, meshes_.size(), "mesh")];
   const std::vector<Element> primitives = mesh.list("primitives");
   const std::vector<float> weights = morph_weights(node, mesh);

@@ -107,6 +107,7 @@ SceneDesc Reader::read() {
   build_nodes();
   build_scene();
   warn_unused();
+  check_expansion(scene_);
   if (scene_.sensors.empty()) add_default_camera(scene_, root_);
   return std::move(scene_);
 }

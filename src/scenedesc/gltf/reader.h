@@ -53,6 +53,7 @@ class Reader {
 
   // meshes.cpp
   void build_shapes(const Node& node, const Element& mesh_index);
+  void build_present_shapes(const Node& node, const Element& mesh_index);
   std::vector<Transform> instances(const Node& node);  // EXT_mesh_gpu_instancing, or the node alone
   // Null if there is nothing to show. `weights`: of the morph targets; `joints`: a matrix for each joint of
   // the skin, or empty.

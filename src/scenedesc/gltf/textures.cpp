@@ -72,20 +72,29 @@ int Reader::build_texture(const Element& info, bool raw, TextureChannel channel)
     if (uri.has_value() == view.has_value())
       element.fail(uri ? "has both \"uri\" and \"bufferView\"" : "has neither \"uri\" nor \"bufferView\"",
                    "give one of them");
-    if (view) {
-      const std::string_view bytes = buffers_.view(view->integer(0, kMostBytes), *view).bytes;
-      buffers_.budget().take(static_cast<double>(bytes.size()), *view);
-      image->second.bytes = std::make_shared<const std::string>(bytes);
-    } else {
-      Resource resource = resolve_uri(*uri);
-      if (resource.embedded) {
-        image->second.bytes = std::make_shared<const std::string>(std::move(resource.bytes));
+    try {
+      if (view) {
+        const std::string_view bytes = buffers_.view(view->integer(0, kMostBytes), *view).bytes;
+        buffers_.budget().take(static_cast<double>(bytes.size()), *view);
+        image->second.bytes = std::make_shared<const std::string>(bytes);
       } else {
+        Resource resource = resolve_uri(*uri);
+        image->second.filename = resource.filename;
         std::error_code error;
-        if (!std::filesystem::is_regular_file(resource.filename, error))
-          uri->fail("names an image that does not exist: " + resource.filename, "check the name");
+        if (resource.embedded)
+          image->second.bytes = std::make_shared<const std::string>(std::move(resource.bytes));
+        else if (!std::filesystem::exists(resource.filename, error))
+          throw MissingFile(uri->where(),
+                            uri->path() + " names an image that does not exist: " + resource.filename,
+                            "check the name, or let a stand-in be shown (--allow-missing)");
+        else if (!std::filesystem::is_regular_file(resource.filename, error))
+          uri->fail("names " + resource.filename + ", which is no file", "check the name");
       }
-      image->second.filename = resource.filename;
+    } catch (const MissingFile& error) {
+      if (!options_.allow_missing) throw;
+      missing_file(scene_, options_, error.where(), what_is_missing(error), kMissingPicture);
+      if (image->second.filename.empty()) image->second.filename = scene_.source_file;
+      image->second.missing = true;
     }
     if (image->second.bytes) image->second.filename = scene_.source_file + " (" + element.path() + ")";
   }

@@ -100,13 +100,25 @@ Resource resolve_uri(const Element& uri) {
     if (fs::exists(folder / text, ignored))
       return {false, {}, fs::absolute(folder / text).lexically_normal().string()};
     if (has_scheme(text))
-      uri.fail("is not a file name", "download it, and name the file relative to the scene");
+      throw MissingFile(uri.where(), uri.path() + " is not a file name",
+                        "download it, and name the file relative to the scene");
   }
   return {false, {}, fs::absolute(folder / name).lexically_normal().string()};
 }
 
+std::string what_is_missing(const MissingFile& error) {
+  std::string text = error.what();
+  text = text.substr(0, text.find("; "));
+  if (const std::string place = to_string(error.where()) + ": "; text.starts_with(place))
+    text.erase(0, place.size());
+  return text;
+}
+
 std::string read_resource(const std::string& filename, const Element& user) {
   std::string bytes;
+  if (std::error_code error; !fs::exists(fs::status(filename, error)))
+    throw MissingFile(user.where(), user.path() + " names " + filename + ", which does not exist",
+                      "check the name, or leave out what needs it (--allow-missing)");
   const std::string problem = try_read_file(filename, bytes);
   if (!problem.empty()) user.fail("names " + filename + ", which " + problem, "check the name");
   return bytes;

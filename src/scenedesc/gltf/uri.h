@@ -18,7 +18,16 @@ struct Resource {
 // absolute paths, which glTF does not allow, and for base64 that is none.
 Resource resolve_uri(const Element& uri);
 
-// The whole file. InputError at `user` if it is missing, a folder, or cannot be read.
+// A file that the scene names and that does not exist.
+class MissingFile : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+// The message without its place and without the way out, which has been taken.
+std::string what_is_missing(const MissingFile& error);
+
+// The whole file. InputError at `user` if it is missing (a MissingFile), a folder, or cannot be read.
 std::string read_resource(const std::string& filename, const Element& user);
 
 // The scene file itself.

@@ -29,8 +29,6 @@ class CurveParser {
       binary();
     else
       text();
-    if (out_.first.size() == 1)
-      throw InputError({out_.filename, 0}, "the file holds no curve", "export it again");
     return std::move(out_);
   }
 

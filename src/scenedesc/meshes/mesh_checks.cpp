@@ -77,11 +77,8 @@ MeshData mend(MeshData mesh, const SourceLocation& where) {
   for (std::size_t k = 0; k < mesh.positions.size(); ++k)
     if (!is_finite(mesh.positions[k]))
       throw InputError(where, "vertex " + std::to_string(k) + " is not finite", "repair the mesh");
-  const bool had_triangles = !mesh.indices.empty();
   drop_degenerate(mesh);
-  if (mesh.indices.empty())
-    throw InputError(where, had_triangles ? "all triangles are degenerate" : "the mesh has no triangle",
-                     "export it again, with faces");
+  if (mesh.indices.empty()) return mesh;
   std::vector<std::uint32_t> bad;
   for (std::uint32_t k = 0; k < mesh.uvs.size(); ++k)
     if (Vec2f& uv = mesh.uvs[k]; !std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {}, bad.push_back(k);

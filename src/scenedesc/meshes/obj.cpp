@@ -191,7 +191,7 @@ class ObjParser {
       previous = c;
       ++n;
     }
-    if (n < 3) fail("a face has " + std::to_string(n) + (n == 1 ? " corner" : " corners"));
+    if (n < 3) ++small_polygons_;
     if (n > 4) ++large_polygons_;
   }
 
@@ -215,6 +215,9 @@ class ObjParser {
     }
     if (without_uv > 0)
       mesh.mended.push_back({std::to_string(without_uv) + " vertices without texture coordinates", "(0, 0)"});
+    if (small_polygons_ > 0)
+      mesh.left_out.push_back(std::to_string(small_polygons_) + (small_polygons_ == 1 ? " face" : " faces") +
+                              " with fewer than 3 corners");
     if (large_polygons_ > 0)
       mesh.mended.push_back({std::to_string(large_polygons_) + " polygons of more than 4 corners",
                              "fans of triangles (wrong where they are not convex)"});
@@ -230,7 +233,7 @@ class ObjParser {
   std::vector<Rgb> colors_;
   CornerTable table_;
   std::vector<std::uint32_t> indices_;
-  std::size_t large_polygons_ = 0;
+  std::size_t small_polygons_ = 0, large_polygons_ = 0;
 };
 
 }  // namespace

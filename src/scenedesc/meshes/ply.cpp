@@ -167,13 +167,8 @@ MeshData parse_ply(const std::string& bytes, const std::string& filename) {
   const PlyHeader header = parse_ply_header(bytes, filename);
   PlyBody body(bytes, header, filename);
   std::uint64_t vertices = 0;
-  bool has_faces = false;
-  for (const PlyElement& e : header.elements) {
+  for (const PlyElement& e : header.elements)
     if (e.name == "vertex") vertices = e.count;
-    has_faces |= e.name == "face";
-  }
-  if (!has_faces)
-    throw InputError({filename, 0}, "there is no element 'face'", "export the mesh with its faces");
   MeshData mesh;
   bool seen_vertices = false, seen_faces = false;
   for (const PlyElement& e : header.elements) {

@@ -6,6 +6,6 @@
 namespace lumirank::scenedesc::mitsuba {
 
 // <shape type="bsplinecurve|linearcurve"> of Mitsuba 3, <shape type="hair"> of 0.6.
-CurvesDesc curves(Reader& reader, Plugin& p, const Transform& to_world);
+decltype(ShapeDesc::kind) curves(Reader& reader, Plugin& p, const Transform& to_world);
 
 }  // namespace lumirank::scenedesc::mitsuba

@@ -2,6 +2,7 @@
 
 #include "scenedesc/mitsuba/plugin.h"
 #include "scenedesc/mitsuba/solar.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -54,9 +55,11 @@ SpotLightDesc spot_light(Reader& reader, Plugin& p) {
 
 // Lumirank's own: <emitter type="ies"> with "filename", "to_world", "scale", "color" and "tilt". Colours are
 // taken relative to their luminance, so that they leave the illuminance as it is.
-ProfileLightDesc ies_light(Reader& reader, Plugin& p) {
+// Empty if the profile is missing: nothing tells how bright the light is.
+std::optional<ProfileLightDesc> ies_light(Reader& reader, Plugin& p) {
   ProfileLightDesc out;
-  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "IES profile");
+  const auto file = reader.file(p.required_text("filename"), p.where_of("filename"), "IES profile", "");
+  out.filename = file.name;
   out.to_world = p.regular_transform();
   Rgb color(1);
   if (p.has("color")) {
@@ -67,6 +70,7 @@ ProfileLightDesc ies_light(Reader& reader, Plugin& p) {
   }
   out.intensity = color * not_negative(p, "scale", 1);
   out.tilt_angle = p.number("tilt", 0);
+  if (file.missing) return std::nullopt;
   return out;
 }
 
@@ -84,15 +88,17 @@ DirectionalLightDesc directional_light(Plugin& p) {
   return out;
 }
 
-EnvironmentMapDesc environment_map(Reader& reader, Plugin& p) {
+decltype(EmitterDesc::kind) environment_map(Reader& reader, Plugin& p) {
   EnvironmentMapDesc out;
   const std::string name = p.required_text("filename");
-  out.filename = reader.existing_file(name, p.where_of("filename"), "environment map");
+  const auto file = reader.file(name, p.where_of("filename"), "environment map", "a grey sky");
+  out.filename = file.name;
   out.scale = not_negative(p, "scale", 1);
   out.to_world = p.regular_transform();
   if (p.number("gamma", -1) != -1)
     reader.warn(p.where_of("gamma"), "an environment map gamma of its own", "the sRGB curve for 8-bit files");
   p.ignore({"cache", "mis_compensation"});
+  if (file.missing) return ConstantEnvironmentDesc{Rgb(kMissingSky * out.scale)};
   return out;
 }
 
@@ -179,7 +185,9 @@ void Reader::build_emitter(const Element& element) {
   } else if (p.type() == "spot") {
     out.kind = spot_light(*this, p);
   } else if (p.type() == "ies") {
-    out.kind = ies_light(*this, p);
+    const auto light = ies_light(*this, p);
+    if (!light) return p.finish();
+    out.kind = *light;
   } else if (p.type() == "directional") {
     out.kind = directional_light(p);
   } else if (p.type() == "constant") {

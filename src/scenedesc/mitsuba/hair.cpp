@@ -67,11 +67,16 @@ BsdfKind kajiya_kay(Reader&, Plugin& p) {
   return out;
 }
 
-CurvesDesc curves(Reader& reader, Plugin& p, const Transform& to_world) {
+decltype(ShapeDesc::kind) curves(Reader& reader, Plugin& p, const Transform& to_world) {
   CurvesDesc out;
   out.basis = p.type() == "bsplinecurve" ? CurvesDesc::Basis::bspline : CurvesDesc::Basis::linear;
-  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "curve file");
-  if (p.type() != "hair") return out;
+  const auto file = reader.file(p.required_text("filename"), p.where_of("filename"), "curve file", "");
+  out.filename = file.name;
+  const auto known = [&]() -> decltype(ShapeDesc::kind) {
+    if (file.missing) return InlineMeshDesc{nullptr, file.name};
+    return out;
+  };
+  if (p.type() != "hair") return known();
   // World units, whatever to_world does to the file's points.
   out.file_radius = p.positive("radius", 0.025f) /
                     static_cast<float>(std::cbrt(std::max(1e-30, std::abs(to_world.determinant3()))));
@@ -79,7 +84,7 @@ CurvesDesc curves(Reader& reader, Plugin& p, const Transform& to_world) {
   p.ignore({"angle_threshold"});
   if (const float reduction = share(p, "reduction", 0); reduction > 0)
     reader.warn(p.where_of("reduction"), "the \"reduction\" of hair", "all of it");
-  return out;
+  return known();
 }
 
 }  // namespace lumirank::scenedesc::mitsuba

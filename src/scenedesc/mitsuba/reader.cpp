@@ -69,18 +69,20 @@ const Element& Reader::resolve(const Element& element) const {
                    "define the id, or correct it");
 }
 
-std::string Reader::existing_file(const std::string& name, const SourceLocation& where,
-                                  const std::string& kind) {
-  std::string filename = resolve_path(name, where.file);
-  if (found_files_.count(filename)) return filename;
+Reader::NamedFile Reader::file(const std::string& name, const SourceLocation& where, const std::string& kind,
+                               const std::string& stand_in) {
+  const std::string filename = resolve_path(name, where.file);
+  if (found_files_.count(filename)) return {filename, false};
   std::error_code error;
   const auto status = std::filesystem::status(filename, error);
-  if (!std::filesystem::exists(status))
-    throw InputError(where, kind + " not found: " + filename, "check the name");
+  if (!std::filesystem::exists(status)) {
+    missing_file(scene_, options_, where, kind + " not found: " + filename, stand_in);
+    return {filename, true};
+  }
   if (std::filesystem::is_directory(status))
     throw InputError(where, kind + " " + filename + " is a folder", "name a file in it");
   found_files_.insert(filename);
-  return filename;
+  return {filename, false};
 }
 
 int Reader::add_bsdf(const std::string& id, const SourceLocation& where, decltype(BsdfDesc::kind) kind) {
@@ -138,6 +140,7 @@ SceneDesc Reader::read() {
   check_area_emitters_used();
   if (scene_.sensors.empty())
     throw InputError(document_.root->where, "the scene has no sensor", "add a <sensor type=\"perspective\">");
+  check_expansion(scene_);
   return std::move(scene_);
 }
 

@@ -42,8 +42,14 @@ class Reader {
   bool constant_texture(const Element& element, Intent intent, Rgb& value);
   AreaEmitterDesc area_emitter(const Element& element);
 
-  // Existence is checked here, so that the message has the line of the element that names the file.
-  std::string existing_file(const std::string& name, const SourceLocation& where, const std::string& kind);
+  // Existence is checked here, so that the message has the line of the element that names the file. A file
+  // that is missing is an error, or a warning that `stand_in` is in its place ("": nothing is).
+  struct NamedFile {
+    std::string name;
+    bool missing = false;
+  };
+  NamedFile file(const std::string& name, const SourceLocation& where, const std::string& kind,
+                 const std::string& stand_in);
 
   int add_bsdf(const std::string& id, const SourceLocation& where, decltype(BsdfDesc::kind) kind);
   int add_texture(const std::string& id, const SourceLocation& where, decltype(TextureDesc::kind) kind);

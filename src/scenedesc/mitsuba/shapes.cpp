@@ -5,11 +5,12 @@ namespace lumirank::scenedesc::mitsuba {
 
 namespace {
 
-MeshFileDesc mesh_file(Reader& reader, Plugin& p, MeshFormat format) {
+decltype(ShapeDesc::kind) mesh_file(Reader& reader, Plugin& p, MeshFormat format) {
   MeshFileDesc out;
   out.format = format;
   const std::string name = p.required_text("filename");
-  out.filename = reader.existing_file(name, p.where_of("filename"), "mesh file");
+  const auto file = reader.file(name, p.where_of("filename"), "mesh file", "");
+  out.filename = file.name;
   out.face_normals = p.flag("face_normals", false);
   // The same defaults in 0.6 and 3.x: the v of OBJ runs up and is flipped, that of the others runs down
   // already.
@@ -32,6 +33,7 @@ MeshFileDesc mesh_file(Reader& reader, Plugin& p, MeshFormat format) {
     p.ignore({"shape_index"});
   }
   p.ignore({"collapse", "load_materials", "srgb", "vertex_normals", "compress"});
+  if (file.missing) return InlineMeshDesc{nullptr, out.filename};
   return out;
 }
 

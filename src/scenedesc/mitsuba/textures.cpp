@@ -1,4 +1,5 @@
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -58,7 +59,8 @@ TextureChannel channel(Plugin& p) {
 BitmapTextureDesc bitmap(Reader& reader, Plugin& p) {
   BitmapTextureDesc out;
   const std::string name = p.required_text("filename");
-  out.filename = reader.existing_file(name, p.where_of("filename"), "texture");
+  const auto file = reader.file(name, p.where_of("filename"), "texture", kMissingPicture);
+  out.filename = file.name, out.missing = file.missing;
   out.raw = p.flag("raw", false);
   // 0.6: gamma 1 says that the values are linear, -1 and "sRGB" that the file knows; 8-bit files then are
   // sRGB.

@@ -125,6 +125,9 @@ void MitsubaWriter::shape(int index) {
   const ShapeDesc& s = scene_.shapes[static_cast<std::size_t>(index)];
   const std::string& id = shape_ids_[static_cast<std::size_t>(index)];
   bool group = false, instance = false;
+  if (const auto* held = std::get_if<InlineMeshDesc>(&s.kind))
+    if (!held->mesh || held->mesh->triangle_count() == 0)
+      return warn(s.where, "shapes without a triangle (" + held->name + ")", "");
   if (const auto* file = std::get_if<MeshFileDesc>(&s.kind)) {
     mesh(*file, id);
   } else if (const auto* held = std::get_if<InlineMeshDesc>(&s.kind)) {

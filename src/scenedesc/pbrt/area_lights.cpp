@@ -93,8 +93,14 @@ std::optional<ShapeDesc> shine(Reader& reader, Params& p, ShapeDesc& shape, cons
   shape.emitter = AreaEmitterDesc{light.radiance, shape.id, light.where};
   if (light.power <= 0 && !light.two_sided) return std::nullopt;
   // Both need the mesh itself.
-  if (const auto* file = std::get_if<MeshFileDesc>(&shape.kind))
-    shape.kind = InlineMeshDesc{std::make_shared<const MeshData>(read_mesh(*file)), file->filename};
+  if (const auto* file = std::get_if<MeshFileDesc>(&shape.kind)) try {
+      shape.kind = InlineMeshDesc{std::make_shared<const MeshData>(read_mesh(*file)), file->filename};
+    } catch (const InputError& e) {
+      throw InputError(p.where(), "the mesh of " + p.title() + ": " + e.what());
+    }
+  // What has no triangle is left out when the world is built, and its light with it.
+  if (const auto* held = std::get_if<InlineMeshDesc>(&shape.kind))
+    if (!held->mesh || held->mesh->triangle_count() == 0) return std::nullopt;
   if (light.power > 0) shape.emitter->radiance.value *= power_factor(reader, p, shape, light);
   if (!light.two_sided) return std::nullopt;
   return back_of(shape);

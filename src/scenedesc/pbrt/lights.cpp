@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -57,16 +58,21 @@ SpotLightDesc spot(Params& p, const Transform& to_world) {
   return out;
 }
 
-ProfileLightDesc goniometric(Reader& reader, Params& p, const Transform& to_world) {
+decltype(EmitterDesc::kind) goniometric(Reader& reader, Params& p, const Transform& to_world) {
   ProfileLightDesc out;
   out.kind = ProfileLightDesc::Kind::image;
   // pbrt swaps y and z of these lights.
   Transform swap;
   swap.m = {1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
   out.to_world = to_world * swap;
-  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "picture");
+  const auto file = reader.named_file(p.required_text("filename"), p.where_of("filename"), "picture",
+                                      "the same intensity in all directions");
+  out.filename = file.name;
   out.intensity = spectrum(p, "I") * scale_of(p);
   if (const float power = p.number("power", -1); power > 0) out.power = power;
+  if (file.missing)
+    return PointLightDesc{to_world.point({0, 0, 0}),
+                          out.intensity * (out.power ? *out.power / (4 * kPi) : 1.0f)};
   return out;
 }
 
@@ -92,8 +98,12 @@ decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform&
   }
   if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
   EnvironmentMapDesc out;
-  out.filename = reader.existing_file(p.text("filename", ""), p.where_of("filename"), "environment map");
+  const auto file =
+      reader.named_file(p.text("filename", ""), p.where_of("filename"), "environment map", "a grey sky");
+  out.filename = file.name;
   out.scale = scale;
+  if (file.missing)
+    return ConstantEnvironmentDesc{Rgb(scale * (illuminance > 0 ? illuminance / kPi : kMissingSky))};
   if (illuminance > 0) out.illuminance = illuminance;
   out.projection = EnvironmentProjection::equal_area;
   out.to_world = to_world;
@@ -144,7 +154,8 @@ void Reader::read_area_light(Params& p, const std::string& type) {
   if (p.has("filename")) {
     if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
     BitmapTextureDesc picture;
-    picture.filename = existing_file(p.text("filename", ""), p.where_of("filename"), "picture");
+    const auto file = named_file(p.text("filename", ""), p.where_of("filename"), "picture", kMissingPicture);
+    picture.filename = file.name, picture.missing = file.missing;
     picture.wrap_u = picture.wrap_v = WrapMode::clamp;
     const int texture = add_texture("", p.where(), std::move(picture));
     light->radiance.texture = add_texture("", p.where(), ScaleTextureDesc{{Rgb(0), texture}, Rgb(scale)});

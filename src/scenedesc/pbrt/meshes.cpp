@@ -58,22 +58,15 @@ MeshData vertices(Params& p) {
 
 }  // namespace
 
-std::optional<Kind> held_mesh(Reader& reader, Params& p, MeshData mesh) {
-  try {
-    return InlineMeshDesc{std::make_shared<const MeshData>(check_mesh(std::move(mesh), p.where())),
-                          p.title()};
-  } catch (const InputError&) {
-    // Lists of the right lengths with finite numbers: only this can be wrong, and pbrt takes no offence.
-    reader.warn(p.where(), "a use for " + p.title() + ", no triangle of which has an area", "");
-    return std::nullopt;
-  }
+std::optional<Kind> held_mesh(Params& p, MeshData mesh) {
+  return InlineMeshDesc{std::make_shared<const MeshData>(check_mesh(std::move(mesh), p.where())), p.title()};
 }
 
-std::optional<Kind> triangle_mesh(Reader& reader, Params& p) {
+std::optional<Kind> triangle_mesh(Reader&, Params& p) {
   MeshData mesh = vertices(p);
   mesh.indices = indices(p, mesh.positions.size(), 3);
   p.numbers("S", ParamType::point3), p.numbers("faceIndices", ParamType::integer);
-  return held_mesh(reader, p, std::move(mesh));
+  return held_mesh(p, std::move(mesh));
 }
 
 std::optional<Kind> loop_surface(Reader& reader, Params& p) {
@@ -85,7 +78,7 @@ std::optional<Kind> loop_surface(Reader& reader, Params& p) {
   p.integer("levels", 3);
   p.ignore({"scheme"});
   reader.warn(p.where(), "subdivision surfaces (" + p.title() + ")", "the control mesh");
-  return held_mesh(reader, p, std::move(mesh));
+  return held_mesh(p, std::move(mesh));
 }
 
 std::optional<Kind> bilinear_mesh(Reader& reader, Params& p) {
@@ -118,7 +111,7 @@ std::optional<Kind> bilinear_mesh(Reader& reader, Params& p) {
       return out;
     });
   }
-  return held_mesh(reader, p, std::move(mesh));
+  return held_mesh(p, std::move(mesh));
 }
 
 std::optional<Kind> curve(Reader& reader, Params& p) {

@@ -64,6 +64,14 @@ std::string Reader::existing_file(const std::string& name, const Place& where, c
   return path;
 }
 
+Reader::NamedFile Reader::named_file(const std::string& name, const Place& where, const std::string& kind,
+                                     const std::string& stand_in) {
+  if (!resolve(name, where).empty()) return {existing_file(name, where, kind), false};
+  const std::string path = resolve_path(name, main_file_);
+  missing_file(scene_, options_, where, kind + " not found: " + path, stand_in);
+  return {path, true};
+}
+
 std::string Reader::file_text(const std::string& path, const Place& where) const {
   return read_file(path, where, kLargestText);
 }
@@ -269,6 +277,7 @@ void Reader::finish() {
                        "define it with ObjectBegin");
     std::get<InstanceDesc>(shape.kind).group = found->second;
   }
+  check_expansion(scene_);
   for (const auto& [name, value] : options_.defines)
     warn({main_file_, 0}, "the parameter \"" + name + "\" (pbrt scenes have none)", "");
 }

@@ -53,6 +53,13 @@ class Reader {
   // no such file.
   std::string resolve(const std::string& name, const Place& where) const;
   std::string existing_file(const std::string& name, const Place& where, const std::string& kind);
+  // The same, but what is missing may be a warning that `stand_in` is in its place ("": nothing is).
+  struct NamedFile {
+    std::string name;
+    bool missing = false;
+  };
+  NamedFile named_file(const std::string& name, const Place& where, const std::string& kind,
+                       const std::string& stand_in);
   std::string file_text(const std::string& path, const Place& where) const;
 
   int add_bsdf(const std::string& id, const Place& where, decltype(BsdfDesc::kind) kind);
@@ -62,6 +69,7 @@ class Reader {
   void read_texture(Params& p, const std::string& name, const std::string& type, const std::string& kind);
   ColorInput color(Params& p, const char* name, ColorInput fallback, Intent intent);
   FloatInput scalar(Params& p, const char* name, FloatInput fallback);
+  bool is_float_texture(const std::string& name) const { return float_textures_.count(name) > 0; }
 
   // materials.cpp: an index into the scene's BSDFs.
   int make_material(Params& p, const std::string& type, const std::string& id);

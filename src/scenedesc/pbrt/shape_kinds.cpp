@@ -18,41 +18,43 @@ float phi_max(Params& p) {
   return radians(std::min(degrees, 360.0f));
 }
 
-std::optional<Kind> sphere(Reader& reader, Params& p, Transform& to_world) {
+std::optional<Kind> sphere(Params& p, Transform& to_world) {
   const float radius = p.positive("radius", 1), phi = phi_max(p);
   const float z0 = p.number("zmin", -radius), z1 = p.number("zmax", radius);
   const float low = std::max(std::min(z0, z1), -radius), high = std::min(std::max(z0, z1), radius);
   if (!(low < high))
     p.fail("zmax", "leaves nothing of the sphere", "zmin and zmax lie between -radius and radius");
   if (low > -radius || high < radius || phi < radians(360))
-    return held_mesh(reader, p, part_of_sphere(radius, low, high, phi));
+    return held_mesh(p, part_of_sphere(radius, low, high, phi));
   // pbrt's v runs from the south pole up, that of the built-in sphere down.
   to_world = to_world * Transform::scale(1, 1, -1);
   return SphereDesc{{0, 0, 0}, radius};
 }
 
-std::optional<Kind> cylinder(Reader& reader, Params& p) {
+std::optional<Kind> cylinder(Params& p) {
   const float radius = p.positive("radius", 1), z0 = p.number("zmin", -1), z1 = p.number("zmax", 1);
   if (z0 == z1) p.fail("zmax", "is the same as zmin", "give the cylinder a height");
-  return held_mesh(reader, p, part_of_cylinder(radius, std::min(z0, z1), std::max(z0, z1), phi_max(p)));
+  return held_mesh(p, part_of_cylinder(radius, std::min(z0, z1), std::max(z0, z1), phi_max(p)));
 }
 
-std::optional<Kind> disk(Reader& reader, Params& p) {
+std::optional<Kind> disk(Params& p) {
   const float height = p.number("height", 0), radius = p.positive("radius", 1);
   const float inner = p.number("innerradius", 0);
   if (!(inner >= 0 && inner < radius)) p.fail("innerradius", "is not between 0 and the radius");
-  return held_mesh(reader, p, part_of_disk(height, radius, inner, phi_max(p)));
+  return held_mesh(p, part_of_disk(height, radius, inner, phi_max(p)));
 }
 
 std::optional<Kind> ply_mesh(Reader& reader, Params& p) {
   MeshFileDesc out;
   out.format = MeshFormat::ply;
-  out.filename = reader.existing_file(p.required_text("filename"), p.where_of("filename"), "mesh file");
+  const auto file = reader.named_file(p.required_text("filename"), p.where_of("filename"), "mesh file", "");
+  out.filename = file.name;
   out.smooth_without_normals = false;
   if (p.has("displacement")) {
     p.ignore({"displacement", "displacement.edgelength", "edgelength"});
     reader.warn(p.where_of("displacement"), "displaced meshes", "the mesh as it is");
   }
+  if (file.missing) return InlineMeshDesc{nullptr, out.filename};
   return out;
 }
 
@@ -63,9 +65,9 @@ std::optional<Kind> make_shape(Reader& reader, Params& p, const std::string& typ
   if (type == "plymesh") return ply_mesh(reader, p);
   if (type == "bilinearmesh") return bilinear_mesh(reader, p);
   if (type == "loopsubdiv") return loop_surface(reader, p);
-  if (type == "sphere") return sphere(reader, p, to_world);
-  if (type == "cylinder") return cylinder(reader, p);
-  if (type == "disk") return disk(reader, p);
+  if (type == "sphere") return sphere(p, to_world);
+  if (type == "cylinder") return cylinder(p);
+  if (type == "disk") return disk(p);
   if (type == "curve") return curve(reader, p);
   throw InputError(p.where(), "the shape " + in_quotes(type) + " is not known",
                    "trianglemesh, plymesh, bilinearmesh, loopsubdiv, sphere, disk, cylinder and curve are");

@@ -12,11 +12,11 @@ namespace lumirank::scenedesc::pbrt {
 std::optional<decltype(ShapeDesc::kind)> make_shape(Reader& reader, Params& p, const std::string& type,
                                                     Transform& to_world);
 
-// Meshes that files hold in lists. Empty, with a warning, if no triangle has an area.
+// Meshes that files hold in lists.
 std::optional<decltype(ShapeDesc::kind)> triangle_mesh(Reader& reader, Params& p);
 std::optional<decltype(ShapeDesc::kind)> bilinear_mesh(Reader& reader, Params& p);
 std::optional<decltype(ShapeDesc::kind)> loop_surface(Reader& reader, Params& p);
-std::optional<decltype(ShapeDesc::kind)> held_mesh(Reader& reader, Params& p, MeshData mesh);
+std::optional<decltype(ShapeDesc::kind)> held_mesh(Params& p, MeshData mesh);
 std::optional<decltype(ShapeDesc::kind)> curve(Reader& reader, Params& p);
 
 // Puts the light on the shape. Empty, or the back of a lamp that shines to both sides: a copy that faces the

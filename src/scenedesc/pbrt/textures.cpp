@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -24,7 +25,8 @@ UvTransform uv_mapping(Params& p) {
 BitmapTextureDesc image_map(Reader& reader, Params& p, bool spectrum) {
   BitmapTextureDesc out;
   const std::string name = p.required_text("filename");
-  out.filename = reader.existing_file(name, p.where_of("filename"), "texture");
+  const auto file = reader.named_file(name, p.where_of("filename"), "texture", kMissingPicture);
+  out.filename = file.name, out.missing = file.missing;
   if (!spectrum) out.channel = TextureChannel::scalar;
   const std::string filter = p.text("filter", "bilinear");
   if (filter == "point")
@@ -124,7 +126,7 @@ class TextureMaker {
   ColorInput make(const std::string& kind) {
     if (kind == "constant") return input("value", 1);
     if (kind == "imagemap") return image();
-    if (kind == "scale") return product(input("tex", 1), input("scale", 1));
+    if (kind == "scale") return product(input("tex", 1), factor());
     if (kind == "mix")
       return mix(input("tex1", 0), input("tex2", 1), gray(reader_.scalar(p_, "amount", {0.5f})));
     if (kind == "directionmix") {
@@ -146,9 +148,27 @@ class TextureMaker {
 
  private:
   static ColorInput gray(FloatInput f) { return {Rgb(f.value), f.texture}; }
+  // A number where a colour is meant is its grey.
   ColorInput input(const char* name, float fallback) {
-    return spectrum_ ? reader_.color(p_, name, {Rgb(fallback), kNone}, Intent::unbounded)
-                     : gray(reader_.scalar(p_, name, {fallback}));
+    return spectrum_ && !is_number(name) ? reader_.color(p_, name, {Rgb(fallback), kNone}, Intent::unbounded)
+                                         : gray(reader_.scalar(p_, name, {fallback}));
+  }
+  bool is_number(const char* name) {
+    const Parameter* p = p_.find(name);
+    return p && (p->type == ParamType::number || p->type == ParamType::integer);
+  }
+  // "scale" of the class "scale" is a float or a float texture, for both types of textures
+  // (SpectrumScaledTexture::Create of pbrt-v4). Colours, which pbrt passes over, are taken at their word.
+  ColorInput factor() {
+    const Parameter* p = p_.find("scale");
+    const bool texture = p && p->type == ParamType::texture;
+    if (texture && p->texts.size() == 1 && reader_.is_float_texture(p->texts[0]))
+      return gray(reader_.scalar(p_, "scale", {1}));
+    const ColorInput out = input("scale", 1);
+    // A bump's height may be turned over; a colour below 0 is none.
+    if (spectrum_ && out.texture == kNone && (out.value.r < 0 || out.value.g < 0 || out.value.b < 0))
+      p_.fail("scale", "is negative", "give 0 or more");
+    return out;
   }
   ColorInput add(decltype(TextureDesc::kind) kind) {
     return {Rgb(0), reader_.add_texture(name_, p_.where(), std::move(kind))};
