@@ -49,7 +49,7 @@ nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::pa
 
 TEST(WholeLight, TheSkyInAMirrorIsPartOfThePictureByDefault) {
   const Scene scene = load_text(floor_and_wall(kMirror));
-  constexpr int kSeeds = 12;
+  constexpr int kSeeds = 8;
   std::vector<double> whole, columns, shares;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     RenderSettings s = few_lights();
