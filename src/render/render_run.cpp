@@ -103,7 +103,6 @@ class RenderRun {
     wishes.spp_given = asked_.spp_given || asked_.spp != defaults.spp;
     wishes.lights = lights_;
     wishes.lights_given = asked_.lights_given || asked_.lights != defaults.lights || lights_ != asked_.lights;
-    wishes.direct_samples = TracedDirectSettings{}.samples;
     wishes.rest_paths = rest_plan_.paths;
     wishes.layers = static_cast<int>(asked_.aovs.size());
     if (!replays()) {
@@ -112,7 +111,6 @@ class RenderRun {
       setup_.seconds["pilot"] = timer.seconds();
       const auto film = receiver_settings(setup_.view, settings_);
       costs.pixels = static_cast<double>(film.crop_width) * static_cast<double>(film.crop_height);
-      costs.rest_path = rest_plan_.pilot.path_seconds;
       costs.passed = clock_();
       plan_ = plan_time(wishes, costs);
       if (!plan_.shortage.empty()) sinks_.warn(plan_.shortage);

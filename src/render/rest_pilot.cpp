@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "base/timer.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -15,9 +14,9 @@ constexpr double kPilotPixels = 2048;
 constexpr int kRestPaths = 4, kAllPaths = 2;  // of each pixel
 
 struct PilotSums {
-  double rest = 0, deviation = 0, all = 0;
+  double rest = 0, deviation = 0, all = 0, brightest = 0;
   PilotSums operator+(const PilotSums& o) const {
-    return {rest + o.rest, deviation + o.deviation, all + o.all};
+    return {rest + o.rest, deviation + o.deviation, all + o.all, std::max(brightest, o.brightest)};
   }
 };
 
@@ -45,7 +44,6 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
   const world::Camera camera(whole_film(view, kPilotPixels));
   const auto width = static_cast<std::size_t>(camera.width());
   const std::size_t pixels = width * static_cast<std::size_t>(camera.height());
-  double rest_seconds = 0;
   const auto trace = [&](const PathTracer& tracer, int paths, bool is_rest) {
     return parallel_sum(pixels, 64, PilotSums{}, [&](std::size_t begin, std::size_t end) {
       PilotSums sums;
@@ -61,6 +59,7 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
           const double y =
               wanted_light(tracer.trace(camera.ray(film, random.next_2d()), p, number), settings.only);
           sum += y, squares += y * y;
+          if (is_rest) sums.brightest = std::max(sums.brightest, y / paths);
         }
         const double mean = sum / paths;
         if (is_rest)
@@ -72,16 +71,15 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
       return sums;
     });
   };
-  const Timer timer;
   const PilotSums found = trace(rest, kRestPaths, true);
-  rest_seconds = timer.seconds();
   const double light = trace(all, kAllPaths, false).all;
   if (sinks.cancelled()) throw Cancelled();
   RestPilot pilot;
   // Where only the rest was met, all of the light is rest.
   const double base = std::max(light, found.rest);
-  if (base > 0) pilot.share = found.rest / base, pilot.deviation = found.deviation / base;
-  pilot.path_seconds = rest_seconds / (static_cast<double>(pixels) * kRestPaths);
+  if (base > 0)
+    pilot.share = found.rest / base, pilot.without_brightest = (found.rest - found.brightest) / base,
+    pilot.deviation = found.deviation / base;
   return pilot;
 }
 
@@ -89,7 +87,7 @@ RestPlan plan_rest(const world::World& world, const View& view, const RenderSett
                    const Sinks& sinks) {
   RestPlan plan;
   if (settings.rest == "skip") return plan;
-  if (settings.rest == "auto" || settings.time > 0) {  // a budget wants to know what a path costs
+  if (settings.rest == "auto") {
     plan.pilot = pilot_rest(world, view, settings, sinks);
     plan.piloted = true;
   }

@@ -1,5 +1,7 @@
 #include "render/time_pilot.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/random.h"
 #include "base/timer.h"
@@ -9,8 +11,9 @@
 namespace lumirank::rendering {
 namespace {
 
-// So many lights and columns are tried: together less than a tenth of a second on ordinary scenes.
-constexpr std::size_t kPilotLights = 8192, kPilotColumns = 16;
+// So many lights and columns are tried: together less than a tenth of a second on ordinary scenes. Two
+// numbers of lights, because some of their time is the same for any number.
+constexpr std::size_t kFewLights = 1024, kPilotLights = 8192, kPilotColumns = 16;
 
 double direct_seconds(const Setup& pilot, const RenderSettings& settings, const Sinks& sinks) {
   TracedDirectSettings ts;
@@ -54,9 +57,12 @@ TimeCosts measure_costs(Setup& setup, const RenderSettings& settings, const Sink
   RenderSettings plain = settings;
   plain.local_paths = 0;
   pilot.unaimed = true;
+  const Timer few_timer;
+  make_matrix(pilot, plain, kFewLights, sinks);
+  const double few = few_timer.seconds();
   const Timer light_timer;
   make_matrix(pilot, plain, kPilotLights, sinks);
-  costs.light = light_timer.seconds() / static_cast<double>(kPilotLights);
+  costs.light = std::max(0.0, light_timer.seconds() - few) / static_cast<double>(kPilotLights - kFewLights);
   costs.column = column_seconds(pilot, sinks);
   const Timer film_timer;
   to_picture(film::splat(pilot.receivers.width, pilot.receivers.height,

@@ -6,8 +6,8 @@
 
 namespace lumirank::rendering {
 
-// Of eye rays, traced direct light, columns, lights and film; `passed`, `pixels` and `rest_path` are the
-// caller's. Keeps the receivers at which lights are aimed in `setup`, which needs them again.
+// Of eye rays, traced direct light, columns, lights and film; `passed` and `pixels` are the caller's. Keeps
+// the receivers at which lights are aimed in `setup`, which needs them again.
 TimeCosts measure_costs(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
 
 }  // namespace lumirank::rendering

@@ -50,12 +50,12 @@ std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, cons
     add(std::to_string(plan.spp) + " instead of " + std::to_string(wishes.spp) + " receivers per pixel");
   else if (wishes.spp_given && wanted_for_receivers(costs, wishes.spp, wishes.layers) > left)
     add("--spp " + std::to_string(wishes.spp) + " takes more than its part");
-  if (plan.lights < wishes.lights)
+  if (plan.lights < wishes.lights / 2)  // as many again are hardly seen
     add(std::to_string(plan.lights) + " instead of " + std::to_string(wishes.lights) + " virtual lights");
   else if (wishes.lights_given && static_cast<double>(wishes.lights) * costs.light > kLightShare * left)
     add("--lights " + std::to_string(wishes.lights) + " take more than their part");
   const double samples = costs.pixels * plan.spp;
-  if (costs.direct > 0 && plan.direct_seconds < 0.99 * kLeastDirect * samples * costs.direct)
+  if (costs.direct > 0 && plan.direct_seconds < kLeastDirect * samples * costs.direct * (1 - 1e-9))
     add("fewer than " + planned_number(kLeastDirect) + " samples of traced direct light");
   if (lacks.empty() && !plan.build_alone) return {};
   const std::string budget = planned_number(wishes.budget) + " s";
@@ -86,8 +86,9 @@ TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
     plan.lights = std::min(wishes.lights, std::max(kFewestLights, static_cast<std::size_t>(fitting)));
   }
   const double samples = costs.pixels * plan.spp;
-  plan.direct_seconds = std::min(kDirectShare * left, wishes.direct_samples * samples * costs.direct);
-  plan.rest_seconds = std::min(kRestShare * left, wishes.rest_paths * costs.pixels * costs.rest_path);
+  // Their passes end earlier where they have as many samples as were wished for.
+  plan.direct_seconds = costs.direct > 0 ? kDirectShare * left : 0;
+  plan.rest_seconds = wishes.rest_paths > 0 ? kRestShare * left : 0;
   plan.film_seconds = samples * costs.develop * (1 + wishes.layers);
   plan.enough = planned_round(
       (costs.passed + std::max(wanted_for_receivers(costs, wishes.spp, wishes.layers),

@@ -9,14 +9,13 @@ namespace lumirank::rendering {
 
 // Seconds, measured on a small part of each stage. A film sample is one receiver's share of a pixel.
 struct TimeCosts {
-  double passed = 0;     // since the scene was loaded: building, and the pilots themselves
-  double pixels = 0;     // of the film that is traced, with what the filter reaches around a crop
-  double receiver = 0;   // per film sample: following the eye's ray
-  double direct = 0;     // per film sample: one sample of traced direct light; 0: nothing is traced
-  double column = 0;     // per film sample: one column of the matrix
-  double develop = 0;    // per film sample: from values to a picture
-  double light = 0;      // per virtual light, features of the matrix included
-  double rest_path = 0;  // per path of the light that columns cannot carry
+  double passed = 0;    // since the scene was loaded: building, and the pilots themselves
+  double pixels = 0;    // of the film that is traced, with what the filter reaches around a crop
+  double receiver = 0;  // per film sample: following the eye's ray
+  double direct = 0;    // per film sample: one sample of traced direct light; 0: nothing is traced
+  double column = 0;    // per film sample: one column of the matrix
+  double develop = 0;   // per film sample: from values to a picture
+  double light = 0;     // per virtual light, features of the matrix included
 };
 
 struct TimeWishes {
@@ -25,7 +24,6 @@ struct TimeWishes {
   bool spp_given = false;  // by hand: kept whatever it takes
   std::size_t lights = 100000;
   bool lights_given = false;
-  int direct_samples = 16;
   int rest_paths = 0;  // per pixel; 0: none are traced
   int layers = 0;      // pictures beside the first
 };

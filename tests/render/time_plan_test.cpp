@@ -18,7 +18,6 @@ TimeCosts ordinary_costs() {
   c.column = 2e-8;
   c.develop = 1e-7;
   c.light = 4e-6;
-  c.rest_path = 1e-6;
   return c;
 }
 TimeWishes budget_of(double seconds) {

@@ -109,9 +109,9 @@ TEST(WholeLight, PathsByTheNoiseThatTheyAdd) {
   EXPECT_EQ(pilot.paths(), 40);
   pilot.deviation = 100;
   EXPECT_EQ(pilot.paths(), RestPilot::kMostPaths);
-  pilot.share = RestPilot::kLeast;
-  EXPECT_FALSE(pilot.matters());
-  pilot.share = 2 * RestPilot::kLeast;
+  pilot.share = 0.1, pilot.without_brightest = RestPilot::kLeast;
+  EXPECT_FALSE(pilot.matters()) << "one path has found nearly all of it";
+  pilot.without_brightest = 2 * RestPilot::kLeast;
   EXPECT_TRUE(pilot.matters());
 }
 
