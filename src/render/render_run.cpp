@@ -77,6 +77,8 @@ class RenderRun {
     sinks_.say("light that columns cannot carry: " + run_number("%.2g %%", 100 * rest_plan_.pilot.share) +
                (rest_plan_.paths > 0
                     ? ", traced with " + std::to_string(rest_plan_.paths) + " paths per pixel"
+                : rest_plan_.pilot.share > RestPilot::kLeast
+                    ? ", nearly all of it in one path of the pilot, left out"
                     : ", left out"));
   }
 
@@ -222,7 +224,11 @@ class RenderRun {
   // More samples of what is traced: its noise falls for as long as there is time.
   void spend_what_is_left() {
     if (!timed() || replays() || result_.interrupted) return;
-    const double end = film_begins();
+    // Layers by light go over the method's columns again.
+    const auto columns = estimate_.trace.numbers.find("seconds.columns");
+    const double pass = columns != estimate_.trace.numbers.end() ? columns->second : setup_.seconds["method"];
+    const int again = passes_over_columns(settings_) - 1 - (wants_illuminance(settings_) ? 1 : 0);
+    const double end = film_begins() - again * pass;
     const auto more_rest = [&](double until) {
       if (!rest_ || result_.interrupted) return;
       const Timer timer;

@@ -159,6 +159,7 @@ TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
   RenderSettings settings;
   settings.rest = "skip";
   settings.width = 32, settings.height = 24;
+  settings.method = "row-column-sampling";
   settings.lights = 300;
   settings.error = 0.04;
   std::vector<std::string> warnings;

@@ -44,6 +44,7 @@ TEST(TimedRender, EveryStagesChoiceIsRecordedAndRepeatsTheBits) {
   for (const double seconds : {0.01, 0.25}) {
     RenderSettings s;
     s.time = seconds;
+    s.max_depth = 4;
     s.rest = "trace";
     const RenderResult first = render(scene, s);
     const auto report = report_of(first);
@@ -70,6 +71,7 @@ TEST(TimedRender, ABudgetThatIsOverBeforeItBeganGivesAPictureAndSaysSo) {
   Sinks sinks;
   sinks.warning = [&](const std::string& text) { said += text + "\n"; };
   RenderSettings s;
+  s.max_depth = 4;
   s.time = 1e-4;  // the pilots alone take longer
   const RenderResult result = render(room(), s, sinks);
   EXPECT_FALSE(result.interrupted);
@@ -83,6 +85,7 @@ TEST(TimedRender, ABudgetThatIsOverBeforeItBeganGivesAPictureAndSaysSo) {
 
 TEST(TimedRender, WhatIsGivenByHandIsNotLowered) {
   RenderSettings s;
+  s.max_depth = 4;
   s.time = 1e-4;
   set_field(s, "lights", "100000");  // as by default, but asked for
   set_field(s, "spp", "4");
