@@ -20,7 +20,7 @@ PARTS = ["scene", "receivers", "lights", "matrix", "sketch", "held_out"]
 
 def render(args, scene, lights, report):
     settings = [f"{key}={value}" for key, value in (("rows", args.rows), ("columns", args.columns)) if value > 0]
-    command = [str(args.program.resolve()), "render", str(scene), "-o", str(report.with_suffix(".exr")), "--report", str(report), "--quiet",
+    command = [str(args.program.resolve()), "render", str(scene), "-o", str(report.with_suffix(".exr")), "--report", str(report), "--quiet", "--rest", "skip", "--method", "row-column-sampling",
                "--lights", str(lights), "--light-type", args.light_type, "--size", args.size, "--spp", str(args.spp), "--time", str(args.time)]
     for setting in settings:
         command += ["--set", setting]

@@ -20,6 +20,8 @@ struct RenderSettings {
   std::string method = "auto";
   std::map<std::string, std::string> method_settings;  // --set KEY=VALUE
   std::uint64_t lights = 100000;
+  bool lights_given = false;  // asked for by hand: a time budget does not lower them, nor any other value
+                              // than the default
   std::string light_type = "point";  // point, sphere
   double radius_scale = 0;  // spherical lights: radius over the distance to the 10th nearest; 0: automatic
   std::string sphere_indicator = "disc";   // disc, cosine
@@ -27,6 +29,7 @@ struct RenderSettings {
   std::string sphere_samples = "overlap";  // overlap, cone
   int width = 0, height = 0;               // pixels; 0: as the scene says
   int spp = 4;                             // receivers per pixel
+  bool spp_given = false;                  // as lights_given
   int max_depth = 0;         // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
   double clamp = 0.03;       // X of docs/conventions; 0: off
   std::string only = "all";  // all, direct, indirect
@@ -44,7 +47,7 @@ struct RenderSettings {
   int local_paths = 0;
   double local_sharp = 0.3;
   double local_near = 4;
-  std::string rest = "skip";  // skip, trace
+  std::string rest = "auto";  // auto: where a pilot finds that it matters; skip, trace
   int compensate = 0;  // paths per pixel that give back what clamping took from indirect light; 0: none
   std::string visibility = "exact";
   std::string camera;          // "": the scene's first

@@ -73,6 +73,8 @@ struct MethodInfo {
   // For a method that does not aim at RunOptions::target_error though its sums err: the parameters that
   // decide its error, for a warning. "error-bound or most-nodes"; empty for all others.
   std::string error_decided_by{};
+  // Whether its estimate is one combination of columns (Estimate::combination), which splits by light.
+  bool combination = false;
 };
 
 // The list: adding a method here enrols it in the command line, the documentation and the tests that all

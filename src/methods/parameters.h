@@ -92,6 +92,7 @@ struct MethodText {
   std::string name, summary;
   std::string paper = "";
   std::string error_decided_by = "";  // as in MethodInfo
+  bool combination = false;           // as in MethodInfo
 };
 
 // The entry of a method M whose constructor takes its settings S, and which uses all generated lights.
@@ -105,7 +106,8 @@ MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
             return std::make_unique<M>(read_settings(name, fields, settings));
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
-          text.error_decided_by};
+          text.error_decided_by,
+          text.combination};
 }
 
 // Every parameter of the method with the value that a run with these settings uses: what a report records.

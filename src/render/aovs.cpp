@@ -54,18 +54,11 @@ void add_lights(Picture& picture, const Setup& setup, const std::string& which,
   }
 }
 
-bool is_split(const std::string& aov) {
-  return aov == "direct" || aov == "indirect" || aov.starts_with("light:");
-}
-
-void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const RenderSettings& settings,
-             const methods::Estimate& estimate, const Sinks& sinks) {
+void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const methods::Estimate& estimate,
+             const Sinks& sinks) {
   const auto& receivers = setup.receivers;
   const auto depth_of = [](float d) { return Rgb(std::isfinite(d) ? d : 0.0f); };
   const auto vector_of = [](Vec3f v) { return Rgb(v.x, v.y, v.z); };
-  if (is_split(aov) && estimate.combination.empty() && setup.lights.size() > 0)
-    throw InputError("the method '" + settings.method + "' cannot split its picture by light",
-                     "choose a method whose estimate is a sum of columns");
   if (aov == "direct") {
     add_plane(picture, aov,
               part_image(
@@ -96,6 +89,23 @@ void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const
 }
 
 }  // namespace
+
+bool parts_light(const std::string& aov) {
+  return aov == "direct" || aov == "indirect" || aov.starts_with("light:");
+}
+
+void check_layers(const methods::MethodInfo& method, const RenderSettings& settings) {
+  if (method.combination) return;
+  for (const std::string& aov : settings.aovs) {
+    if (!parts_light(aov)) continue;
+    std::string able;
+    for (const auto& other : methods::all_methods())
+      if (other.combination) able += (able.empty() ? "" : ", ") + other.name;
+    throw InputError("the method '" + method.name + "' cannot give the layer '" + aov +
+                         "': its columns differ from receiver to receiver",
+                     "choose one of " + able + ", or leave '--method auto'");
+  }
+}
 
 FilmParts wanted_parts(const RenderSettings& settings) {
   return {.emission = settings.only == "all",
@@ -136,8 +146,8 @@ bool add_aovs(Picture& picture, const Setup& setup, const RenderSettings& settin
   std::string left_out;
   for (const std::string& aov : settings.aovs) {
     try {
-      if (is_split(aov) && sinks.cancelled()) throw Cancelled();
-      add_aov(picture, aov, setup, settings, estimate, sinks);
+      if (parts_light(aov) && sinks.cancelled()) throw Cancelled();
+      add_aov(picture, aov, setup, estimate, sinks);
     } catch (const Cancelled&) {
       left_out += (left_out.empty() ? "" : ", ") + aov;
     }

@@ -9,6 +9,13 @@ namespace lumirank::rendering {
 // What `--only` leaves of the picture.
 FilmParts wanted_parts(const RenderSettings& settings);
 
+// Whether a layer is a part of the method's sums, by bounce or by light: that takes one combination of
+// columns.
+bool parts_light(const std::string& aov);
+
+// Throws InputError where the method cannot give a layer, and names those that can: before anything is made.
+void check_layers(const methods::MethodInfo& method, const RenderSettings& settings);
+
 // Throws InputError for a light that the world does not have: before the render, not after it.
 void check_aovs(const world::World& world, const RenderSettings& settings);
 

@@ -63,4 +63,14 @@ std::string error_advice(const ErrorAsked& asked, const std::map<std::string, do
   return text;
 }
 
+std::string budget_advice(double budget, double given, const std::map<std::string, double>& numbers) {
+  const auto coarse = numbers.find("budget.coarse_share"), wanted = numbers.find("budget.seconds_wanted");
+  if (coarse == numbers.end() || coarse->second < 0.005) return {};
+  std::string text = "in " + percent(coarse->second) + " of the picture the budget of " +
+                     number("%.3g s", budget) + " left time for a coarse estimate only";
+  if (wanted != numbers.end() && wanted->second > given)
+    text += "; about " + number("%.2g s", budget + wanted->second - given) + " would do";
+  return text;
+}
+
 }  // namespace lumirank::rendering

@@ -3,22 +3,20 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/random.h"
 #include "base/timer.h"
 #include "film/atomic_file.h"
 #include "film/image_io.h"
 #include "film/metrics.h"
 #include "film/scale_bar.h"
-#include "methods/timed_choices.h"
 #include "render/aovs.h"
 #include "render/error_advice.h"
-#include "render/illuminance.h"
 #include "render/pipeline.h"
+#include "render/preview_throttle.h"
 #include "render/reference.h"
+#include "render/render_run.h"
 #include "render/report.h"
 #include "scenedesc/readers.h"
 
@@ -54,23 +52,6 @@ world::World build_world(const Scene& scene, const Sinks& sinks,
   return world;
 }
 
-// Calls back at most about twice a second: developing and encoding a picture costs more than many columns.
-class PreviewThrottle {
- public:
-  explicit PreviewThrottle(const PreviewCallback& callback) : callback_(callback) {}
-  bool due() {
-    if (!callback_ || (shown_ && timer_.seconds() < 0.5)) return false;
-    timer_ = Timer();
-    return shown_ = true;
-  }
-  void show(const Picture& picture) const { callback_(picture); }
-
- private:
-  const PreviewCallback& callback_;
-  Timer timer_;
-  bool shown_ = false;
-};
-
 film::LayeredImage to_layers(const Picture& picture) {
   film::LayeredImage layers;
   for (const Plane& plane : picture.planes) {
@@ -95,37 +76,6 @@ film::DisplayOptions to_display_options(const DisplaySettings& display) {
   else if (display.tonemap != "none")
     throw InputError("'" + display.tonemap + "' is not a tone map", "choose one of none|reinhard|agx");
   return options;
-}
-
-int rest_paths(const RenderSettings& settings) { return std::max(16, settings.spp); }
-
-// Adds what clamping took from indirect light. False if it was interrupted: the picture is then without.
-bool add_compensation(Setup& setup, const RenderSettings& settings, film::Image& image, const Sinks& sinks) {
-  const Timer timer;
-  RenderSettings own = settings;
-  own.seed =
-      hash_ids(settings.seed, Stage::reference, 1);  // a reference with the same seed is independent of it
-  ReferenceSettings how;
-  how.paths = "columns";
-  how.spp = settings.compensate;
-  try {
-    const auto traced = rendering::path_trace(*setup.world, setup.view, own, how, sinks, {}, setup.held);
-    if (traced.interrupted) return false;
-    for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += traced.indirect.pixels[p];
-  } catch (const Cancelled&) {
-    return false;
-  }
-  setup.seconds["compensation"] = timer.seconds();
-  return true;
-}
-
-// Seconds of a budget that are kept for the film: a twentieth, or less where that would be wasted.
-double film_reserve(const Setup& setup, double budget) {
-  const double most = 0.05 * budget;
-  if (most < 0.2) return most;
-  const Timer timer;
-  rendering::develop(setup, setup.receivers.emission);
-  return std::min(most, 0.05 + 2 * timer.seconds());
 }
 
 nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
@@ -222,115 +172,21 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
   RenderResult result;
   with_threads(settings.threads, [&] {
     const Timer timer;
-    Setup setup;
-    setup.view = rendering::make_view(scene.impl().desc, settings);
-    const methods::MethodInfo& info = rendering::chosen_method(settings);
-    const auto method = info.make(settings.method_settings);
-    if (const std::string text = rendering::error_not_aimed_at(info, settings.error); !text.empty())
+    rendering::RenderTask task;
+    task.timer = timer;
+    task.view = rendering::make_view(scene.impl().desc, settings);
+    task.info = &rendering::chosen_method(settings, &task.why);
+    rendering::check_layers(*task.info, settings);
+    task.method = task.info->make(settings.method_settings);
+    if (const std::string text = rendering::error_not_aimed_at(*task.info, settings.error); !text.empty())
       sinks.warn(text);
     const world::World world = build_world(scene, sinks);
-    setup.world = &world;
-    setup.seconds["build"] = timer.seconds();
+    task.build_seconds = timer.seconds();
     if (sinks.cancelled()) throw Cancelled();
     rendering::check_aovs(world, settings);
-    rendering::make_receivers(setup, settings, sinks);
-    const std::size_t count = rendering::lights_for(info, settings);
-    rendering::make_matrix(setup, settings, count, sinks);
-
-    PreviewThrottle throttle(on_preview);
-    methods::TimedChoices choices =
-        settings.choices.empty() ? methods::TimedChoices() : methods::TimedChoices(settings.choices);
-    if (settings.time > 0) {
-      choices.expect("method." + info.name, 1);
-      choices.expect("receivers", static_cast<std::int64_t>(setup.matrix->rows()));
-      choices.expect("virtual_lights", static_cast<std::int64_t>(setup.matrix->columns()));
-    }
-    methods::RunOptions run;
-    run.choices = &choices;
-    run.seed = settings.method_seed ? settings.method_seed : settings.seed;
-    run.target_error = settings.error;
-    std::optional<rendering::ReferenceResult> rest;
-    double rest_seconds = 0;
-    if (settings.time > 0) {
-      if (settings.rest == "trace") {  // before the method, which fills the budget
-        const Timer rest_timer;
-        const auto earlier = choices.earlier("rest_paths", rest_paths(settings));
-        ReferenceSettings how;
-        how.paths = "rest";
-        how.spp = earlier ? static_cast<int>(*earlier) : rest_paths(settings);
-        if (!earlier) how.time = std::max(1e-3, 0.4 * (settings.time - timer.seconds()));
-        rest = rendering::path_trace(world, setup.view, settings, how, sinks);
-        if (rest->interrupted) throw Cancelled();
-        choices.record("rest_paths", rest->spp);
-        rest_seconds = rest_timer.seconds();
-      }
-      const double after = film_reserve(setup, settings.time);
-      run.time_seconds = std::max(
-          1e-3, (settings.time - timer.seconds() - after) / rendering::passes_over_columns(settings));
-    }
-    run.sinks = sinks;
-    if (on_preview)
-      run.on_estimate = [&](std::span<const Rgb> sums) {
-        if (throttle.due())
-          throttle.show(rendering::to_picture(rendering::develop(
-              setup, rendering::sample_values(setup, sums, rendering::wanted_parts(settings)))));
-      };
-    const Timer method_timer;
-    methods::Estimate estimate = method->run(*setup.matrix, run);
-    setup.seconds["method"] = method_timer.seconds();
-    result.interrupted = estimate.interrupted;
-    const bool own_lights = info.lights_wanted && info.lights_wanted(settings.method_settings) > 0;
-    const rendering::ErrorAsked asked{settings.error, count, own_lights ? "--set lights=" : "--lights",
-                                      info.error_decided_by};
-    if (const std::string advice = rendering::error_advice(asked, estimate.trace.numbers); !advice.empty()) {
-      sinks.warn(advice);
-      estimate.trace.notes["error.advice"] = advice;
-    }
-    std::optional<film::Image> illuminance;
-    if (rendering::wants_illuminance(settings) && !result.interrupted) {
-      run.on_estimate = {};
-      illuminance =
-          rendering::render_illuminance(setup, settings, *method, run, scene.impl().desc.lumens_per_unit);
-      result.interrupted = !illuminance;
-    }
-    if (!result.interrupted) choices.expect_end();
-
-    const Timer film_timer;
-    std::vector<Rgb> values =
-        rendering::sample_values(setup, estimate.sums, rendering::wanted_parts(settings));
-    film::Image image = rendering::develop(setup, values);
-    if (settings.rest == "trace" && !rest && !result.interrupted) {
-      ReferenceSettings how;
-      how.paths = "rest";
-      how.spp = rest_paths(settings);
-      try {
-        rest = rendering::path_trace(world, setup.view, settings, how, sinks);
-        result.interrupted = rest->interrupted;
-      } catch (const Cancelled&) {  // what the matrix gave is kept
-        result.interrupted = true;
-      }
-    }
-    // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
-    if (rest)
-      for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += rest->image.pixels[p];
-    if (settings.compensate > 0 && !result.interrupted && !add_compensation(setup, settings, image, sinks))
-      result.interrupted = true;
-    result.picture = rendering::to_picture(image);
-    // The report counts what the method looked at; layers look at the chosen columns once more.
-    auto& counters = setup.matrix->counters();
-    const auto evaluated = counters.entries_evaluated.load(), culled = counters.entries_culled.load(),
-               rays = counters.rays_shadow.load();
-    if (!rendering::add_aovs(result.picture, setup, settings, estimate, sinks)) result.interrupted = true;
-    if (illuminance)
-      result.picture.planes.push_back({"illuminance", rendering::to_picture(*illuminance).planes[0].rgb});
-    else if (rendering::wants_illuminance(settings))
-      sinks.warn("interrupted: the picture has no layer illuminance");
-    counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
-    setup.seconds["film"] = film_timer.seconds() + rest_seconds;
-    // An interrupted run cannot be repeated: where it was stopped was no choice of its own.
-    if (estimate.interrupted) choices = {};
-    result.report_json =
-        rendering::make_report(setup, settings, info, estimate, choices.made(), timer.seconds(), count);
+    task.world = &world;
+    task.lumens_per_unit = scene.impl().desc.lumens_per_unit;
+    result = rendering::run_render(std::move(task), settings, sinks, on_preview);
   });
   return result;
 }
@@ -347,7 +203,7 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     const rendering::View view = rendering::make_view(scene.impl().desc, settings);
     const world::World world = build_world(scene, sinks);
     const double build_seconds = timer.seconds();
-    PreviewThrottle throttle(on_preview);
+    rendering::PreviewThrottle throttle(on_preview);
     const auto traced =
         rendering::path_trace(world, view, settings, how, sinks, [&](const film::Image& image) {
           if (throttle.due()) throttle.show(rendering::to_picture(image));

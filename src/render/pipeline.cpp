@@ -1,11 +1,12 @@
 #include "render/pipeline.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "base/timer.h"
-#include "render/traced_direct.h"
+#include "render/aovs.h"
 #include "render/traced_indirect.h"
 #include "scenedesc/film_size.h"
 #include "transport/sphere_lights.h"
@@ -50,6 +51,16 @@ View make_view(const scenedesc::SceneDesc& desc, const RenderSettings& settings)
                        std::to_string(film.height) + " pixels");
   }
   return view;
+}
+
+scenedesc::SensorDesc whole_film(const View& view, double pixels) {
+  scenedesc::SensorDesc sensor = view.sensor;
+  auto& film = sensor.film;
+  film.crop_width = film.crop_height = film.crop_x = film.crop_y = 0;
+  const double scale = std::sqrt(pixels / (static_cast<double>(film.width) * film.height));
+  for (int* side : {&film.width, &film.height})
+    *side = std::max(1, static_cast<int>(std::lround(*side * scale)));
+  return sensor;
 }
 
 film::Filter make_filter(const scenedesc::FilterDesc& desc) {
@@ -98,7 +109,6 @@ double traced_roughness(const RenderSettings& settings) {
   return std::max(0.15, local_sharp(settings));
 }
 
-namespace {
 bool some_traced(const transport::Receivers& receivers, float below) {
   for (std::size_t i = 0; i < receivers.size(); ++i)
     if (is_traced(receivers, i, below)) return true;
@@ -123,62 +133,68 @@ void trace_sharp_lobes(Setup& setup, const RenderSettings& settings, const Sinks
   setup.seconds["traced_indirect"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
 }
-}  // namespace
 
-void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
-  const Timer timer;
-  const world::Camera camera(setup.view.sensor);
+transport::ReceiverSettings receiver_settings(const View& view, const RenderSettings& settings) {
   transport::ReceiverSettings rs;
   rs.seed = settings.seed;
   rs.spp = settings.spp;
-  rs.max_depth = setup.view.max_depth;
+  rs.max_depth = view.max_depth;
   // The window, and around it what its filter reaches.
-  const View& view = setup.view;
-  const int reach = make_filter(view.sensor.film.filter).reach();
+  const auto& film = view.sensor.film;
+  const int reach = make_filter(film.filter).reach();
   rs.crop_x = std::max(0, view.crop_x - reach), rs.crop_y = std::max(0, view.crop_y - reach);
-  rs.crop_width = std::min(camera.width(), view.crop_x + view.width + reach) - rs.crop_x;
-  rs.crop_height = std::min(camera.height(), view.crop_y + view.height + reach) - rs.crop_y;
+  rs.crop_width = std::min(film.width, view.crop_x + view.width + reach) - rs.crop_x;
+  rs.crop_height = std::min(film.height, view.crop_y + view.height + reach) - rs.crop_y;
   rs.first_hits = !settings.aovs.empty();
-  setup.receivers = transport::trace_receivers(*setup.world, camera, rs, sinks);
+  return rs;
+}
+
+void make_eye_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
+  const Timer timer;
+  setup.receivers = transport::trace_receivers(*setup.world, world::Camera(setup.view.sensor),
+                                               receiver_settings(setup.view, settings), sinks);
   setup.seconds["receivers"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
+}
 
+std::unique_ptr<DirectTracing> start_direct(Setup& setup, const RenderSettings& settings) {
   setup.traced_below = traced_roughness(settings);
   setup.traced_direct.clear();
-  if (setup.traced_below > 0) {
-    const Timer traced_timer;
-    TracedDirectSettings ts;
-    ts.seed = settings.seed;
-    ts.below = static_cast<float>(setup.traced_below);
-    ts.max_depth = setup.view.max_depth;
-    if (some_traced(setup.receivers, ts.below))
-      setup.traced_direct =
-          per_sample(setup.receivers, trace_direct(*setup.world, setup.receivers, ts, sinks));
-    setup.seconds["traced_direct"] = traced_timer.seconds();
-    if (sinks.cancelled()) throw Cancelled();
+  setup.direct_samples = 0;
+  TracedDirectSettings ts;
+  ts.seed = settings.seed;
+  ts.below = static_cast<float>(setup.traced_below);
+  ts.max_depth = setup.view.max_depth;
+  if (setup.traced_below <= 0 || !some_traced(setup.receivers, ts.below)) return nullptr;
+  return std::make_unique<DirectTracing>(*setup.world, setup.receivers, ts);
+}
+
+void keep_direct(Setup& setup, const DirectTracing& tracing) {
+  setup.traced_direct = per_sample(setup.receivers, tracing.radiance());
+  setup.direct_samples = tracing.samples();
+}
+
+void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
+  make_eye_receivers(setup, settings, sinks);
+  const Timer timer;
+  if (const auto tracing = start_direct(setup, settings)) {
+    if (!tracing->add(TracedDirectSettings{}.samples, sinks)) throw Cancelled();
+    keep_direct(setup, *tracing);
   }
+  if (setup.traced_below > 0) setup.seconds["traced_direct"] = timer.seconds();
   trace_sharp_lobes(setup, settings, sinks);
 }
 
-namespace {
-// What lights are aimed at: some 16,000 receivers spread over the whole film. Lights thus depend on the view,
-// but neither on the crop nor on the number of pixels and samples.
 transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks& sinks) {
   constexpr double kWanted = 16384;
-  scenedesc::SensorDesc sensor = setup.view.sensor;
-  auto& film = sensor.film;
-  film.crop_width = film.crop_height = film.crop_x = film.crop_y = 0;
-  const double scale = std::sqrt(kWanted / (static_cast<double>(film.width) * film.height));
-  for (int* side : {&film.width, &film.height})
-    *side = std::max(1, static_cast<int>(std::lround(*side * scale)));
+  const world::Camera camera(whole_film(setup.view, kWanted));
   transport::ReceiverSettings rs;
   rs.seed = hash_ids(seed, Stage::pilot, ~0ull);  // places of their own
   rs.spp = 1;
   rs.max_depth = setup.view.max_depth;
   rs.first_hits = false;
-  return transport::trace_receivers(*setup.world, world::Camera(sensor), rs, sinks);
+  return transport::trace_receivers(*setup.world, camera, rs, sinks);
 }
-}  // namespace
 
 namespace {
 // Clamping takes from an entry what belongs to its light's area, which other lights decide; to be given back
@@ -221,8 +237,10 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   ls.max_depth = setup.view.max_depth;
   ls.direct = settings.only != "indirect";
   ls.indirect = settings.only != "direct";
-  const transport::Receivers aim = aim_at(setup, settings.seed, sinks);
-  ls.receivers = &aim;
+  std::unique_ptr<transport::Receivers> aim = std::move(setup.aim);
+  if (!aim && !setup.unaimed)
+    aim = std::make_unique<transport::Receivers>(aim_at(setup, settings.seed, sinks));
+  ls.receivers = aim.get();
   ls.diffuse_only = settings.light_type == "diffuse-point";
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
   setup.held = {};
@@ -258,8 +276,40 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   setup.seconds["matrix"] = matrix_timer.seconds();
 }
 
-const methods::MethodInfo& chosen_method(const RenderSettings& settings) {
-  return methods::find_method(settings.method == "auto" ? "row-column-sampling" : settings.method);
+namespace {
+bool takes_settings(const methods::MethodInfo& info, const std::map<std::string, std::string>& settings) {
+  return std::all_of(settings.begin(), settings.end(), [&](const auto& given) {
+    return std::any_of(info.parameters.begin(), info.parameters.end(),
+                       [&](const methods::Parameter& p) { return p.key == given.first; });
+  });
+}
+}  // namespace
+
+const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::string* why) {
+  std::string because;
+  const methods::MethodInfo* info = nullptr;
+  if (settings.method != "auto") {
+    info = &methods::find_method(settings.method);
+    because = "as asked";
+  } else {
+    const auto& by_default = methods::find_method("slice-cuts");
+    const auto& global = methods::find_method("row-column-sampling");
+    const auto split = std::find_if(settings.aovs.begin(), settings.aovs.end(),
+                                    [](const auto& aov) { return parts_light(aov); });
+    if (split != settings.aovs.end()) {
+      info = &global;
+      because = "the layer '" + *split + "' takes one combination of columns";
+    } else if (!takes_settings(by_default, settings.method_settings) &&
+               takes_settings(global, settings.method_settings)) {
+      info = &global;
+      because = "--set names its parameters";
+    } else {
+      info = &by_default;
+      because = "the default";
+    }
+  }
+  if (why) *why = because;
+  return *info;
 }
 
 std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& settings) {

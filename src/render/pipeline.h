@@ -10,6 +10,7 @@
 #include "lumirank/settings.h"
 #include "methods/method.h"
 #include "render/path_tracer.h"
+#include "render/traced_direct.h"
 #include "scenedesc/scene_desc.h"
 #include "transport/receivers.h"
 #include "transport/scene_matrix.h"
@@ -26,6 +27,8 @@ struct View {
 };
 // Throws InputError for an unknown camera or a crop outside the film.
 View make_view(const scenedesc::SceneDesc& desc, const RenderSettings& settings);
+// The whole film of a view, whatever its crop, with about so many pixels.
+scenedesc::SensorDesc whole_film(const View& view, double pixels);
 
 film::Filter make_filter(const scenedesc::FilterDesc& desc);
 
@@ -40,6 +43,10 @@ struct Setup {
   // Direct light that is traced instead of going through the matrix, one per film sample; empty if none is.
   std::vector<Rgb> traced_direct;
   double traced_below = 0;  // roughness under which receivers are traced
+  int direct_samples = 0;   // of traced direct light, per receiver
+  // Receivers at which lights are aimed, where they are there already; else they are made.
+  std::unique_ptr<transport::Receivers> aim;
+  bool unaimed = false;  // lights are aimed at nothing
   // Indirect light of sharp lobes, one per film sample; such lobes have left the receivers then.
   std::vector<Rgb> traced_indirect;
   // Indirect light from close by, one per film sample (RenderSettings::local_near).
@@ -52,13 +59,31 @@ struct Setup {
 // How receivers are traced directly, see traced_direct.h; the roughness below which `--direct auto` traces.
 double traced_roughness(const RenderSettings& settings);
 
+// Whether some receiver has a lobe with a roughness below this.
+bool some_traced(const transport::Receivers& receivers, float below);
+// The window of the film for which receivers are traced, as ReceiverSettings' crop.
+transport::ReceiverSettings receiver_settings(const View& view, const RenderSettings& settings);
+
+// Receivers with their directly traced light. The first and the last step are also there one by one, for
+// whoever traces that light under a clock.
 void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
+void make_eye_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
+// Nothing if no direct light is traced.
+std::unique_ptr<DirectTracing> start_direct(Setup& setup, const RenderSettings& settings);
+void keep_direct(Setup& setup, const DirectTracing& tracing);
+void trace_sharp_lobes(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
+
+// What lights are aimed at: some 16,000 receivers spread over the whole film. Lights thus depend on the view,
+// but neither on the crop nor on the number of pixels and samples.
+transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks& sinks);
 transport::SceneMatrixSettings matrix_settings(const Setup& setup, const RenderSettings& settings);
 // `count` virtual lights and the matrix over them.
 void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks);
 
-// The method named by the settings ("auto" resolved) and how many lights it wants.
-const methods::MethodInfo& chosen_method(const RenderSettings& settings);
+// The method named by the settings and how many lights it wants. "auto" is slice-cuts; where layers part the
+// light by its source, which takes one combination of columns for all receivers, or where --set names
+// parameters of row-column-sampling, it is that. `why` (may be nullptr) says so.
+const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::string* why = nullptr);
 std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& settings);
 
 // The picture for given row sums: chain weights, directly traced light, emission, reconstruction filter.

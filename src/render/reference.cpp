@@ -68,79 +68,114 @@ double stated_error(const View& view, const Half& a, const Half& b, Wanted wante
 
 }  // namespace
 
+struct PathFilm::Impl {
+  View view;
+  std::uint64_t seed;
+  PathTracer tracer;
+  world::Camera camera;
+  FilterSampler filter;
+  std::size_t pixels;
+  Wanted wanted;
+  Half halves[2];
+  ReferenceResult result;
+
+  Impl(const world::World& world, const View& v, const RenderSettings& settings, const std::string& paths,
+       Clamped held)
+      : view(v),
+        seed(settings.seed),
+        tracer(world, {settings.seed, v.max_depth, parse_paths(paths), held}),
+        camera(v.sensor),
+        filter(make_filter(v.sensor.film.filter)),
+        pixels(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height)),
+        // `--only` is that part alone: emission seen directly belongs to neither.
+        wanted{settings.only == "all", settings.only != "indirect", settings.only != "direct"},
+        halves{Half(pixels), Half(pixels)} {}
+
+  void trace_pixel(std::size_t p, int begin, int end) {
+    const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
+    const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
+    const std::uint64_t id =
+        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
+        static_cast<std::uint64_t>(x);
+    for (int s = begin; s < end; ++s) {
+      SampleStream random(seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
+      const auto at = filter.sample(random.next_2d());
+      const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
+                       static_cast<float>(y) + 0.5f + at.offset.y};
+      const Radiance radiance =
+          tracer.trace(camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
+      if (!is_finite(radiance.total()))
+        throw InternalError("the reference met a value that is not finite; replay pixel " +
+                            std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
+      Half& half = halves[s & 1];
+      half.emission[p].add(radiance.emission * at.weight);
+      half.direct[p].add(radiance.direct * at.weight);
+      half.indirect[p].add(radiance.indirect * at.weight);
+    }
+  }
+};
+
+PathFilm::PathFilm(const world::World& world, const View& view, const RenderSettings& settings,
+                   const std::string& paths, Clamped held)
+    : impl_(std::make_unique<Impl>(world, view, settings, paths, held)) {}
+PathFilm::~PathFilm() = default;
+const ReferenceResult& PathFilm::result() const { return impl_->result; }
+
+bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(double)>& progress) {
+  Impl& m = *impl_;
+  const int begin_path = m.result.spp, end_path = begin_path + paths;
+  std::atomic<std::size_t> finished{0};
+  parallel_for(m.pixels, 256, [&](std::size_t begin, std::size_t end) {
+    if (sinks.cancelled()) return;
+    for (std::size_t p = begin; p < end; ++p) m.trace_pixel(p, begin_path, end_path);
+    const double fraction = static_cast<double>(finished += end - begin) / static_cast<double>(m.pixels);
+    if (progress) progress(fraction);
+  });
+  if (sinks.cancelled()) {
+    // The pass was left half done: its samples are unevenly spread and cannot be used.
+    m.result.interrupted = true;
+    return false;
+  }
+  for (int s = begin_path; s < end_path; ++s) ++m.halves[s & 1].count;
+  const Half* both[] = {&m.halves[0], &m.halves[1]};
+  m.result.emission = mean_image(m.view, both, {true, false, false});
+  m.result.direct = mean_image(m.view, both, {false, true, false});
+  m.result.indirect = mean_image(m.view, both, {false, false, true});
+  m.result.spp = end_path;
+  m.result.error = stated_error(m.view, m.halves[0], m.halves[1], m.wanted);
+  m.result.image = mean_image(m.view, both, m.wanted);
+  return true;
+}
+
 ReferenceResult path_trace(const world::World& world, const View& view, const RenderSettings& settings,
                            const ReferenceSettings& how, const Sinks& sinks,
                            const std::function<void(const film::Image&)>& on_pass, Clamped held) {
-  const PathTracer tracer(world, {settings.seed, view.max_depth, parse_paths(how.paths), held});
-  const world::Camera camera(view.sensor);
-  const FilterSampler filter(make_filter(view.sensor.film.filter));
-  const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-  // `--only` is that part alone: emission seen directly belongs to neither.
-  const bool all = settings.only == "all";
-  const Wanted wanted{all, all || settings.only == "direct", all || settings.only == "indirect"};
+  PathFilm film(world, view, settings, how.paths, held);
   const int limit = how.spp > 0 ? how.spp : (how.time > 0 || how.error > 0 ? 1 << 20 : 64);
-
-  Half halves[2] = {Half(pixels), Half(pixels)};
-  ReferenceResult result;
   const Timer timer;
   int done = 0;
   while (done < limit) {
     // Passes of growing size: the image is whole after each, and the error is not computed too often.
     const int pass = std::min(limit - done, std::clamp(done / 4, 2, 64));
-    std::atomic<std::size_t> finished{0};
-    parallel_for(pixels, 256, [&](std::size_t begin, std::size_t end) {
-      if (sinks.cancelled()) return;
-      for (std::size_t p = begin; p < end; ++p) {
-        const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
-        const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
-        const std::uint64_t id =
-            static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
-            static_cast<std::uint64_t>(x);
-        for (int s = done; s < done + pass; ++s) {
-          SampleStream random(settings.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
-          const auto at = filter.sample(random.next_2d());
-          const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
-                           static_cast<float>(y) + 0.5f + at.offset.y};
-          const Radiance radiance =
-              tracer.trace(camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
-          if (!is_finite(radiance.total()))
-            throw InternalError("the reference met a value that is not finite; replay pixel " +
-                                std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
-          Half& half = halves[s & 1];
-          half.emission[p].add(radiance.emission * at.weight);
-          half.direct[p].add(radiance.direct * at.weight);
-          half.indirect[p].add(radiance.indirect * at.weight);
-        }
-      }
-      const double fraction = static_cast<double>(finished += end - begin) / static_cast<double>(pixels);
+    const bool whole = film.add(pass, sinks, [&](double fraction) {
       double progress = (done + pass * fraction) / limit;
       if (how.time > 0) progress = std::max(progress, timer.seconds() / how.time);
       sinks.report("reference", std::min(1.0, progress));
     });
-    if (sinks.cancelled()) {
-      // The pass was left half done: its samples are unevenly spread and cannot be used.
-      result.interrupted = true;
+    if (!whole) {
       if (done == 0) throw Cancelled();
-      return result;
+      break;
     }
-    for (int s = done; s < done + pass; ++s) ++halves[s & 1].count;
     done += pass;
-    const Half* both[] = {&halves[0], &halves[1]};
-    result.emission = mean_image(view, both, {true, false, false});
-    result.direct = mean_image(view, both, {false, true, false});
-    result.indirect = mean_image(view, both, {false, false, true});
-    result.spp = done;
-    result.error = stated_error(view, halves[0], halves[1], wanted);
-    result.image = mean_image(view, both, wanted);
-    if (on_pass) on_pass(result.image);
-    if (how.error > 0 && result.error <= how.error) break;
+    if (on_pass) on_pass(film.result().image);
+    if (how.error > 0 && film.result().error <= how.error) break;
     // A pass is not begun that would, at the pace so far, end well after the budget.
     if (how.time > 0) {
       const double next = std::clamp(done / 4, 2, 64);
       if (timer.seconds() * (1 + 0.5 * next / done) > how.time) break;
     }
   }
-  return result;
+  return film.result();
 }
 
 }  // namespace lumirank::rendering

@@ -25,6 +25,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   for (const auto& [phase, seconds] : setup.seconds) json["seconds." + phase] = seconds;
   for (const auto& [key, value] : estimate.trace.numbers) json[key] = value;
   for (const auto& [key, value] : estimate.trace.notes) json[key] = value;
+  if (json.contains("error.estimate")) json["error.of"] = "the light that columns carry";
 
   const auto& counters = setup.matrix->counters();
   const double entries =
@@ -48,6 +49,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   json["pixels"] = pixels;
   if (setup.radius_scale > 0) json["virtual_lights.radius_scale"] = setup.radius_scale;
   json["clamp.removed_fraction"] = setup.matrix->clamped_fraction();
+  json["traced_direct.samples"] = setup.direct_samples;
   json["traced_direct.below_roughness"] = setup.traced_direct.empty() ? 0.0 : setup.traced_below;
 
   json["meshes.left_out"] = setup.world->info().meshes_left_out;

@@ -207,8 +207,9 @@ const std::vector<Row>& table() {
     t.push_back(
         number<int>({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
                     &S::threads, 0, 1024));
-    t.push_back(number<double>({"time", "", "0", "0 … 1e7", "s", "time budget for seconds.total; 0: none"},
-                               &S::time, 0, 1e7));
+    t.push_back(number<double>(
+        {"time", "", "0", "0 … 1e7", "s", "time budget for seconds.total, divided among the stages; 0: none"},
+        &S::time, 0, 1e7));
     t.push_back(number<double>({"error", "", "0", "0 … 10", "",
                                 "stop when the estimated relative error is below; 0: the method's default"},
                                &S::error, 0, 10));
@@ -227,9 +228,10 @@ const std::vector<Row>& table() {
     t.push_back(number<double>({"local-near", "", "4", "0 … 1000", "radii",
                                 "with local-paths, of spherical lights: places nearer than this are traced"},
                                &S::local_near, 0, 1000));
-    t.push_back(choice({"rest", "", "skip", "", "",
-                        "paths that columns cannot carry: leave out, or add by path tracing (noisy)"},
-                       &S::rest, {"skip", "trace"}));
+    t.push_back(choice({"rest", "", "auto", "", "",
+                        "paths that columns cannot carry: leave out, add by path tracing (noisy), or add "
+                        "where a pilot finds that they bring more than 0.5 % of the light"},
+                       &S::rest, {"auto", "skip", "trace"}));
     t.push_back(number<int>({"compensate", "", "0", "0 … 1048576", "paths per pixel",
                              "give back what clamping took from indirect light by path tracing (unbiased, "
                              "noisy); 0: do not"},
@@ -266,6 +268,8 @@ const std::vector<Field>& render_fields() {
 
 void set_field(RenderSettings& settings, const std::string& key, const std::string& value) {
   find_row(key).set(settings, value);
+  if (key == "lights") settings.lights_given = true;
+  if (key == "spp") settings.spp_given = true;
 }
 
 std::string get_field(const RenderSettings& settings, const std::string& key) {
@@ -302,6 +306,10 @@ RenderSettings render_settings_from_json(const std::string& text) {
       set_field(settings, key, as_text(key, value));
     }
   }
+  // A report names every setting, asked for or not.
+  const RenderSettings defaults;
+  settings.lights_given = settings.lights != defaults.lights;
+  settings.spp_given = settings.spp != defaults.spp;
   return settings;
 }
 

@@ -1,7 +1,9 @@
 #include "render/traced_direct.h"
 
+#include <algorithm>
+#include <atomic>
+
 #include "base/parallel.h"
-#include "render/light_sampler.h"
 #include "render/sample_stream.h"
 
 namespace lumirank::rendering {
@@ -43,17 +45,16 @@ Met emission_along(const world::World& world, const LightSampler& lights, const 
   return {};
 }
 
-Rgb direct_at(const world::World& world, const LightSampler& lights, const transport::Receivers& receivers,
-              std::size_t i, const TracedDirectSettings& settings) {
+// Adds the samples begin … end − 1 to the sum of those before.
+Rgb add_direct_at(const world::World& world, const LightSampler& lights,
+                  const transport::Receivers& receivers, std::size_t i, const TracedDirectSettings& settings,
+                  int begin, int end, Rgb sum) {
   using scatter::Lobes;
   const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
   const emitters::LitPoint at = lit_point(position, closure, wo);
   const std::uint64_t key = receivers.key(i);
-  const int n = settings.samples;
-  const float inv_n = 1.0f / static_cast<float>(n);
-  Rgb sum{0};
-  for (int k = 0; k < n; ++k) {
+  for (int k = begin; k < end; ++k) {
     // One of the stream's two sets: even numbers only.
     SampleStream random(settings.seed, Stage::traced_direct, key, 2 * static_cast<std::uint64_t>(k));
     const auto [u_light, u_lobe] = random.next_fine();
@@ -75,7 +76,7 @@ Rgb direct_at(const world::World& world, const LightSampler& lights, const trans
         emission_along(world, lights, at, world::World::offset_origin(position, ng, b->wi), b->wi, random);
     if (!is_black(met.radiance)) sum += b->weight * met.radiance * (b->pdf / (b->pdf + met.light_pdf));
   }
-  return sum * inv_n;
+  return sum;
 }
 
 }  // namespace
@@ -85,23 +86,40 @@ bool is_traced(const transport::Receivers& receivers, std::size_t i, float below
   return receivers.closure_at(i).roughness() < below;
 }
 
-std::vector<Rgb> trace_direct(const world::World& world, const transport::Receivers& receivers,
-                              const TracedDirectSettings& settings, const Sinks& sinks) {
-  const LightSampler lights(world);
-  std::vector<Rgb> radiance(receivers.size());
+DirectTracing::DirectTracing(const world::World& world, const transport::Receivers& receivers,
+                             const TracedDirectSettings& settings)
+    : world_(world), receivers_(receivers), settings_(settings), lights_(world), sums_(receivers.size()) {}
+
+bool DirectTracing::add(int samples, const Sinks& sinks) {
   std::atomic<std::size_t> done{0};
   constexpr std::size_t kGrain = 1024;
-  parallel_for(receivers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  const int end_sample = samples_ + samples;
+  parallel_for(receivers_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
     for (std::size_t i = begin; i < end; ++i) {
-      if (settings.max_depth >= 0 && receivers.depth[i] + 1 > settings.max_depth) continue;
-      if (is_traced(receivers, i, settings.below))
-        radiance[i] = direct_at(world, lights, receivers, i, settings);
+      if (settings_.max_depth >= 0 && receivers_.depth[i] + 1 > settings_.max_depth) continue;
+      if (is_traced(receivers_, i, settings_.below))
+        sums_[i] = add_direct_at(world_, lights_, receivers_, i, settings_, samples_, end_sample, sums_[i]);
     }
     sinks.report("traced direct",
-                 static_cast<double>(done += end - begin) / static_cast<double>(receivers.size()));
+                 static_cast<double>(done += end - begin) / static_cast<double>(receivers_.size()));
   });
-  return radiance;
+  samples_ = end_sample;
+  return !sinks.cancelled();
+}
+
+std::vector<Rgb> DirectTracing::radiance() const {
+  std::vector<Rgb> mean(sums_.size());
+  const float inv_n = 1.0f / static_cast<float>(std::max(1, samples_));
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = sums_[i] * inv_n;
+  return mean;
+}
+
+std::vector<Rgb> trace_direct(const world::World& world, const transport::Receivers& receivers,
+                              const TracedDirectSettings& settings, const Sinks& sinks) {
+  DirectTracing tracing(world, receivers, settings);
+  tracing.add(settings.samples, sinks);
+  return tracing.radiance();
 }
 
 }  // namespace lumirank::rendering

@@ -8,6 +8,7 @@
 
 #include "base/rgb.h"
 #include "base/sinks.h"
+#include "render/light_sampler.h"
 #include "transport/receivers.h"
 #include "world/world.h"
 
@@ -20,7 +21,29 @@ struct TracedDirectSettings {
   int max_depth = -1;
 };
 
-// Radiance towards the eye, one per receiver; zero where no lobe is traced.
+// Samples are added in passes; the bits depend on their number alone. World and receivers must outlive it.
+class DirectTracing {
+ public:
+  DirectTracing(const world::World& world, const transport::Receivers& receivers,
+                const TracedDirectSettings& settings);
+
+  // More light samples and as many BSDF samples per receiver. False if it was cancelled: the sums are then of
+  // no use.
+  bool add(int samples, const Sinks& sinks = {});
+  int samples() const { return samples_; }
+  // Radiance towards the eye, one per receiver; zero where no lobe is traced.
+  std::vector<Rgb> radiance() const;
+
+ private:
+  const world::World& world_;
+  const transport::Receivers& receivers_;
+  TracedDirectSettings settings_;
+  LightSampler lights_;
+  std::vector<Rgb> sums_;
+  int samples_ = 0;
+};
+
+// All samples of the settings at once.
 std::vector<Rgb> trace_direct(const world::World& world, const transport::Receivers& receivers,
                               const TracedDirectSettings& settings, const Sinks& sinks = {});
 

@@ -75,7 +75,7 @@ TEST_F(Render, TheReportHasTheStableKeys) {
                             "sampling_rate", "rows", "columns", "virtual_lights", "receivers",
                             "memory.peak_bytes", "parameters", "seed", "version"})
       ASSERT_TRUE(report.contains(key)) << method << " " << key;
-    EXPECT_EQ(report["method"], std::string(method) == "auto" ? "row-column-sampling" : method);
+    EXPECT_EQ(report["method"], std::string(method) == "auto" ? "slice-cuts" : method);
     EXPECT_EQ(report["seed"], 7);
     EXPECT_EQ(report["parameters"]["seed"], "7");
     // Every ray within a closed room meets a wall or the lamp, which reflects nothing and is no receiver.
@@ -89,7 +89,9 @@ TEST_F(Render, TheReportHasTheStableKeys) {
     EXPECT_LE(rays, entries) << "an entry needs one shadow ray, and many need none";
     EXPECT_NEAR(report["rays.per_pixel"].get<double>(), rays / 120, 1e-9 * rays);
     EXPECT_GE(rate, 0);
-    EXPECT_NEAR(rate, entries / (receivers * columns), 1e-9);
+    if (std::string(method) != "auto") {  // which has one of its own, of its reduced matrices
+      EXPECT_NEAR(rate, entries / (receivers * columns), 1e-9);
+    }
     if (std::string(method) == "brute-force") {
       EXPECT_EQ(entries, receivers * columns);
       EXPECT_EQ(report["columns"], columns);
@@ -139,7 +141,7 @@ TEST_F(Render, ReplayRepeatsWhatTheClockDecided) {
                              "60x50", "--time", "0.3", "--report", report, "--preview", folder_ / "p.png"}));
     const Pixels first = read_pixels(file);
     const auto choices = read_json(report)["choices"];
-    EXPECT_TRUE(choices.contains("columns")) << method;
+    EXPECT_TRUE(choices.contains("receivers_per_pixel")) << method;
     const Arguments replay = {"render", scene_, "-o", again, "--replay", report};
     for (const char* threads : {"1", "3"}) {
       EXPECT_SUCCESS(lumirank(replay + Arguments{"--threads", threads, "--report", folder_ / "second.json"}));
@@ -159,7 +161,7 @@ TEST_F(Render, ReplayRepeatsWhatTheClockDecided) {
   EXPECT_SUCCESS(lumirank({"render", scene_, "-o", file, "--method", "brute-force", "--lights", "20000",
                            "--size", "60x50", "--time", "0.3", "--report", report}));
   const Arguments replay = {"render", scene_, "-o", folder_ / "no.exr", "--replay", report};
-  expect_refused(lumirank(replay + Arguments{"--lights", "300"}), "do not fit: 'virtual_lights' was");
+  expect_refused(lumirank(replay + Arguments{"--lights", "300"}), "do not fit: 'lights_asked' was");
   expect_refused(lumirank(replay + Arguments{"--size", "10x10"}), "do not fit: 'receivers' was");
   expect_refused(lumirank(replay + Arguments{"--method", "power-sampling"}),
                  "do not fit: they lack 'method.power-sampling'");

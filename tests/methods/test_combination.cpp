@@ -55,6 +55,11 @@ std::vector<std::string> names() {
   return n;
 }
 
+// A picture is refused before it is made where a layer takes what the method does not have.
+TEST(LocalMethods, EveryMethodSaysWhetherItHasOne) {
+  for (const MethodInfo& m : all_methods()) EXPECT_EQ(m.combination, !kLocal.contains(m.name)) << m.name;
+}
+
 TEST(LocalMethods, CombinationIsLeftEmptyWhereColumnsDifferFromRowToRow) {
   const auto m = matrix::sparse_matrix({600, 900, 1}, 0.3);
   for (const std::string& name : kLocal)

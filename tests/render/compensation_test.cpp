@@ -43,6 +43,7 @@ Scene corner() {
 
 RenderSettings settings_for(const std::string& light_type) {
   RenderSettings settings;
+  settings.rest = "skip";
   settings.only = "indirect";
   settings.method = "brute-force";
   settings.max_depth = 5;

@@ -18,6 +18,7 @@ TEST(Convert, TheConvertedSceneHasTheSamePicture) {
     convert(scene, folder / "out.xml");
     const Scene again = Scene::load(folder / "out.xml", {.defines = {}, .strict = true});
     RenderSettings settings;
+    settings.rest = "skip";
     settings.width = 24, settings.height = 16, settings.spp = 1;
     settings.lights = 300;
     settings.method = "brute-force";
@@ -65,6 +66,7 @@ Shape "bilinearmesh" "point3 P" [ 0 -2 3  2 -2 3  0 2 3  2 2 3 ]
   ASSERT_EQ(warnings.size(), 1u) << warnings.back();
   EXPECT_NE(warnings[0].find("photometric"), std::string::npos) << warnings[0];
   RenderSettings settings;
+  settings.rest = "skip";
   settings.spp = 1, settings.method = "brute-force", settings.max_depth = 2;
   const auto a = render(scene, settings).picture.planes[0].rgb;
   const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
@@ -106,6 +108,7 @@ Shape "bilinearmesh" "point3 P" [ -2 -2 3  2 -2 3  -2 2 3  2 2 3 ]
   ASSERT_EQ(warnings.size(), 2u) << warnings.back();
   EXPECT_NE(warnings[1].find("goniometric"), std::string::npos) << warnings[1];
   RenderSettings settings;
+  settings.rest = "skip";
   settings.spp = 1, settings.method = "brute-force", settings.max_depth = 2, settings.lights = 500;
   const auto a = render(scene, settings).picture.planes[0].rgb;
   const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;

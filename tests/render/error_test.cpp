@@ -40,6 +40,7 @@ std::vector<Rgb> sums_of(const matrix::LightingMatrix& matrix) {
 TEST(StatedError, PartsAreThoseOfTheTrueError) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = settings.height = 64;
   settings.crop[0] = 26, settings.crop[1] = 12, settings.crop[2] = 12, settings.crop[3] = 8;
   settings.spp = 1;
@@ -102,6 +103,7 @@ double number(const json& report, const char* key) { return report.at(key).get<d
 TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = 64, settings.height = 48;
   settings.lights = 10000;
   settings.error = 0.08;
@@ -127,6 +129,7 @@ TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
 TEST(StatedError, OfEveryMethodThatIsAskedForIt) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = 32, settings.height = 24;
   settings.lights = 3000;
   settings.error = 0.3;
@@ -154,7 +157,9 @@ TEST(StatedError, OfEveryMethodThatIsAskedForIt) {
 TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = 32, settings.height = 24;
+  settings.method = "row-column-sampling";
   settings.lights = 300;
   settings.error = 0.04;
   std::vector<std::string> warnings;
@@ -176,6 +181,7 @@ TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
 TEST(StatedError, MethodsThatDoNotAimAtItSaySo) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = 16, settings.height = 12;
   settings.lights = 300;
   std::vector<std::string> warnings;

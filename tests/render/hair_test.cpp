@@ -55,6 +55,7 @@ std::string spot(const char* origin, const char* target, int cutoff) {
 
 RenderSettings unclamped(const char* only) {
   RenderSettings settings;
+  settings.rest = "skip";
   settings.only = only;
   settings.max_depth = 3;
   settings.method = "brute-force";
@@ -175,6 +176,7 @@ TEST(Hair, RadianceOfOneThreadIsThatOfTheFormula) {
       "name=\"to_world\"><scale value=\"0.2\"/><rotate x=\"1\" angle=\"90\"/><translate "
       "y=\"5\"/></transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"100\"/></emitter></shape>");
   RenderSettings settings;
+  settings.rest = "skip";
   settings.method = "brute-force";
   settings.lights = 64;
   const double expected = 0.8 / (3.14159265 * 3.14159265) * 100 * 0.16 / 25;

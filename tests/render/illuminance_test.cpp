@@ -26,6 +26,7 @@ std::vector<float> lux_of(const Picture& picture) {
 
 RenderSettings settings_for(const std::string& method) {
   RenderSettings s;
+  s.rest = "skip";
   s.method = method;
   s.lights = 64;
   s.aovs = {"illuminance"};

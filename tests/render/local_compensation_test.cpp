@@ -39,6 +39,7 @@ Scene corner(const std::string& floor, const std::string& target) {
 
 RenderSettings brute_force(const std::string& light_type) {
   RenderSettings settings;
+  settings.rest = "skip";
   settings.method = "brute-force";
   settings.max_depth = 5;
   settings.lights = 800;

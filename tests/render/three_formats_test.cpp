@@ -157,6 +157,7 @@ std::vector<float> picture(const std::string& file, std::uint64_t seed) {
   LoadOptions strict;
   strict.strict = true;  // nothing is replaced or left out
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = kWidth, settings.height = kHeight;
   settings.max_depth = 5;
   settings.seed = seed;

@@ -26,6 +26,7 @@ Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
 void expect_equal_means(const char* only) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = settings.height = 64;
   settings.crop[0] = 26, settings.crop[1] = 12, settings.crop[2] = 12, settings.crop[3] = 8;
   settings.only = only;
@@ -64,6 +65,7 @@ TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
       "6, 7\"/>"
       "</emitter></shape>");
   RenderSettings settings;
+  settings.rest = "skip";
   settings.only = "direct";
   settings.method = "brute-force";
   settings.clamp = 0;
@@ -96,6 +98,7 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
   // unbiased by construction. The lights stay the same; what varies is the method's own choices.
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = 32, settings.height = 32;
   settings.lights = 600;
   settings.spp = 1;
@@ -137,6 +140,7 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
 TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
   const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/interior.xml");
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = 96, settings.height = 64;
   settings.lights = 4000;
   for (const char* method : {"brute-force", "instant-radiosity", "power-sampling", "row-column-sampling"}) {
@@ -158,6 +162,7 @@ TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
 TEST(Determinism, TheReferenceToo) {
   const Scene scene = box();
   RenderSettings settings;
+  settings.rest = "skip";
   settings.width = settings.height = 32;
   ReferenceSettings how;
   how.spp = 8;

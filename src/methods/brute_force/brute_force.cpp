@@ -80,7 +80,9 @@ MethodInfo brute_force_info() {
             read_settings("brute-force", kFields, settings);
             return std::make_unique<BruteForce>();
           },
-          [](const SettingsMap&) -> std::size_t { return 0; }};
+          [](const SettingsMap&) -> std::size_t { return 0; },
+          "",
+          true};
 }
 
 }  // namespace lumirank::methods

@@ -35,7 +35,9 @@ MethodInfo instant_radiosity_info() {
             read_settings(name, kFields, settings);
             return std::make_unique<InstantRadiosity>();
           },
-          [=](const SettingsMap& settings) { return read_settings(name, kFields, settings).lights; }};
+          [=](const SettingsMap& settings) { return read_settings(name, kFields, settings).lights; },
+          "",
+          true};
 }
 
 }  // namespace lumirank::methods

@@ -137,8 +137,8 @@ class PowerSampling final : public Method {
 }  // namespace
 
 MethodInfo power_sampling_info() {
-  return method_info<PowerSampling>({"power-sampling", "Draws columns in proportion to their lights' power."},
-                                    kFields);
+  return method_info<PowerSampling>(
+      {"power-sampling", "Draws columns in proportion to their lights' power.", "", "", true}, kFields);
 }
 
 }  // namespace lumirank::methods

@@ -1,0 +1,79 @@
+#include "render/time_pilot.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/timer.h"
+#include "film/filter.h"
+#include "render/traced_direct.h"
+
+namespace lumirank::rendering {
+namespace {
+
+// So many lights and columns are tried: together less than a tenth of a second on ordinary scenes. Two
+// numbers of lights, because some of their time is the same for any number.
+constexpr std::size_t kFewLights = 1024, kPilotLights = 8192, kPilotColumns = 16;
+
+double direct_seconds(const Setup& pilot, const RenderSettings& settings, const Sinks& sinks) {
+  TracedDirectSettings ts;
+  ts.seed = settings.seed;
+  ts.below = static_cast<float>(pilot.traced_below);
+  ts.max_depth = pilot.view.max_depth;
+  if (!some_traced(pilot.receivers, ts.below)) return 0;
+  DirectTracing tracing(*pilot.world, pilot.receivers, ts);
+  const Timer timer;
+  tracing.add(1, sinks);
+  return timer.seconds();
+}
+
+double column_seconds(const Setup& pilot, const Sinks& sinks) {
+  const std::size_t columns = pilot.matrix->columns();
+  if (columns == 0 || pilot.matrix->rows() == 0) return 0;
+  std::vector<matrix::ScaledColumn> few;
+  for (std::uint64_t k = 0; k < kPilotColumns; ++k)
+    few.push_back({static_cast<matrix::Index>(Rng(1, Stage::pilot, k).next_below(columns)), Rgb(1)});
+  std::vector<Rgb> sums(pilot.matrix->rows());
+  const Timer timer;
+  pilot.matrix->accumulate(few, sums, sinks);
+  return timer.seconds() / static_cast<double>(kPilotColumns);
+}
+
+}  // namespace
+
+TimeCosts measure_costs(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
+  TimeCosts costs;
+  const Timer eye_timer;
+  setup.aim = std::make_unique<transport::Receivers>(aim_at(setup, settings.seed, sinks));
+  costs.receiver = eye_timer.seconds();
+  const auto samples = static_cast<double>(setup.aim->samples());
+
+  Setup pilot;
+  pilot.world = setup.world, pilot.view = setup.view;
+  pilot.receivers = *setup.aim;
+  pilot.traced_below = traced_roughness(settings);
+  if (pilot.traced_below > 0) costs.direct = direct_seconds(pilot, settings, sinks);
+  // Without aim: to learn where lights help takes as long for few as for many, and cannot be saved.
+  RenderSettings plain = settings;
+  plain.local_paths = 0;
+  pilot.unaimed = true;
+  const Timer few_timer;
+  make_matrix(pilot, plain, kFewLights, sinks);
+  const double few = few_timer.seconds();
+  const Timer light_timer;
+  make_matrix(pilot, plain, kPilotLights, sinks);
+  // On a busy machine the smaller number can take longer: then as if a quarter of the time went by number.
+  const double many = light_timer.seconds();
+  costs.light = std::max(many - few, 0.25 * many) / static_cast<double>(kPilotLights - kFewLights);
+  costs.column = column_seconds(pilot, sinks);
+  const Timer film_timer;
+  to_picture(film::splat(pilot.receivers.width, pilot.receivers.height,
+                         make_filter(setup.view.sensor.film.filter), pilot.receivers.film,
+                         sample_values(pilot, std::vector<Rgb>(pilot.receivers.size()), {}), {0, 0}));
+  costs.develop = film_timer.seconds();
+  for (double* seconds : {&costs.receiver, &costs.direct, &costs.column, &costs.develop}) *seconds /= samples;
+  if (sinks.cancelled()) throw Cancelled();
+  return costs;
+}
+
+}  // namespace lumirank::rendering

@@ -1,0 +1,13 @@
+// What the stages of a render cost in this scene on this machine, by trying each on a small part.
+#pragma once
+
+#include "render/pipeline.h"
+#include "render/time_plan.h"
+
+namespace lumirank::rendering {
+
+// Of eye rays, traced direct light, columns, lights and film; `passed` and `pixels` are the caller's. Keeps
+// the receivers at which lights are aimed in `setup`, which needs them again.
+TimeCosts measure_costs(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
+
+}  // namespace lumirank::rendering

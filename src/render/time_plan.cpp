@@ -1,0 +1,101 @@
+#include "render/time_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lumirank::rendering {
+namespace {
+
+// Shares of what is left after building. The method gets what the others leave, about half: its sums are the
+// picture. Receivers and lights are a means to it: beyond a fifth each, fewer of them cost the picture less
+// than the columns that their time buys. Traced light is noise next to the method's error where its share is
+// a fifth too, and it gets what is left over at the end besides.
+constexpr double kReceiverShare = 0.2, kLightShare = 0.2, kDirectShare = 0.2, kRestShare = 0.2,
+                 kFilmShare = 0.15, kMethodShare = 0.4;
+// Fewer receivers per pixel are better than sums over fewer columns than this (a tenth of what slice-cuts
+// ends with by default; with less, whole shadows are missing) ...
+constexpr double kLeastColumns = 50;
+// ... or than direct light of fewer samples, whose noise four receivers of one sample have as well.
+constexpr double kLeastDirect = 4;
+// With fewer lights one sees each of them.
+constexpr std::size_t kFewestLights = 2000;
+
+// Two significant digits, rounded up.
+double planned_round(double seconds) {
+  if (!(seconds > 0)) return 0;
+  const double step = std::pow(10.0, std::floor(std::log10(seconds)) - 1);
+  return std::ceil(seconds / step * (1 - 1e-12)) * step;
+}
+
+std::string planned_number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+// Seconds after building that so many receivers per pixel ask for.
+double wanted_for_receivers(const TimeCosts& costs, int spp, int layers) {
+  const double samples = costs.pixels * spp;
+  return samples *
+         std::max({costs.receiver / kReceiverShare, costs.develop * (1 + layers) / kFilmShare,
+                   kLeastDirect * costs.direct / kDirectShare, kLeastColumns * costs.column / kMethodShare});
+}
+
+std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, const TimePlan& plan,
+                          double left) {
+  std::string lacks;
+  const auto add = [&](const std::string& text) { lacks += (lacks.empty() ? "" : ", ") + text; };
+  if (plan.spp < wishes.spp)
+    add(std::to_string(plan.spp) + " instead of " + std::to_string(wishes.spp) + " receivers per pixel");
+  else if (wishes.spp_given && wanted_for_receivers(costs, wishes.spp, wishes.layers) > left)
+    add("--spp " + std::to_string(wishes.spp) + " takes more than its part");
+  if (plan.lights < wishes.lights / 2)  // as many again are hardly seen
+    add(std::to_string(plan.lights) + " instead of " + std::to_string(wishes.lights) + " virtual lights");
+  else if (wishes.lights_given && static_cast<double>(wishes.lights) * costs.light > kLightShare * left)
+    add("--lights " + std::to_string(wishes.lights) + " take more than their part");
+  const double samples = costs.pixels * plan.spp;
+  if (costs.direct > 0 && plan.direct_seconds < kLeastDirect * samples * costs.direct * (1 - 1e-9))
+    add("fewer than " + planned_number(kLeastDirect) + " samples of traced direct light");
+  if (lacks.empty() && !plan.build_alone) return {};
+  const std::string budget = planned_number(wishes.budget) + " s";
+  std::string text = plan.build_alone ? "building the scene took " + planned_number(costs.passed) +
+                                            " s, and the budget of " + budget + " is over"
+                                      : "the budget of " + budget + " is short for this view";
+  if (!lacks.empty()) text += ": " + lacks;
+  return text + "; about " + planned_number(plan.enough) + " s would do";
+}
+
+}  // namespace
+
+double stage_seconds(double planned, double left) {
+  constexpr double kMostOfRest = 0.25;
+  return std::clamp(planned, 0.0, std::max(0.0, kMostOfRest * left));
+}
+
+TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
+  TimePlan plan;
+  const double left = std::max(0.0, kTimeAim * wishes.budget - costs.passed);
+  plan.build_alone = !(left > 0);
+  plan.spp = wishes.spp;
+  if (!wishes.spp_given)
+    while (plan.spp > 1 && wanted_for_receivers(costs, plan.spp, wishes.layers) > left) --plan.spp;
+  plan.lights = wishes.lights;
+  if (!wishes.lights_given && static_cast<double>(wishes.lights) * costs.light > kLightShare * left) {
+    const double fitting = kLightShare * left / costs.light;
+    plan.lights = std::min(wishes.lights, std::max(kFewestLights, static_cast<std::size_t>(fitting)));
+  }
+  const double samples = costs.pixels * plan.spp;
+  // Their passes end earlier where they have as many samples as were wished for.
+  plan.direct_seconds = costs.direct > 0 ? kDirectShare * left : 0;
+  plan.rest_seconds = wishes.rest_paths > 0 ? kRestShare * left : 0;
+  plan.film_seconds = samples * costs.develop * (1 + wishes.layers);
+  plan.enough = planned_round(
+      (costs.passed + std::max(wanted_for_receivers(costs, wishes.spp, wishes.layers),
+                               static_cast<double>(wishes.lights) * costs.light / kLightShare)) /
+      kTimeAim);
+  plan.shortage = shortage_text(wishes, costs, plan, left);
+  return plan;
+}
+
+}  // namespace lumirank::rendering
