@@ -6,13 +6,12 @@ cd "$(dirname "$0")/.."
 jobs=${1:-$(scripts/jobs.sh)}
 step() { printf '\n== %s (after %d s)\n' "$*" "$SECONDS"; }
 quiet_build() { cmake --preset "$1" > /dev/null && cmake --build --preset "$1" -j "$jobs" "${@:2}" -- --quiet; }
-# sanitized PRESET ROOM...: the rooms' tests in that build; all output if one fails, else the summary.
+# sanitized PRESET ROOM...: the rooms' tests in that build, each program in some processes; all output if one fails.
 sanitized() {
-  local preset=$1 log=build/$1/tests.log; shift
-  quiet_build "$preset" $(printf -- '-t test_%s ' "$@")
-  local rooms; rooms=$(IFS='|'; echo "^($*)$")
-  ctest --test-dir "build/$preset" -L "$rooms" -j "$jobs" --output-on-failure --no-tests=error > "$log" 2>&1 || { cat "$log"; return 1; }
-  grep "tests passed" "$log"
+  local preset=$1 shards=4; shift
+  for room in "$@"; do
+    for shard in $(seq 0 $((shards - 1))); do echo "$room $shard"; done
+  done | xargs -P "$jobs" -L 1 scripts/test-shard.sh "build/$preset" "$shards"
 }
 
 step "Formatting"
@@ -27,24 +26,27 @@ python3 cmake/check_layers.py
 step "Build, warnings are errors"
 quiet_build ci
 
-# Of clang-tidy only the rooms without heavy headers, to keep this short; scripts/tidy.sh build/release does all.
-step "clang-tidy on the algebra"
-mapfile -t algebra < <(git ls-files 'src/base/*.cpp' 'src/linalg/*.cpp' 'src/matrix/*.cpp' 'src/methods/*.cpp')
-JOBS=$jobs scripts/tidy.sh build/release "${algebra[@]}"
-
-step "Fuzz targets, briefly"
-quiet_build fuzz -t fuzzers
-scripts/fuzz.sh build/fuzz 10
+# Over the unity build's sources, which parse what a room's files share once; scripts/tidy.sh FILE... does single files.
+step "clang-tidy"
+JOBS=$jobs scripts/tidy.sh build/release
 
 # OpenBLAS keeps to one thread: its own threads are not instrumented.
 export OPENBLAS_NUM_THREADS=1
 export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
 # Neither render nor cli: their statistical tests take minutes there, over code that the other rooms' tests reach.
-step "The rooms' tests under the address and undefined-behaviour sanitizers"
-sanitized asan base linalg matrix methods scenedesc film scatter emitters geometry world transport
+checked=(transport methods scenedesc scatter world linalg geometry emitters film matrix base)
+step "Build with the address and undefined-behaviour sanitizers"
+quiet_build asan -t fuzzers $(printf -- '-t test_%s ' "${checked[@]}")
+step "The rooms' tests under these sanitizers"
+sanitized asan "${checked[@]}"
+step "Fuzz targets, briefly"
+scripts/fuzz.sh build/asan 10 "$jobs"
+threaded=(transport methods world geometry base)
+step "Build with the thread sanitizer"
+quiet_build tsan $(printf -- '-t test_%s ' "${threaded[@]}")
 step "Threaded tests under the thread sanitizer"
-sanitized tsan base methods geometry world transport
+sanitized tsan "${threaded[@]}"
 unset OPENBLAS_NUM_THREADS
 
 step "All tests"

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""What a person gets who brings a scene, gives a time and takes every default: seconds asked and taken, stated and true error.
+
+    bench/strangers/asked_and_taken.py OUT scene.xml [scene.pbrt …] [--times 3 8 20] [--size 320x180] [--program PATH]
+                                       [--reference-time 60] [--options "--rest skip"]
+
+References are path traced once and kept in OUT/references; a picture's true error is against that reference, so it holds the
+reference's own (also in the table). OUT/table.md has a line per scene and time; OUT/NAME-Ts.png are the pictures, to be looked at.
+The seconds are the report's seconds.total, everything from the loaded scene on, without writing files.
+"""
+import argparse
+import json
+import pathlib
+import shlex
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def run(command):
+    print("$", shlex.join(map(str, command)), flush=True)
+    return subprocess.run([str(c) for c in command], capture_output=True, text=True)
+
+
+def name_of(scene):
+    """Folder and file, so that several files of one folder differ."""
+    return f"{scene.parent.name}-{scene.stem}" if scene.stem != "scene" else scene.parent.name
+
+
+def reference(args, scene):
+    image = args.out / "references" / (name_of(scene) + ".exr")
+    report = image.with_suffix(".json")
+    if not report.exists():
+        image.parent.mkdir(parents=True, exist_ok=True)
+        done = run([args.program, "reference", scene, "-o", image, "-o", image.with_suffix(".png"), "--tonemap", "agx", "--time", args.reference_time,
+                    "--size", args.size, "--report", report, "--quiet"])
+        if done.returncode:
+            return None, done.stderr.strip()[-300:]
+    return image, json.loads(report.read_text()).get("error.estimate", float("nan"))
+
+
+def measure(args, scene, seconds):
+    base = args.out / f"{name_of(scene)}-{seconds:g}s"
+    image, report = base.with_suffix(".exr"), base.with_suffix(".json")
+    done = run([args.program, "render", scene, "-o", image, "-o", base.with_suffix(".png"), "--tonemap", "agx", "--time", seconds, "--size", args.size,
+                "--report", report, *shlex.split(args.options)])
+    base.with_suffix(".txt").write_text(done.stderr)
+    if done.returncode:
+        return None
+    return image, json.loads(report.read_text())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("scenes", type=pathlib.Path, nargs="+")
+    parser.add_argument("--times", type=float, nargs="+", default=[3, 8, 20])
+    parser.add_argument("--size", default="320x180")
+    parser.add_argument("--reference-time", type=float, default=60)
+    parser.add_argument("--options", default="")
+    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/release/lumirank")
+    args = parser.parse_args()
+    args.out.mkdir(parents=True, exist_ok=True)
+    head = "| scene | asked | taken | ratio | stated error | true L1 | bias | reference's own | method |\n|" + "---|" * 9 + "\n"
+    table = args.out / "table.md"
+    table.write_text(head)
+    for scene in args.scenes:
+        truth, own = reference(args, scene.resolve())
+        for seconds in args.times:
+            got = measure(args, scene.resolve(), seconds)
+            if got is None or truth is None:
+                line = f"| {name_of(scene)} | {seconds:g} | failed: {own if truth is None else 'see its .txt'} |" + " |" * 6
+            else:
+                image, report = got
+                error = json.loads(run([args.program, "error", image, truth]).stdout)
+                stated = report.get("error.estimate")
+                taken = report["seconds.total"]
+                said = "—" if stated is None else f"{100 * stated:.1f} %"
+                line = (f"| {name_of(scene)} | {seconds:g} | {taken:.2f} | {taken / seconds:.2f} | {said} | {100 * error['relative_l1']:.1f} % | "
+                        f"{100 * error['bias']:+.1f} % | {100 * own:.1f} % | {report['method']} |")
+            with table.open("a") as out:
+                out.write(line + "\n")
+            print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
