@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/timer.h"
+#include "render/sound_pixels.h"
 #include "render/traced_direct.h"
 #include "render/traced_indirect.h"
 #include "scenedesc/film_size.h"
@@ -127,7 +128,7 @@ void trace_sharp_lobes(Setup& setup, const RenderSettings& settings, const Sinks
 
 void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
   const Timer timer;
-  const world::Camera camera(setup.view.sensor);
+  const world::Camera camera(setup.view.sensor, setup.world->units());
   transport::ReceiverSettings rs;
   rs.seed = settings.seed;
   rs.spp = settings.spp;
@@ -176,7 +177,7 @@ transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks&
   rs.spp = 1;
   rs.max_depth = setup.view.max_depth;
   rs.first_hits = false;
-  return transport::trace_receivers(*setup.world, world::Camera(sensor), rs, sinks);
+  return transport::trace_receivers(*setup.world, world::Camera(sensor, setup.world->units()), rs, sinks);
 }
 }  // namespace
 
@@ -288,6 +289,7 @@ film::Image develop(const Setup& setup, std::span<const Rgb> values) {
 }
 
 Picture to_picture(const film::Image& image) {
+  check_pixels(image);
   Picture picture;
   picture.width = image.width, picture.height = image.height;
   picture.planes.emplace_back();

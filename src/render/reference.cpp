@@ -72,7 +72,7 @@ ReferenceResult path_trace(const world::World& world, const View& view, const Re
                            const ReferenceSettings& how, const Sinks& sinks,
                            const std::function<void(const film::Image&)>& on_pass, Clamped held) {
   const PathTracer tracer(world, {settings.seed, view.max_depth, parse_paths(how.paths), held});
-  const world::Camera camera(view.sensor);
+  const world::Camera camera(view.sensor, world.units());
   const FilterSampler filter(make_filter(view.sensor.film.filter));
   const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   // `--only` is that part alone: emission seen directly belongs to neither.

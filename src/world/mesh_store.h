@@ -25,23 +25,26 @@ class MeshStore {
 
   std::size_t size() const { return sources_.size(); }
   const geometry::TriangleMesh& mesh(int index) const { return meshes_[static_cast<std::size_t>(index)]; }
+  // What its positions are relative to.
+  const Vec3d& origin(int index) const { return origins_[static_cast<std::size_t>(index)]; }
   geometry::TriangleMesh take(int index) { return std::move(meshes_[static_cast<std::size_t>(index)]); }
 
  private:
   // Kind of shape, its file and options, its numbers, whether it shines, the mesh that the reader holds:
   // equal keys are the same mesh.
-  using Key = std::tuple<std::size_t, std::string, std::vector<float>, bool, const void*>;
+  using Key = std::tuple<std::size_t, std::string, std::vector<double>, bool, const void*>;
   struct Source {
     const scenedesc::ShapeDesc* shape;
     bool shines;
     std::vector<std::string> left_out;
     std::vector<scenedesc::MeshData::Mended> mended;
   };
-  geometry::TriangleMesh make(Source& source) const;
+  geometry::TriangleMesh make(Source& source, Vec3d& origin) const;
 
   std::map<Key, int> index_;
   std::vector<Source> sources_;
   std::vector<geometry::TriangleMesh> meshes_;
+  std::vector<Vec3d> origins_;
   std::size_t shining_spheres_ = 0;
 };
 

@@ -74,7 +74,7 @@ CurvesDesc curves(Reader& reader, Plugin& p, const Transform& to_world) {
   if (p.type() != "hair") return out;
   // World units, whatever to_world does to the file's points.
   out.file_radius = p.positive("radius", 0.025f) /
-                    static_cast<float>(std::cbrt(std::max(1e-30, std::abs(to_world.determinant3()))));
+                    static_cast<float>(std::cbrt(std::max(1e-300, std::abs(to_world.determinant3()))));
   // Segments that hardly bend are merged there: no picture shows it.
   p.ignore({"angle_threshold"});
   if (const float reduction = share(p, "reduction", 0); reduction > 0)
