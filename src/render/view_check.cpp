@@ -1,5 +1,6 @@
 #include "render/view_check.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace lumirank::rendering {
@@ -11,6 +12,35 @@ std::string shortly(float value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", static_cast<double>(value));
   return text;
+}
+
+// Where the scene's box lies along the camera's axis, in the units of the clipping planes.
+struct Depths {
+  double least = kInfinity, most = -kInfinity;
+};
+Depths depths(const world::World& world, const View& view) {
+  Depths out;
+  const auto to_camera = world.units().to_world(view.sensor.to_world).inverse();
+  if (!to_camera) return out;
+  const Bounds3f& box = world.bounds();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3f p{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                  corner & 4 ? box.hi.z : box.lo.z};
+    const double z = to_camera->place(p).z;
+    out.least = std::min(out.least, z), out.most = std::max(out.most, z);
+  }
+  return out;
+}
+
+std::string cut_off(const View& view, bool near, bool far) {
+  const std::string which = near && far ? "clipping planes"
+                            : near      ? "near clipping plane"
+                                        : "far clipping plane";
+  return "the camera sees nothing: all that would be in its view is cut off by the " + which +
+         " (near_clip " + shortly(view.sensor.near_clip) + ", far_clip " + shortly(view.sensor.far_clip) +
+         (near && far ? "); widen them"
+          : near      ? "); lower near_clip"
+                      : "); raise far_clip");
 }
 
 }  // namespace
@@ -36,18 +66,10 @@ std::string empty_view(const world::World& world, const View& view) {
       ray.t_max = kInfinity;
       ++(world.rays().intersect(ray) ? beyond : before);
     }
-  const std::string planes =
-      "(near_clip " + shortly(view.sensor.near_clip) + ", far_clip " + shortly(view.sensor.far_clip) + ")";
-  if (before + beyond > 0) {
-    const char* which = beyond == 0   ? "the near clipping plane"
-                        : before == 0 ? "the far clipping plane"
-                                      : "the clipping planes";
-    return std::string("the camera sees nothing: all that is in its view is cut off by ") + which + " " +
-           planes +
-           (beyond == 0   ? "; lower near_clip"
-            : before == 0 ? "; raise far_clip"
-                          : "; widen them");
-  }
+  if (before + beyond > 0) return cut_off(view, before > 0, beyond > 0);
+  const Depths all = depths(world, view);
+  if (all.least > view.sensor.far_clip) return cut_off(view, false, true);
+  if (all.most > 0 && all.most < view.sensor.near_clip) return cut_off(view, true, false);
   if (world.environment() >= 0) return {};
   return "none of " + std::to_string(kGrid * kGrid) +
          " rays spread over the picture meets a surface: it may show nothing; turn the camera towards the "
