@@ -114,7 +114,7 @@ std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, No
   return out;
 }
 
-Bounds3d bounds_of(const std::vector<Placed>& placed, const MeshStore& store) {
+Units units_for(const std::vector<Placed>& placed, const MeshStore& store) {
   std::vector<Bounds3f> boxes(store.size());
   parallel_for(boxes.size(), 1, [&](std::size_t b, std::size_t e) {
     for (std::size_t s = b; s < e; ++s) {
@@ -124,16 +124,20 @@ Bounds3d bounds_of(const std::vector<Placed>& placed, const MeshStore& store) {
     }
   });
   Bounds3d all;
+  double smallest = kInfinity;
   for (const Placed& p : placed) {
     const Bounds3f& box = boxes[static_cast<std::size_t>(p.source)];
     if (box.empty()) continue;
+    Bounds3d own;
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3f local{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
                         corner & 4 ? box.hi.z : box.lo.z};
-      all.extend(p.to_world.place(local + store.origin(p.source)));
+      own.extend(p.to_world.place(local + store.origin(p.source)));
     }
+    all.extend(own.lo), all.extend(own.hi);
+    if (own.radius() > 0) smallest = std::min(smallest, own.radius());
   }
-  return all;
+  return Units(all, smallest);
 }
 
 Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& units, Notes& notes) {

@@ -24,8 +24,8 @@ struct Placed {
 // One per shape and per member of an instance's group, in the order of the scene.
 std::vector<Placed> place_shapes(const scenedesc::SceneDesc& desc, MeshStore& store, Notes& notes);
 
-// A box that holds everything placed, in the file's units. The meshes must have been loaded.
-Bounds3d bounds_of(const std::vector<Placed>& placed, const MeshStore& store);
+// The units for everything placed. The meshes must have been loaded.
+Units units_for(const std::vector<Placed>& placed, const MeshStore& store);
 
 // What the ray scene is made of. Meshes that are placed once or shine are moved into world space for good;
 // the others are shared by their placements (whether the tracer then flattens copies is its own affair).

@@ -18,11 +18,12 @@ class Units {
   //   that of the centred scene: 5·10⁻⁴ of the radius. (What was measured far away: +8 % light at 5,800
   //   radii.)
   // - A radius below 2⁻⁵ is made 1 to 2: under 0.02 that step no longer shrinks with the scene.
-  // - A radius above 2¹⁶ is made 2¹⁵ to 2¹⁶, so that fourth powers of lengths, with powers of lights beside
-  //   them, stay far within floats. No smaller: a wide ground may carry something small.
+  // - A radius above 2²⁴ is made 2²³ to 2²⁴, so that fourth powers of lengths, with powers of lights beside
+  //   them, stay within floats; but no further than keeps the radius of the smallest shape above 1: a few
+  //   things far away from one another must not make all of them tiny.
   // Scales are powers of two, which keep bits.
-  static constexpr double kFar = 8, kLeastRadius = 0x1p-5, kGreatestRadius = 0x1p16;
-  explicit Units(const Bounds3d& box);
+  static constexpr double kFar = 8, kLeastRadius = 0x1p-5, kGreatestRadius = 0x1p24;
+  explicit Units(const Bounds3d& box, double smallest_shape = kInfinity);
 
   bool are_the_files() const { return scale_ == 1 && origin_ == Vec3d{}; }
   double scale() const { return scale_; }  // the world's lengths over the file's

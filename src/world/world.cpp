@@ -86,7 +86,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   Impl& w = *impl;
 
   const std::size_t meshes = store.size();
-  w.units = Units(bounds_of(placed, store));
+  w.units = units_for(placed, store);
   Geometry geometry = assemble(std::move(placed), store, w.units, notes);
   if (geometry.placements.empty())
     throw InputError(SourceLocation{desc.source_file, 0}, "no shape of the scene has any area",

@@ -20,7 +20,7 @@ Bounds3d box(Vec3d center, double half) {
 }
 
 TEST(Units, OrdinaryScenesKeepTheirs) {
-  for (const double half : {0.02, 1.0, 100.0, 3e4})
+  for (const double half : {0.02, 1.0, 100.0, 3e6})
     for (const double away : {0.0, 2.0, 13.0}) {  // in halves: the radius is √3 of them
       EXPECT_TRUE(Units(box({away * half, 0, -half}, half)).are_the_files()) << half << " " << away;
     }
@@ -32,12 +32,26 @@ TEST(Units, FarTinyAndHugeScenesAreMovedAndScaledByRoundNumbers) {
   EXPECT_EQ(far.scale(), 1);
   EXPECT_EQ(far.origin(), Vec3d(4e5, -5e6, 0));  // multiples of 2; along z it is near
   EXPECT_EQ(far.to_world(Vec3d{400001.25, -4999999.5, 3}), (Vec3f{1.25f, 0.5f, 3}));
-  for (const double half : {1e-3, 1e-9, 1e-30, 1e6, 1e12, 1e30}) {
+  for (const double half : {1e-3, 1e-9, 1e-30, 1e9, 1e12, 1e30}) {
     const Units units(box({0, 0, 0}, half));
     EXPECT_EQ(units.scale(), std::exp2(std::round(std::log2(units.scale()))));
     const double radius = units.scale() * half * std::sqrt(3.0);
-    const double least = half < 1 ? 1 : 0x1p15;
+    const double least = half < 1 ? 1 : 0x1p23;
     EXPECT_TRUE(radius >= least && radius <= 2 * least) << half;
+  }
+}
+
+// Something huge or far away leaves small things beside it as they are.
+TEST(Units, OneStrayShapeDoesNotShrinkTheOthers) {
+  for (const double away : {1e9, 1e15, 1e30}) {
+    sd::SceneDesc desc = empty_scene();
+    add_shape(desc, sd::CubeDesc{});
+    add_shape(desc, sd::CubeDesc{}, Transform::translate(away, 0, 0) * Transform::scale(0.1 * away, 1, 1));
+    const world::World w = build(desc);
+    EXPECT_TRUE(w.units().are_the_files()) << away;
+    const auto hit = w.intersect(ray({0.25f, 0.5f, 9}, {0, 0, -1}));
+    ASSERT_TRUE(hit) << away;
+    EXPECT_EQ(hit->hit.t, 8);
   }
 }
 
