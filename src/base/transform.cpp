@@ -41,8 +41,16 @@ Transform Transform::rotate(double x, double y, double z, double degrees) {
   return t;
 }
 
-Transform Transform::look_at(Vec3f origin, Vec3f target, Vec3f up) {
-  const Vec3f dir = normalize(target - origin);
+Transform Transform::look_at(Vec3d origin, Vec3d target, Vec3f up) {
+  const Vec3d way = target - origin;
+  // Scaled first: the squares of tiny and huge numbers leave the range of float.
+  const double largest = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+  const bool extreme = !(largest > 0x1p-40 && largest < 0x1p40) && largest > 0 && std::isfinite(largest);
+  return aimed(origin, static_cast<Vec3f>(extreme ? way * (1 / largest) : way), up);
+}
+
+Transform Transform::aimed(Vec3d origin, Vec3f direction, Vec3f up) {
+  const Vec3f dir = normalize(direction);
   const Vec3f left = normalize(cross(up, dir));
   const Vec3f new_up = cross(dir, left);
   Transform t;
@@ -104,12 +112,14 @@ bool Transform::is_finite() const {
   return true;
 }
 
-Vec3f Transform::point(Vec3f p) const {
+Vec3d Transform::place(Vec3d p) const {
   double v[4];
   for (int i = 0; i < 4; ++i) v[i] = m[4 * i] * p.x + m[4 * i + 1] * p.y + m[4 * i + 2] * p.z + m[4 * i + 3];
   const double w = v[3] == 1 ? 1 : 1 / v[3];
-  return {static_cast<float>(v[0] * w), static_cast<float>(v[1] * w), static_cast<float>(v[2] * w)};
+  return {v[0] * w, v[1] * w, v[2] * w};
 }
+
+Vec3f Transform::point(Vec3f p) const { return static_cast<Vec3f>(place(p)); }
 
 Vec3f Transform::vector(Vec3f p) const {
   double v[3];

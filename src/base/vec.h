@@ -38,6 +38,23 @@ struct Vec3f {
   friend bool operator==(const Vec3f&, const Vec3f&) = default;
 };
 
+// A place as a scene file states it: far from the origin 32 bits would not hold what its numbers say.
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+  constexpr Vec3d() = default;
+  constexpr Vec3d(double a, double b, double c) : x(a), y(b), z(c) {}
+  constexpr Vec3d(Vec3f v) : x(v.x), y(v.y), z(v.z) {}  // NOLINT: nothing is lost
+  explicit constexpr operator Vec3f() const {
+    return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+  }
+  double operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
+  double& operator[](int i) { return i == 0 ? x : (i == 1 ? y : z); }
+  friend Vec3d operator+(Vec3d a, Vec3d b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend bool operator==(const Vec3d&, const Vec3d&) = default;
+};
+
 inline float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3f cross(Vec3f a, Vec3f b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -51,6 +68,8 @@ inline bool is_finite(Vec3f a) { return std::isfinite(a.x) && std::isfinite(a.y)
 inline float square(float x) { return x * x; }
 inline float lerp(float a, float b, float t) { return a + (b - a) * t; }
 inline Vec3f lerp(Vec3f a, Vec3f b, float t) { return a + (b - a) * t; }
+
+inline bool is_finite(Vec3d a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 // Mirror image of `w` about `n` (both pointing away from the surface).
 inline Vec3f reflect(Vec3f w, Vec3f n) { return n * (2 * dot(w, n)) - w; }

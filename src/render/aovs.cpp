@@ -57,7 +57,8 @@ void add_lights(Picture& picture, const Setup& setup, const std::string& which,
 void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const methods::Estimate& estimate,
              const Sinks& sinks) {
   const auto& receivers = setup.receivers;
-  const auto depth_of = [](float d) { return Rgb(std::isfinite(d) ? d : 0.0f); };
+  const world::Units& units = setup.world->units();
+  const auto depth_of = [&](float d) { return Rgb(std::isfinite(d) ? units.length_in_file(d) : 0.0f); };
   const auto vector_of = [](Vec3f v) { return Rgb(v.x, v.y, v.z); };
   if (aov == "direct") {
     add_plane(picture, aov,
@@ -78,7 +79,11 @@ void add_aov(Picture& picture, const std::string& aov, const Setup& setup, const
   } else if (aov == "normal") {
     add_plane(picture, aov, first_hit_image(setup, receivers.first_normal, vector_of));
   } else if (aov == "position") {
-    add_plane(picture, aov, first_hit_image(setup, receivers.first_position, vector_of));
+    std::vector<Vec3f> places(receivers.samples());
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (std::isfinite(receivers.first_distance[k]))
+        places[k] = static_cast<Vec3f>(units.place_in_file(receivers.first_position[k]));
+    add_plane(picture, aov, first_hit_image(setup, places, vector_of));
   } else if (aov == "depth") {
     add_plane(picture, aov, first_hit_image(setup, receivers.first_distance, depth_of));
   } else if (aov == "samples") {

@@ -22,6 +22,7 @@
 #include "render/pipeline.h"
 #include "render/reference.h"
 #include "render/sampled_truth.h"
+#include "render/sound_pixels.h"
 
 namespace lumirank {
 namespace {
@@ -102,6 +103,7 @@ class Comparison {
   }
 
   void save(const std::string& name, const film::Image& image) const {
+    check_pixels(image);
     film::LayeredImage layers;
     layers.color = image;
     film::write_image(path(name), layers);

@@ -18,6 +18,7 @@
 #include "render/reference.h"
 #include "render/render_run.h"
 #include "render/report.h"
+#include "render/view_check.h"
 #include "scenedesc/readers.h"
 
 namespace lumirank {
@@ -96,11 +97,15 @@ nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
   json["materials"] = info.materials;
   json["emitters"] = nlohmann::json::array();
   for (const auto& e : world.emitters()) {
-    const Rgb p = emitters::power(e, world.bounds().radius());
+    const Rgb p = world.units().power_in_file(emitters::power(e, world.bounds().radius()));
     json["emitters"].push_back({{"name", e.name}, {"group", e.group}, {"power", {p.r, p.g, p.b}}});
   }
-  const auto& b = world.bounds();
-  json["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+  const auto corner = [&](Vec3f own) -> nlohmann::ordered_json {
+    if (world.units().are_the_files()) return {own.x, own.y, own.z};
+    const Vec3d p = world.units().place_in_file(own);
+    return {p.x, p.y, p.z};
+  };
+  json["bounds"] = {corner(world.bounds().lo), corner(world.bounds().hi)};
   json["cameras"] = nlohmann::json::array();
   for (const auto& s : desc.sensors)
     json["cameras"].push_back(
@@ -182,6 +187,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
       sinks.warn(text);
     const world::World world = build_world(scene, sinks);
     task.build_seconds = timer.seconds();
+    if (const std::string text = rendering::empty_view(world, task.view); !text.empty()) sinks.warn(text);
     if (sinks.cancelled()) throw Cancelled();
     rendering::check_aovs(world, settings);
     task.world = &world;
@@ -203,6 +209,7 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     const rendering::View view = rendering::make_view(scene.impl().desc, settings);
     const world::World world = build_world(scene, sinks);
     const double build_seconds = timer.seconds();
+    if (const std::string text = rendering::empty_view(world, view); !text.empty()) sinks.warn(text);
     rendering::PreviewThrottle throttle(on_preview);
     const auto traced =
         rendering::path_trace(world, view, settings, how, sinks, [&](const film::Image& image) {

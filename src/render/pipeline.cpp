@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "base/timer.h"
 #include "render/aovs.h"
+#include "render/sound_pixels.h"
 #include "render/traced_indirect.h"
 #include "scenedesc/film_size.h"
 #include "transport/sphere_lights.h"
@@ -151,7 +152,7 @@ transport::ReceiverSettings receiver_settings(const View& view, const RenderSett
 
 void make_eye_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
   const Timer timer;
-  setup.receivers = transport::trace_receivers(*setup.world, world::Camera(setup.view.sensor),
+  setup.receivers = transport::trace_receivers(*setup.world, world::Camera(setup.view.sensor, setup.world->units()),
                                                receiver_settings(setup.view, settings), sinks);
   setup.seconds["receivers"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
@@ -187,7 +188,7 @@ void make_receivers(Setup& setup, const RenderSettings& settings, const Sinks& s
 
 transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks& sinks) {
   constexpr double kWanted = 16384;
-  const world::Camera camera(whole_film(setup.view, kWanted));
+  const world::Camera camera(whole_film(setup.view, kWanted), setup.world->units());
   transport::ReceiverSettings rs;
   rs.seed = hash_ids(seed, Stage::pilot, ~0ull);  // places of their own
   rs.spp = 1;
@@ -338,6 +339,7 @@ film::Image develop(const Setup& setup, std::span<const Rgb> values) {
 }
 
 Picture to_picture(const film::Image& image) {
+  check_pixels(image);
   Picture picture;
   picture.width = image.width, picture.height = image.height;
   picture.planes.emplace_back();

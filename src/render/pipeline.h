@@ -92,6 +92,7 @@ struct FilmParts {
 };
 std::vector<Rgb> sample_values(const Setup& setup, std::span<const Rgb> sums, FilmParts parts);
 film::Image develop(const Setup& setup, std::span<const Rgb> values);
+// InputError if a value is infinite or not a number (sound_pixels.h).
 Picture to_picture(const film::Image& image);
 
 }  // namespace lumirank::rendering

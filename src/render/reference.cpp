@@ -84,7 +84,7 @@ struct PathFilm::Impl {
       : view(v),
         seed(settings.seed),
         tracer(world, {settings.seed, v.max_depth, parse_paths(paths), held}),
-        camera(v.sensor),
+        camera(v.sensor, world.units()),
         filter(make_filter(v.sensor.film.filter)),
         pixels(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height)),
         // `--only` is that part alone: emission seen directly belongs to neither.

@@ -41,7 +41,7 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
   const std::uint64_t seed = hash_ids(settings.seed, Stage::pilot, ~1ull);  // paths of their own
   const PathTracer rest(world, {seed, view.max_depth, Paths::rest, {}}),
       all(world, {seed, view.max_depth, Paths::all, {}});
-  const world::Camera camera(whole_film(view, kPilotPixels));
+  const world::Camera camera(whole_film(view, kPilotPixels), world.units());
   const auto width = static_cast<std::size_t>(camera.width());
   const std::size_t pixels = width * static_cast<std::size_t>(camera.height());
   const auto trace = [&](const PathTracer& tracer, int paths, bool is_rest) {

@@ -23,7 +23,7 @@ std::string num(double value) {
 std::string show(Rgb c) {
   return c.r == c.g && c.g == c.b ? num(c.r) : "(" + num(c.r) + ", " + num(c.g) + ", " + num(c.b) + ")";
 }
-std::string show(Vec3f v) { return "(" + num(v.x) + ", " + num(v.y) + ", " + num(v.z) + ")"; }
+std::string show(Vec3d v) { return "(" + num(v.x) + ", " + num(v.y) + ", " + num(v.z) + ")"; }
 std::string show(const ColorInput& c) {
   return c.texture == kNone ? show(c.value) : "texture " + std::to_string(c.texture);
 }

@@ -256,12 +256,12 @@ struct InlineMeshDesc {
 struct RectangleDesc {};  // [-1,1]² in z = 0, normal +z
 struct CubeDesc {};       // [-1,1]³
 struct SphereDesc {
-  Vec3f center;
+  Vec3d center;
   float radius = 1;
 };
 struct DiskDesc {};  // unit disk in z = 0, normal +z
 struct CylinderDesc {
-  Vec3f p0{0, 0, 0}, p1{0, 0, 1};
+  Vec3d p0{0, 0, 0}, p1{0, 0, 1};
   float radius = 1;
 };
 // Fibres: many curves with a radius at each of their points. Cubic ones have uniform knots: a b-spline of n
@@ -275,6 +275,7 @@ struct CurvesDesc {
   std::vector<Vec3f> points;
   std::vector<float> radii;          // one per point
   std::vector<std::uint32_t> first;  // the first point of each curve, and the number of points at the end
+  Vec3d origin = {};                 // of the points, as in MeshData
 };
 struct ShapeGroupDesc {
   std::vector<int> shapes;  // indices into SceneDesc::shapes
@@ -306,7 +307,7 @@ struct ShapeDesc {
 // emitters
 
 struct PointLightDesc {
-  Vec3f position;
+  Vec3d position;
   Rgb intensity{1};  // W/sr
 };
 struct SpotLightDesc {  // at the origin of to_world, along its +z

@@ -42,9 +42,11 @@ void check(const scenedesc::SensorDesc& s) {
 }
 }  // namespace
 
-Camera::Camera(const scenedesc::SensorDesc& sensor)
+Camera::Camera(const scenedesc::SensorDesc& sensor, const Units& units)
     : sensor_(sensor), width_(sensor.film.width), height_(sensor.film.height) {
   check(sensor);
+  // Clipping planes, lens and focus are lengths along the local axes, which the transform scales.
+  sensor_.to_world = units.to_world(sensor.to_world);
   const double aspect = static_cast<double>(width_) / height_;
   tan_x_ =
       sensor.kind == scenedesc::SensorKind::orthographic ? 1.0 : std::tan(0.5 * sensor.fov_x * kPiD / 180.0);

@@ -5,12 +5,14 @@
 #include "base/vec.h"
 #include "geometry/ray_scene.h"
 #include "scenedesc/scene_desc.h"
+#include "world/units.h"
 
 namespace lumirank::world {
 
 class Camera {
  public:
-  explicit Camera(const scenedesc::SensorDesc& sensor);
+  // Rays are in the world's units.
+  explicit Camera(const scenedesc::SensorDesc& sensor, const Units& units = {});
 
   int width() const { return width_; }
   int height() const { return height_; }

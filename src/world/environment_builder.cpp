@@ -8,6 +8,7 @@
 #include "emitters/environment.h"
 #include "film/image_io.h"
 #include "world/equal_area.h"
+#include "world/lights.h"
 
 namespace lumirank::world {
 
@@ -37,6 +38,7 @@ Frame orientation(const Transform& to_world, const SourceLocation& where) {
 }  // namespace
 
 void EnvironmentBuilder::add(em::EnvironmentEmitter part, const sd::EmitterDesc& from) {
+  for (const Rgb& c : part.radiance) check_light(max_component(c), "the radiance", from.where);
   if (!first_) first_ = &from;
   parts_.push_back(std::move(part));
 }
@@ -58,7 +60,9 @@ void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::Em
   std::size_t mended = 0;
   for (Rgb& c : image.pixels)
     for (int k = 0; k < 3; ++k) {
+      const bool stated = std::isfinite(c[k]);
       c[k] *= map.scale;
+      if (stated) check_light(c[k], "the radiance of the environment map", from.where);
       if (!(std::isfinite(c[k]) && c[k] >= 0)) c[k] = 0, ++mended;
     }
   if (mended > 0)

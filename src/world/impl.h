@@ -24,6 +24,7 @@ struct World::Impl {
   int environment = -1;
   std::vector<std::size_t> suns;  // emitters with a disc
   Bounds3f bounds;
+  Units units;
   WorldInfo info;
 
   // Everything at a point of a triangle; normals towards the outside.

@@ -1,6 +1,7 @@
 #include "world/lights.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -62,12 +63,21 @@ em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint3
   return emitter;
 }
 
+void check_light(float value, const char* what, const SourceLocation& where) {
+  if (value <= kGreatestLight) return;
+  char text[96];
+  std::snprintf(text, sizeof text, " is %.3g; more than %.0e cannot be carried by 32-bit arithmetic",
+                static_cast<double>(value), static_cast<double>(kGreatestLight));
+  throw InputError(where, what + std::string(text), "make all lights of the scene darker alike");
+}
+
 namespace {
 
 void check_color(Rgb c, const char* what, const SourceLocation& where) {
   if (!is_finite(c)) throw InputError(where, std::string(what) + " is not finite", "give finite numbers");
   if (c.r < 0 || c.g < 0 || c.b < 0)
     throw InputError(where, std::string(what) + " has a negative component", "give numbers of 0 or more");
+  check_light(max_component(c), what, where);
 }
 
 Vec3f checked_direction(Vec3f v, const SourceLocation& where) {
@@ -77,7 +87,7 @@ Vec3f checked_direction(Vec3f v, const SourceLocation& where) {
   return v / len;
 }
 
-em::SpotEmitter make_spot(const sd::SpotLightDesc& d, const SourceLocation& where) {
+em::SpotEmitter make_spot(const sd::SpotLightDesc& d, const Units& units, const SourceLocation& where) {
   if (!d.to_world.is_finite()) throw InputError(where, "to_world is not finite", "give finite numbers");
   if (!(d.cutoff_angle > 0 && d.cutoff_angle < 180))
     throw InputError(where, "the cut-off angle is not between 0 and 180 degrees", "give an angle in between");
@@ -85,9 +95,9 @@ em::SpotEmitter make_spot(const sd::SpotLightDesc& d, const SourceLocation& wher
     throw InputError(where, "the beam is wider than the cut-off angle, or negative",
                      "give a beam width between 0 and the cut-off angle");
   em::SpotEmitter spot;
-  spot.position = d.to_world.point({0, 0, 0});
+  spot.position = units.to_world(d.to_world.origin());
   spot.frame = Frame::from_normal(checked_direction(d.to_world.vector({0, 0, 1}), where));
-  spot.intensity = d.intensity;
+  spot.intensity = units.power_to_world(d.intensity);
   spot.cutoff = d.cutoff_angle * (kPi / 180), spot.beam = d.beam_width * (kPi / 180);
   spot.cos_cutoff = std::cos(spot.cutoff), spot.cos_beam = std::cos(spot.beam);
   return spot;
@@ -118,7 +128,8 @@ em::ProfileEmitter with_edge(const em::SpotEmitter& spot, sd::SpotLightDesc::Edg
 
 }  // namespace
 
-int add_lights(const sd::SceneDesc& desc, EmitterNames& names, Notes& notes, std::vector<em::Emitter>& out) {
+int add_lights(const sd::SceneDesc& desc, EmitterNames& names, const Units& units, Notes& notes,
+               std::vector<em::Emitter>& out) {
   EnvironmentBuilder environment(notes);
   const auto push = [&](auto kind, const sd::EmitterDesc& from) {
     em::Emitter emitter;
@@ -128,19 +139,23 @@ int add_lights(const sd::SceneDesc& desc, EmitterNames& names, Notes& notes, std
   };
   for (const sd::EmitterDesc& e : desc.emitters) {
     if (const auto* point = std::get_if<sd::PointLightDesc>(&e.kind)) {
-      check_color(point->intensity, "the intensity", e.where);
+      const Rgb intensity = units.power_to_world(point->intensity);
+      check_color(intensity, "the intensity", e.where);
       if (!is_finite(point->position)) throw InputError(e.where, "the position is not finite", "mend it");
-      push(em::PointEmitter{point->position, point->intensity}, e);
+      push(em::PointEmitter{units.to_world(point->position), intensity}, e);
     } else if (const auto* spot = std::get_if<sd::SpotLightDesc>(&e.kind)) {
-      check_color(spot->intensity, "the intensity", e.where);
-      const em::SpotEmitter made = make_spot(*spot, e.where);
+      const em::SpotEmitter made = make_spot(*spot, units, e.where);
+      check_color(made.intensity, "the intensity", e.where);
       if (spot->edge == sd::SpotLightDesc::Edge::angle || !(made.cos_beam > made.cos_cutoff))
         push(made, e);
       else
         push(with_edge(made, spot->edge), e);
     } else if (const auto* profile = std::get_if<sd::ProfileLightDesc>(&e.kind)) {
-      check_color(profile->intensity, "the intensity", e.where);
-      push(make_profile_light(*profile, e.where, desc.lumens_per_unit, notes), e);
+      sd::ProfileLightDesc moved = *profile;
+      moved.to_world = units.to_world(profile->to_world);
+      moved.intensity = units.power_to_world(profile->intensity);
+      check_color(moved.intensity, "the intensity", e.where);
+      push(make_profile_light(moved, e.where, desc.lumens_per_unit, notes), e);
     } else if (const auto* sun = std::get_if<sd::DirectionalLightDesc>(&e.kind)) {
       check_color(sun->irradiance, "the irradiance", e.where);
       push(em::DirectionalEmitter{checked_direction(sun->direction, e.where), sun->irradiance, 1}, e);

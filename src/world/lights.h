@@ -13,6 +13,7 @@
 #include "scatter/texture.h"
 #include "scenedesc/scene_desc.h"
 #include "world/notes.h"
+#include "world/units.h"
 
 namespace lumirank::world {
 
@@ -35,9 +36,16 @@ emitters::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std:
                                         const scatter::ColorInput& radiance,
                                         const scatter::TextureSet& textures);
 
+// The greatest radiance, irradiance, or intensity (in the world's units): methods add the squares of entries
+// of the matrix, and 10⁶ of this one's are the range of 32-bit numbers. The sun, seen directly, has 2·10⁷
+// W/(m² sr) or 2·10⁹ cd/m².
+inline constexpr float kGreatestLight = 1e16f;
+// InputError if `value` exceeds that; `what` names it.
+void check_light(float value, const char* what, const SourceLocation& where);
+
 // Point, spot, directional light and everything infinitely far; environments are summed into one emitter,
 // which comes last. Returns its index, or -1 if there is none.
-int add_lights(const scenedesc::SceneDesc& desc, EmitterNames& names, Notes& notes,
+int add_lights(const scenedesc::SceneDesc& desc, EmitterNames& names, const Units& units, Notes& notes,
                std::vector<emitters::Emitter>& out);
 
 }  // namespace lumirank::world

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "base/error.h"
+#include "base/near_origin.h"
 #include "base/parallel.h"
 #include "geometry/tessellate.h"
 #include "scenedesc/readers.h"
@@ -19,7 +20,8 @@ namespace {
 constexpr double kShiningSphereTriangles = 1 << 20;
 
 geometry::TriangleMesh convert(sd::MeshData data, std::vector<std::string>& left_out,
-                               std::vector<sd::MeshData::Mended>& mended) {
+                               std::vector<sd::MeshData::Mended>& mended, Vec3d& origin) {
+  origin = data.origin;
   left_out = std::move(data.left_out);
   mended = std::move(data.mended);
   geometry::TriangleMesh mesh;
@@ -52,8 +54,9 @@ bool is_missing(const sd::ShapeDesc& shape) {
   return held && !held->mesh;
 }
 
-geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesDesc& desc) {
+geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesDesc& desc, Vec3d& origin) {
   const sd::CurvesDesc curves = sd::read_curves(desc);
+  origin = curves.origin;
   using Basis = sd::CurvesDesc::Basis;
   const std::size_t count = curves.first.empty() ? 0 : curves.first.size() - 1;
   if (count == 0 && !desc.filename.empty()) return {};
@@ -79,8 +82,8 @@ geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesD
   return mesh;
 }
 
-void check_numbers(const sd::ShapeDesc& shape, const std::vector<float>& numbers) {
-  for (float v : numbers)
+void check_numbers(const sd::ShapeDesc& shape, const std::vector<double>& numbers) {
+  for (double v : numbers)
     if (!std::isfinite(v))
       throw InputError(shape.where, "the shape has a number that is not finite", "mend it");
 }
@@ -93,10 +96,16 @@ void check_radius(const sd::ShapeDesc& shape, float radius) {
 // A sphere from flat triangles has less area than the round one; the vertices are moved out until the areas
 // agree, so that the light of the emitter is right.
 void restore_area(geometry::TriangleMesh& mesh, Vec3f center, float radius) {
+  // Sizes of about 1: squares of areas leave the range of float early. A power of two changes no bit.
+  const float unit = std::exp2(-std::floor(std::log2(radius)));
   double area = 0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) area += 0.5 * length(mesh.area_vector(t));
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::uint32_t* corner = &mesh.indices[3 * t];
+    const Vec3f a = mesh.positions[corner[0]] * unit;
+    area += 0.5 * length(cross(mesh.positions[corner[1]] * unit - a, mesh.positions[corner[2]] * unit - a));
+  }
   if (!(area > 0)) return;
-  const double want = 4 * 3.14159265358979323846 * radius * static_cast<double>(radius);
+  const double own = radius * unit, want = 4 * 3.14159265358979323846 * own * own;
   const float factor = static_cast<float>(std::sqrt(want / area));
   for (Vec3f& p : mesh.positions) p = center + (p - center) * factor;
 }
@@ -108,16 +117,16 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
   auto& [kind, name, numbers, shines, held] = key;
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind)) {
     name = file->filename;
-    numbers = {static_cast<float>(file->format),       static_cast<float>(file->shape_index),
-               file->face_normals ? 1.0f : 0.0f,       file->flip_tex_coords ? 1.0f : 0.0f,
-               file->max_smooth_angle.value_or(-1.0f), file->smooth_without_normals ? 1.0f : 0.0f};
+    numbers = {static_cast<double>(file->format),      static_cast<double>(file->shape_index),
+               file->face_normals ? 1.0 : 0.0,         file->flip_tex_coords ? 1.0 : 0.0,
+               file->max_smooth_angle.value_or(-1.0f), file->smooth_without_normals ? 1.0 : 0.0};
   } else if (const auto* mesh = std::get_if<sd::InlineMeshDesc>(&shape.kind)) {
     held = mesh->mesh.get();
     if (!held) name = mesh->name;
   } else if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) {
     name = curves->filename;
     if (name.empty()) held = curves;
-    numbers = {static_cast<float>(curves->basis), curves->file_radius};
+    numbers = {static_cast<double>(curves->basis), curves->file_radius};
   } else if (const auto* sphere = std::get_if<sd::SphereDesc>(&shape.kind)) {
     numbers = {sphere->center.x, sphere->center.y, sphere->center.z, sphere->radius};
     shines = shape.emitter.has_value();
@@ -138,36 +147,49 @@ int MeshStore::use(const sd::ShapeDesc& shape) {
   return it->second;
 }
 
-geometry::TriangleMesh MeshStore::make(Source& source) const {
+geometry::TriangleMesh MeshStore::make(Source& source, Vec3d& origin) const {
   const sd::ShapeDesc& shape = *source.shape;
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind))
-    return convert(sd::read_mesh(*file), source.left_out, source.mended);
+    return convert(sd::read_mesh(*file), source.left_out, source.mended, origin);
   if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind))
-    return held->mesh ? convert(*held->mesh, source.left_out, source.mended) : geometry::TriangleMesh{};
-  if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind)) return from_curves(shape, *curves);
+    return held->mesh ? convert(*held->mesh, source.left_out, source.mended, origin) : geometry::TriangleMesh{};
+  if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind))
+    return from_curves(shape, *curves, origin);
   if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
   if (std::holds_alternative<sd::CubeDesc>(shape.kind)) return geometry::make_cube();
   if (std::holds_alternative<sd::DiskDesc>(shape.kind)) return geometry::make_disk();
-  if (const auto* tube = std::get_if<sd::CylinderDesc>(&shape.kind))
-    return geometry::make_cylinder(tube->p0, tube->p1, tube->radius);
+  // Shapes that state a place have an origin of their own where it is far away, as meshes do.
+  const auto far_origin = [](std::initializer_list<Vec3d> ends, double radius) {
+    Bounds3d box;
+    for (const Vec3d& p : ends)
+      box.extend(p - Vec3d{radius, radius, radius}), box.extend(p + Vec3d{radius, radius, radius});
+    return near_origin(box, sd::kFarMesh);
+  };
+  if (const auto* tube = std::get_if<sd::CylinderDesc>(&shape.kind)) {
+    origin = far_origin({tube->p0, tube->p1}, tube->radius);
+    return geometry::make_cylinder(static_cast<Vec3f>(tube->p0 - origin),
+                                   static_cast<Vec3f>(tube->p1 - origin), tube->radius);
+  }
   if (const auto* sphere = std::get_if<sd::SphereDesc>(&shape.kind)) {
-    if (!source.shines) return geometry::make_sphere(sphere->center, sphere->radius);
+    origin = far_origin({sphere->center}, sphere->radius);
+    const auto center = static_cast<Vec3f>(sphere->center - origin);
+    if (!source.shines) return geometry::make_sphere(center, sphere->radius);
     // A sphere of r rings has about 4r² triangles.
     const double each = kShiningSphereTriangles / static_cast<double>(shining_spheres_);
     const int rings = std::clamp(static_cast<int>(std::sqrt(each / 4)), 8, 64);
-    geometry::TriangleMesh mesh = geometry::make_sphere(sphere->center, sphere->radius, rings);
-    restore_area(mesh, sphere->center, sphere->radius);
+    geometry::TriangleMesh mesh = geometry::make_sphere(center, sphere->radius, rings);
+    restore_area(mesh, center, sphere->radius);
     return mesh;
   }
   throw InternalError("MeshStore: a shape without a mesh of its own");
 }
 
 void MeshStore::load(Notes& notes) {
-  meshes_.resize(sources_.size());
+  meshes_.resize(sources_.size()), origins_.resize(sources_.size());
   std::vector<std::exception_ptr> failures(sources_.size());
   parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) try {
-        meshes_[i] = make(sources_[i]);
+        meshes_[i] = make(sources_[i], origins_[i]);
         sources_[i].empty = meshes_[i].indices.empty() && meshes_[i].fibres.empty();
       } catch (const InputError& e) {
         // What the scene's own numbers are to blame for has its place in the scene already.

@@ -30,12 +30,14 @@ class MeshStore {
   std::size_t left_out() const;      // how many are empty
   std::string why_left_out() const;  // of the first of these, for a message; "" if there is none
   const geometry::TriangleMesh& mesh(int index) const { return meshes_[static_cast<std::size_t>(index)]; }
+  // What its positions are relative to.
+  const Vec3d& origin(int index) const { return origins_[static_cast<std::size_t>(index)]; }
   geometry::TriangleMesh take(int index) { return std::move(meshes_[static_cast<std::size_t>(index)]); }
 
  private:
   // Kind of shape, its file and options, its numbers, whether it shines, the mesh that the reader holds:
   // equal keys are the same mesh.
-  using Key = std::tuple<std::size_t, std::string, std::vector<float>, bool, const void*>;
+  using Key = std::tuple<std::size_t, std::string, std::vector<double>, bool, const void*>;
   struct Source {
     const scenedesc::ShapeDesc* shape;  // the first that names it
     bool shines;
@@ -44,13 +46,14 @@ class MeshStore {
     std::size_t uses = 0, lamps = 0;  // how often it is placed, and how many of these shine
     bool empty = false;
   };
-  geometry::TriangleMesh make(Source& source) const;
+  geometry::TriangleMesh make(Source& source, Vec3d& origin) const;
   static std::string why_empty(const Source& source);
   void warn_of_empty(const Source& source, Notes& notes) const;
 
   std::map<Key, int> index_;
   std::vector<Source> sources_;
   std::vector<geometry::TriangleMesh> meshes_;
+  std::vector<Vec3d> origins_;
   std::size_t shining_spheres_ = 0;
 };
 

@@ -114,7 +114,38 @@ std::vector<Placed> place_shapes(const sd::SceneDesc& desc, MeshStore& store, No
   return out;
 }
 
-Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes) {
+Units units_for(const std::vector<Placed>& placed, const MeshStore& store) {
+  std::vector<Bounds3f> boxes(store.size());
+  parallel_for(boxes.size(), 1, [&](std::size_t b, std::size_t e) {
+    for (std::size_t s = b; s < e; ++s) {
+      const geometry::TriangleMesh& mesh = store.mesh(static_cast<int>(s));
+      boxes[s] = mesh.fibres.bounds();
+      for (const std::uint32_t k : mesh.indices) boxes[s].extend(mesh.positions[k]);  // of those in use
+    }
+  });
+  Bounds3d all;
+  double smallest = kInfinity;
+  for (const Placed& p : placed) {
+    const Bounds3f& box = boxes[static_cast<std::size_t>(p.source)];
+    if (box.empty()) continue;
+    Bounds3d own;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3f local{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                        corner & 4 ? box.hi.z : box.lo.z};
+      own.extend(p.to_world.place(local + store.origin(p.source)));
+    }
+    all.extend(own.lo), all.extend(own.hi);
+    if (own.radius() > 0) smallest = std::min(smallest, own.radius());
+  }
+  return Units(all, smallest);
+}
+
+Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& units, Notes& notes) {
+  for (Placed& p : placed) {
+    const Vec3d origin = store.origin(p.source);
+    if (!(origin == Vec3d{})) p.to_world = p.to_world * Transform::translate(origin);
+    p.to_world = units.to_world(p.to_world);
+  }
   Geometry g;
   std::erase_if(placed, [&](const Placed& p) { return store.is_empty(p.source); });
   std::vector<std::size_t> uses(store.size(), 0);

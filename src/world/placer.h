@@ -8,6 +8,7 @@
 #include "scenedesc/scene_desc.h"
 #include "world/mesh_store.h"
 #include "world/notes.h"
+#include "world/units.h"
 
 namespace lumirank::world {
 
@@ -23,6 +24,9 @@ struct Placed {
 // One per shape and per member of an instance's group, in the order of the scene.
 std::vector<Placed> place_shapes(const scenedesc::SceneDesc& desc, MeshStore& store, Notes& notes);
 
+// The units for everything placed. The meshes must have been loaded.
+Units units_for(const std::vector<Placed>& placed, const MeshStore& store);
+
 // What the ray scene is made of. Meshes that are placed once or shine are moved into world space for good;
 // the others are shared by their placements (whether the tracer then flattens copies is its own affair).
 struct Geometry {
@@ -33,6 +37,6 @@ struct Geometry {
   std::size_t unique_triangles = 0, triangles = 0;
   std::size_t segments = 0;  // of fibres
 };
-Geometry assemble(std::vector<Placed> placed, MeshStore& store, Notes& notes);
+Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& units, Notes& notes);
 
 }  // namespace lumirank::world

@@ -87,7 +87,8 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
   Impl& w = *impl;
 
   const std::size_t meshes = store.size() - store.left_out(), left_out = store.left_out();
-  Geometry geometry = assemble(std::move(placed), store, notes);
+  w.units = units_for(placed, store);
+  Geometry geometry = assemble(std::move(placed), store, w.units, notes);
   if (geometry.placements.empty())
     throw InputError(SourceLocation{desc.source_file, 0},
                      "no shape of the scene has any area" +
@@ -104,6 +105,10 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
                                    : scatter::ColorInput{});
   }
   w.materials.materials = materials.take();
+  // Heights of bumps are lengths.
+  for (auto& material : w.materials.materials)
+    if (auto* bump = std::get_if<scatter::BumpMaterial>(&material))
+      bump->scale *= static_cast<float>(w.units.scale());
   w.materials.textures = textures.finish();
   step(sinks, 0.6);
 
@@ -119,6 +124,11 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
     if (!p.shines) continue;
     emitters::AreaEmitter area = make_area_emitter(
         geometry.meshes[placement.mesh], static_cast<std::uint32_t>(i), radiance_of[i], w.materials.textures);
+    for (const auto& t : area.triangles) {
+      if (!is_finite(t.mean_radiance))
+        throw InputError(p.shape->emitter->where, "the radiance is not finite", "give finite numbers");
+      check_light(max_component(t.mean_radiance), "the radiance", p.shape->emitter->where);
+    }
     if (!(area.by_power.total() > 0)) continue;  // black
     placement.emitter = static_cast<std::uint32_t>(w.emitters.size());
     emitters::Emitter emitter;
@@ -128,7 +138,7 @@ World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::
     w.emitters.push_back(std::move(emitter));
     w.radiance.push_back(radiance_of[i]);
   }
-  w.environment = add_lights(desc, names, notes, w.emitters);
+  w.environment = add_lights(desc, names, w.units, notes, w.emitters);
   w.radiance.resize(w.emitters.size());
   for (std::size_t k = 0; k < w.emitters.size(); ++k) {
     const auto* sun = std::get_if<emitters::DirectionalEmitter>(&w.emitters[k].kind);
@@ -170,6 +180,7 @@ const scatter::MaterialSet& World::materials() const { return impl_->materials; 
 const std::vector<emitters::Emitter>& World::emitters() const { return impl_->emitters; }
 int World::environment() const { return impl_->environment; }
 const Bounds3f& World::bounds() const { return impl_->bounds; }
+const Units& World::units() const { return impl_->units; }
 const WorldInfo& World::info() const { return impl_->info; }
 
 std::optional<SurfaceHit> World::intersect(const geometry::Ray& ray) const {

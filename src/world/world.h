@@ -1,5 +1,5 @@
-// The scene, built and immutable: geometry, materials, emitters and the camera, ready for queries from any
-// thread.
+// The scene, built and immutable: geometry, materials and emitters, ready for queries from any thread.
+// Everything is in units of the world (units()), mostly the file's.
 #pragma once
 
 #include <memory>
@@ -14,6 +14,7 @@
 #include "scatter/material.h"
 #include "scenedesc/scene_desc.h"
 #include "world/camera.h"
+#include "world/units.h"
 
 namespace lumirank::world {
 
@@ -52,6 +53,7 @@ class World {
   // merged or warned about).
   int environment() const;
   const Bounds3f& bounds() const;
+  const Units& units() const;
   const WorldInfo& info() const;
 
   std::optional<SurfaceHit> intersect(const geometry::Ray& ray) const;

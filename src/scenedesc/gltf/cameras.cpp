@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/near_origin.h"
 #include "scenedesc/gltf/reader.h"
 
 namespace lumirank::scenedesc::gltf {
@@ -17,7 +18,7 @@ Transform turned(const Transform& world, const Element& node) {
   if (!(length(side) > 0) || !(length(back) > 0))
     node.fail("flattens its camera", "give it a scale without zeros");
   const Vec3f z = back / length(back), x = side / length(side), y = cross(z, x);
-  const Vec3f at = world.point({0, 0, 0});
+  const Vec3d at = world.origin();
   Transform t;
   t.m = {-x.x, y.x, -z.x, at.x, -x.y, y.y, -z.y, at.y, -x.z, y.z, -z.z, at.z, 0, 0, 0, 1};
   return t;
@@ -73,16 +74,13 @@ void Reader::build_camera(const Node& node, const Element& camera_index) {
 }
 
 void add_default_camera(SceneDesc& scene, const Element& root) {
-  Vec3f low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+  Bounds3d box;
   for (const ShapeDesc& shape : scene.shapes) {
     const auto* held = std::get_if<InlineMeshDesc>(&shape.kind);
     if (!held || !held->mesh) continue;
-    for (const Vec3f& p : held->mesh->positions) {
-      const Vec3f at = shape.to_world.point(p);
-      for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
-    }
+    for (const Vec3f& p : held->mesh->positions) box.extend(shape.to_world.place(p + held->mesh->origin));
   }
-  if (!(low.x <= high.x)) return;  // nothing to look at: the world says so
+  if (box.empty()) return;  // nothing to look at: the world says so
   constexpr double kHalfHeight = 20 * kPiD / 180;
   SensorDesc sensor;
   sensor.id = "default";
@@ -91,17 +89,19 @@ void add_default_camera(SceneDesc& scene, const Element& root) {
   set_film(sensor, 4.0 / 3);
   const double tan_y = std::tan(kHalfHeight), tan_x = tan_y * 4 / 3;
   sensor.fov_x = static_cast<float>(2 * std::atan(tan_x) * 180 / kPiD);
-  const Vec3f center = (low + high) * 0.5f, towards = normalize(Vec3f{0.4f, 0.3f, 1});
+  const Vec3d center = box.center();
+  const Vec3f towards = normalize(Vec3f{0.4f, 0.3f, 1});
   const Vec3f right = normalize(cross(Vec3f{0, 1, 0}, towards)), up = cross(towards, right);
   double distance = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3f p{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z};
-    const Vec3f d = p - center;
+    const Vec3d &low = box.lo, &high = box.hi;
+    const Vec3d p{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z};
+    const auto d = static_cast<Vec3f>(p - center);
     const double across = std::max(std::abs(dot(d, right)) / tan_x, std::abs(dot(d, up)) / tan_y);
     distance = std::max(distance, dot(d, towards) + across * 1.05);
   }
-  distance = std::max(distance, 1e-3);
-  sensor.to_world = Transform::look_at(center + towards * static_cast<float>(distance), center, {0, 1, 0});
+  if (!(distance > 0)) distance = 1;  // a single point
+  sensor.to_world = Transform::aimed(center + Vec3d(towards) * distance, -towards, {0, 1, 0});
   sensor.near_clip = static_cast<float>(distance) * 1e-3f;
   sensor.far_clip = 1e30f;
   scene.sensors.push_back(std::move(sensor));

@@ -20,7 +20,7 @@ void Reader::build_light(const Node& node, const Element& light_index) {
   const std::string id = light.text("name", name_of(node));
   // Lights shine along -z; nothing but the direction of the axes counts.
   const Vec3f along = node.world.vector({0, 0, -1});
-  const Vec3f at = node.world.point({0, 0, 0});
+  const Vec3d at = node.world.origin();
   EmitterDesc emitter{id, light.where(), PointLightDesc{at, color}};
   if (type.text() == "directional") {
     if (!(length(along) > 0)) node.element.fail("flattens its light", "give it a scale without zeros");
@@ -34,9 +34,8 @@ void Reader::build_light(const Node& node, const Element& light_index) {
     const float outer = cone.real("outerConeAngle", 0.7853982f, 0, 1.5707964f);
     if (!(inner < outer)) cone.fail("has an innerConeAngle that is not below its outerConeAngle", "mend it");
     if (!(length(along) > 0)) node.element.fail("flattens its light", "give it a scale without zeros");
-    spot.to_world =
-        Transform::look_at(at, at + normalize(along),
-                           std::abs(along.y) > 0.9f * length(along) ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0});
+    spot.to_world = Transform::aimed(
+        at, along, std::abs(along.y) > 0.9f * length(along) ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0});
     spot.intensity = color;
     spot.cutoff_angle = outer * kDegrees;
     spot.beam_width = inner * kDegrees;

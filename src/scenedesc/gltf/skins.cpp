@@ -99,15 +99,18 @@ void Reader::skin(const Element& primitive, const std::vector<Transform>& joints
       total[k / 4] += w;
     }
   }
+  std::vector<Vec3d> places(mesh.positions.begin(), mesh.positions.end());
   for (std::size_t k = 0; k < vertices; ++k) {
     if (!(total[k] > 0)) continue;  // bound to nothing: it stays where it is
     Transform t = blended[k];
     for (std::size_t i = 0; i < 12; ++i) t.m[i] /= total[k];
     t.m[15] = 1;
-    mesh.positions[k] = t.point(mesh.positions[k]);
+    places[k] = t.place(mesh.positions[k]);
     if (mesh.normals.empty()) continue;
     if (const auto inverse = t.inverse()) mesh.normals[k] = Transform::normal(*inverse, mesh.normals[k]);
   }
+  auto [positions, origin] = near_positions(places);
+  mesh.positions = std::move(positions), mesh.origin = origin;
 }
 
 }  // namespace lumirank::scenedesc::gltf

@@ -29,6 +29,8 @@ class CurveParser {
       binary();
     else
       text();
+    auto [points, origin] = near_positions(places_);
+    out_.points = std::move(points), out_.origin = origin;
     return std::move(out_);
   }
 
@@ -44,8 +46,8 @@ class CurveParser {
       if (p_ == end_ || *p_ == '\n') {
         finish_curve();
       } else {
-        Vec3f point;
-        point.x = number(), point.y = number(), point.z = number();
+        Vec3d point;
+        for (int k = 0; k < 3; ++k) point[k] = number<double>();
         add(point, out_.file_radius > 0 ? out_.file_radius : number());
         skip_blanks(p_, end_);
         if (p_ != end_ && *p_ != '\n')
@@ -56,13 +58,14 @@ class CurveParser {
     finish_curve();
   }
 
-  float number() {
+  template <typename Real = float>
+  Real number() {
     skip_blanks(p_, end_);
     if (p_ == end_ || *p_ == '\n')
       fail(out_.file_radius > 0 ? "the line has too few numbers; a point is \"x y z\""
                                 : "the line has too few numbers; a point is \"x y z radius\"");
     const char* word = p_;
-    float value;
+    Real value;
     if (!parse_float(p_, end_, value) || (p_ != end_ && !is_blank(*p_) && *p_ != '\n')) {
       p_ = word;
       fail(quoted(take_word(p_, end_)) + " is not a number");
@@ -99,15 +102,15 @@ class CurveParser {
     fail("the file ends at point " + std::to_string(k) + " of " + std::to_string(count));
   }
 
-  void add(Vec3f point, float radius) {
-    if (!is_finite(point)) fail("a point is not finite");
+  void add(Vec3d point, float radius) {
+    if (!is_finite(static_cast<Vec3f>(point))) fail("a point is not finite");
     if (!(radius >= 0) || !std::isfinite(radius)) fail("a radius is negative or not finite");
-    if (out_.points.size() >= 0xfffffff0u) fail("there are more than 2^32 points");
-    out_.points.push_back(point), out_.radii.push_back(radius);
+    if (places_.size() >= 0xfffffff0u) fail("there are more than 2^32 points");
+    places_.push_back(point), out_.radii.push_back(radius);
   }
 
   void finish_curve() {
-    const std::size_t n = out_.points.size() - out_.first.back();
+    const std::size_t n = places_.size() - out_.first.back();
     if (n == 0) return;
     const std::size_t least = out_.basis == CurvesDesc::Basis::linear ? 2 : 4;
     if (n < least)
@@ -115,12 +118,13 @@ class CurveParser {
            "; it needs " + std::to_string(least) + " or more");
     if (out_.basis == CurvesDesc::Basis::bezier && n % 3 != 1)
       fail("the bezier curve that ends here has " + std::to_string(n) + " points; 4, 7, 10, … are possible");
-    out_.first.push_back(static_cast<std::uint32_t>(out_.points.size()));
+    out_.first.push_back(static_cast<std::uint32_t>(places_.size()));
   }
 
   const std::string& bytes_;
   const char *p_, *end_;
   int line_ = 0;
+  std::vector<Vec3d> places_;
   CurvesDesc out_;
 };
 

@@ -8,10 +8,7 @@
 namespace lumirank::scenedesc {
 namespace {
 
-struct Vec3d {
-  double x, y, z;
-};
-Vec3d difference(Vec3f a, Vec3f b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
+Vec3d difference(Vec3f a, Vec3f b) { return Vec3d(a) - Vec3d(b); }
 double squared(Vec3d a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
 Vec3d crossed(Vec3d a, Vec3d b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

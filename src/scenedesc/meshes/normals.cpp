@@ -143,6 +143,7 @@ void make_creased_normals(MeshData& mesh, float max_angle) {
   out.indices.resize(mesh.indices.size());
   out.left_out = std::move(mesh.left_out);
   out.mended = std::move(mesh.mended);
+  out.origin = mesh.origin;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t corner = order[k], old = mesh.indices[corner];
     if (k == 0 || key(corner) != key(order[k - 1])) {

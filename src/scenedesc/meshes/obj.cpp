@@ -91,8 +91,9 @@ class ObjParser {
     }
   }
 
-  float number(const char* what) {
-    float value = 0;
+  template <typename Real = float>
+  Real number(const char* what) {
+    Real value = 0;
     if (at_line_end()) fail(std::string(what) + " has too few numbers");
     const char* first = p_;
     if (!parse_float(p_, end_, value)) fail(quoted(take_word(first, end_)) + " is not a number");
@@ -125,8 +126,9 @@ class ObjParser {
   }
 
   void vertex() {
-    const Vec3f p = triple("a vertex");
-    if (!is_finite(p)) fail("a vertex is not finite");
+    Vec3d p;
+    for (int i = 0; i < 3; ++i) p[i] = number<double>("a vertex");
+    if (!is_finite(static_cast<Vec3f>(p))) fail("a vertex is not finite");
     positions_.push_back(p);
     // What may follow: a weight, or a colour, or both.
     std::array<float, 4> rest{};
@@ -201,13 +203,15 @@ class ObjParser {
     bool any_uv = false, any_normal = false;
     for (const Corner& c : table_.corners()) any_uv |= c.vt != kAbsent, any_normal |= c.vn != kAbsent;
     const std::size_t n = table_.corners().size();
+    auto [positions, origin] = near_positions(positions_);
+    mesh.origin = origin;
     mesh.positions.reserve(n);
     if (any_uv) mesh.uvs.reserve(n);
     if (any_normal) mesh.normals.reserve(n);
     if (!colors_.empty()) mesh.colors.reserve(n);
     std::size_t without_uv = 0;
     for (const Corner& c : table_.corners()) {
-      mesh.positions.push_back(positions_[c.v]);
+      mesh.positions.push_back(positions[c.v]);
       if (any_uv) mesh.uvs.push_back(c.vt != kAbsent ? uvs_[c.vt] : Vec2f{});
       if (any_normal) mesh.normals.push_back(c.vn != kAbsent ? normals_[c.vn] : Vec3f{});
       if (!colors_.empty()) mesh.colors.push_back(colors_[c.v]);
@@ -228,7 +232,8 @@ class ObjParser {
   const char* end_;
   const std::string& filename_;
   int line_ = 0;
-  std::vector<Vec3f> positions_, normals_;
+  std::vector<Vec3d> positions_;
+  std::vector<Vec3f> normals_;
   std::vector<Vec2f> uvs_;
   std::vector<Rgb> colors_;
   CornerTable table_;

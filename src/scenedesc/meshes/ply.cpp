@@ -79,27 +79,32 @@ void read_vertices(const PlyElement& element, PlyBody& body, const std::string& 
   const VertexLayout layout = layout_of(element, filename);
   if (element.count > 0xffffffffu) body.fail("the mesh has more than 4,294,967,295 vertices");
   const auto n = static_cast<std::size_t>(element.count);
-  mesh.positions.reserve(n);
+  std::vector<Vec3d> places;
+  places.reserve(n);
   if (layout.normal) mesh.normals.reserve(n);
   if (layout.uv) mesh.uvs.reserve(n);
   if (layout.color) mesh.colors.reserve(n);
   std::array<float, VertexLayout::kSlots> a{};
+  Vec3d place;
   for (std::size_t k = 0; k < n; ++k) {
     body.enter(element, k);
     for (std::size_t j = 0; j < element.properties.size(); ++j) {
       const int slot = layout.slot[j];
       if (slot < 0)
         body.skip(element.properties[j]);
+      else if (slot < 3)
+        place[slot] = body.value(element.properties[j].type);
       else
         a[slot] = static_cast<float>(body.value(element.properties[j].type)) * layout.scale[slot];
     }
-    const Vec3f p{a[0], a[1], a[2]};
-    if (!is_finite(p)) body.fail("the position is not finite");
-    mesh.positions.push_back(p);
+    if (!is_finite(static_cast<Vec3f>(place))) body.fail("the position is not finite");
+    places.push_back(place);
     if (layout.normal) mesh.normals.push_back({a[3], a[4], a[5]});
     if (layout.uv) mesh.uvs.push_back({a[6], a[7]});
     if (layout.color) mesh.colors.push_back({a[8], a[9], a[10]});
   }
+  auto [positions, origin] = near_positions(places);
+  mesh.positions = std::move(positions), mesh.origin = origin;
 }
 
 struct FaceReader {

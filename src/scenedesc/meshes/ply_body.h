@@ -32,7 +32,7 @@ class PlyBody {
     throw InputError({filename_, is_text() ? line_ : 0}, at + message, "repair or export the file again");
   }
 
-  // Any value as a double: exact for all types but large float64 values, which no mesh needs exactly.
+  // Any value as a double: exact for all types.
   double value(PlyType type) {
     switch (format_) {
       case PlyFormat::ascii:
@@ -83,7 +83,7 @@ class PlyBody {
     while (p_ != end_ && (is_blank(*p_) || *p_ == '\n')) line_ += *p_++ == '\n';
     if (p_ == end_) fail("the file ends here");
     const char* first = p_;
-    float f = 0;
+    double f = 0;
     std::int64_t i = 0;
     const bool real = type == PlyType::float32 || type == PlyType::float64;
     const bool good = real ? parse_float(p_, end_, f) : parse_integer(p_, end_, i);
@@ -91,7 +91,7 @@ class PlyBody {
       const char* q = first;
       fail(quoted(take_word(q, end_)) + " is not " + (real ? "a number" : "an integer"));
     }
-    return real ? static_cast<double>(f) : static_cast<double>(i);
+    return real ? f : static_cast<double>(i);
   }
 
   template <std::endian kOrder>

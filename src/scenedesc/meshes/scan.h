@@ -11,7 +11,8 @@
 namespace lumirank::scenedesc {
 
 // The text forms of infinity and NaN are read as what they say: callers check for finite values.
-inline bool parse_float(const char*& p, const char* end, float& value) {
+template <typename Real>
+bool parse_float(const char*& p, const char* end, Real& value) {
   const char* first = p;
   if (first != end && *first == '+') ++first;
   const auto [next, status] = std::from_chars(first, end, value);
@@ -24,7 +25,7 @@ inline bool parse_float(const char*& p, const char* end, float& value) {
     const bool tiny = exponent != std::string_view::npos
                           ? token.find('-', exponent) != std::string_view::npos
                           : digits.find_first_of("123456789") > digits.find('.');
-    value = tiny ? 0.0f : std::numeric_limits<float>::infinity();
+    value = tiny ? Real{0} : std::numeric_limits<Real>::infinity();
   }
   p = next;
   return true;

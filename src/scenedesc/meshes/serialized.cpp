@@ -181,7 +181,16 @@ MeshData parse_serialized(const std::string& bytes, const std::string& filename,
     fail(filename, "the mesh claims " + std::to_string(vertices) + " vertices and " +
                        std::to_string(triangles) + " triangles, but the file is too short for them");
   MeshData mesh;
-  mesh.positions = read_vectors<Vec3f>(in, vertices, is_double);
+  if (is_double) {
+    const std::vector<double> wide = in.read_array<double>(3 * vertices);
+    std::vector<Vec3d> places(static_cast<std::size_t>(vertices));
+    for (std::size_t k = 0; k < places.size(); ++k)
+      places[k] = {wide[3 * k], wide[3 * k + 1], wide[3 * k + 2]};
+    auto [positions, origin] = near_positions(places);
+    mesh.positions = std::move(positions), mesh.origin = origin;
+  } else {
+    mesh.positions = in.read_array<Vec3f>(vertices);
+  }
   if (flags & kNormals) mesh.normals = read_vectors<Vec3f>(in, vertices, is_double);
   if (flags & kTexcoords) mesh.uvs = read_vectors<Vec2f>(in, vertices, is_double);
   if (flags & kColors) mesh.colors = read_vectors<Rgb>(in, vertices, is_double);

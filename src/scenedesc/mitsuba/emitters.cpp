@@ -30,7 +30,7 @@ PointLightDesc point_light(Plugin& p) {
   if (position && p.has("to_world"))
     throw InputError(p.where_of("to_world"), p.title() + " has both \"position\" and \"to_world\"",
                      "keep one of them");
-  out.position = position ? *position : p.transform().point({0, 0, 0});
+  out.position = position ? *position : p.transform().origin();
   out.intensity = emission(p, "intensity");
   return out;
 }
@@ -80,7 +80,7 @@ DirectionalLightDesc directional_light(Plugin& p) {
   if (direction && p.has("to_world"))
     throw InputError(p.where_of("to_world"), p.title() + " has both \"direction\" and \"to_world\"",
                      "keep one of them");
-  const Vec3f d = direction ? *direction : p.regular_transform().vector({0, 0, 1});
+  const Vec3f d = direction ? static_cast<Vec3f>(*direction) : p.regular_transform().vector({0, 0, 1});
   if (!(length(d) > 0))
     throw InputError(p.where_of("direction"), "the direction of " + p.title() + " is zero");
   out.direction = normalize(d);
@@ -139,7 +139,7 @@ SunSkyDesc sun_sky(Reader& reader, Plugin& p) {
       if (p.has(name))
         throw InputError(p.where_of(name), p.title() + " has both a sun direction and a place and time",
                          "keep one of them");
-    towards = out.to_world.inverse()->vector(*direction);  // stated in the world's frame
+    towards = out.to_world.inverse()->vector(static_cast<Vec3f>(*direction));  // stated in the world's frame
     if (!(length(towards) > 0))
       throw InputError(p.where_of("sun_direction"), "\"sun_direction\" of " + p.title() + " is zero");
     towards = normalize(towards);

@@ -79,7 +79,7 @@ decltype(ShapeDesc::kind) curves(Reader& reader, Plugin& p, const Transform& to_
   if (p.type() != "hair") return known();
   // World units, whatever to_world does to the file's points.
   out.file_radius = p.positive("radius", 0.025f) /
-                    static_cast<float>(std::cbrt(std::max(1e-30, std::abs(to_world.determinant3()))));
+                    static_cast<float>(std::cbrt(std::max(1e-300, std::abs(to_world.determinant3()))));
   // Segments that hardly bend are merged there: no picture shows it.
   p.ignore({"angle_threshold"});
   if (const float reduction = share(p, "reduction", 0); reduction > 0)

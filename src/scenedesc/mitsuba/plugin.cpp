@@ -140,7 +140,7 @@ std::variant<float, std::string> Plugin::text_or_number(const std::string& name)
   return parse_float(child->element->require("value"), child->element->where,
                      "\"" + name + "\" of " + title());
 }
-std::optional<Vec3f> Plugin::vec3(const std::string& name) {
+std::optional<Vec3d> Plugin::vec3(const std::string& name) {
   const Child* child = find_tag(name, {"point", "vector"});
   if (!child) return std::nullopt;
   return parse_vec3(*child->element);

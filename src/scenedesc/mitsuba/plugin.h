@@ -37,7 +37,7 @@ class Plugin {
   std::string required_text(const std::string& name);
   // An index of refraction is a number or the name of a material. The property must be there.
   std::variant<float, std::string> text_or_number(const std::string& name);
-  std::optional<Vec3f> vec3(const std::string& name);
+  std::optional<Vec3d> vec3(const std::string& name);
   Transform transform(const std::string& name = "to_world");
   // The same, but an error if it cannot be inverted.
   Transform regular_transform(const std::string& name = "to_world");

@@ -37,7 +37,7 @@ decltype(ShapeDesc::kind) mesh_file(Reader& reader, Plugin& p, MeshFormat format
   return out;
 }
 
-Vec3f point(Plugin& p, const std::string& name, Vec3f fallback) { return p.vec3(name).value_or(fallback); }
+Vec3d point(Plugin& p, const std::string& name, Vec3d fallback) { return p.vec3(name).value_or(fallback); }
 
 }  // namespace
 
@@ -84,7 +84,7 @@ int Reader::build_shape(const Element& element, bool in_group) {
   } else if (type == "cylinder") {
     const CylinderDesc cylinder{point(p, "p0", {0, 0, 0}), point(p, "p1", {0, 0, 1}),
                                 p.positive("radius", 1)};
-    if (!(length(cylinder.p1 - cylinder.p0) > 0))
+    if (cylinder.p1 == cylinder.p0)
       throw InputError(p.where_of("p1"), "p0 and p1 of " + p.title() + " are the same point");
     shape.kind = cylinder;
   } else if (group) {

@@ -31,12 +31,12 @@ double vec_part(const Element& element, const char* name, double fallback) {
 
 bool has_xyz(const Element& e) { return e.find("x") || e.find("y") || e.find("z"); }
 
-Vec3f list_vec3(const Element& element, const char* attribute) {
+Vec3d list_vec3(const Element& element, const char* attribute) {
   const std::string what = std::string(attribute) + " of <" + element.tag + ">";
   const auto list = parse_list(element.require(attribute), element.where, what);
   if (list.size() != 3)
     throw InputError(element.where, what + " has " + std::to_string(list.size()) + " numbers; 3 are needed");
-  return {static_cast<float>(list[0]), static_cast<float>(list[1]), static_cast<float>(list[2])};
+  return {list[0], list[1], list[2]};
 }
 
 Transform parse_matrix(const Element& element) {
@@ -55,12 +55,12 @@ Transform parse_matrix(const Element& element) {
 }
 
 Transform parse_look_at(const Element& element) {
-  const Vec3f origin = list_vec3(element, "origin"), target = list_vec3(element, "target");
-  const Vec3f up = element.find("up") ? list_vec3(element, "up") : Vec3f{0, 1, 0};
-  const Vec3f forward = target - origin;
-  if (!(length(forward) > 0))
+  const Vec3d origin = list_vec3(element, "origin"), target = list_vec3(element, "target");
+  const Vec3f up = element.find("up") ? static_cast<Vec3f>(list_vec3(element, "up")) : Vec3f{0, 1, 0};
+  if (origin == target)
     throw InputError(element.where, "origin and target of <" + element.tag + "> are the same point");
-  if (!(length(up) > 0) || !(length(cross(normalize(forward), normalize(up))) > 1e-6f))
+  const auto forward = static_cast<Vec3f>(Transform::look_at(origin, target, up).axis(2));
+  if (!(length(up) > 0) || !(length(cross(forward, normalize(up))) > 1e-6f))
     throw InputError(element.where, "up of <" + element.tag + "> is parallel to the line of sight",
                      "choose another up");
   return Transform::look_at(origin, target, up);
@@ -70,7 +70,7 @@ Transform parse_step(const Element& e) {
   if (e.tag == "matrix") return parse_matrix(e);
   if (e.tag == "lookat" || e.tag == "lookAt" || e.tag == "look_at") return parse_look_at(e);
   if (e.tag == "translate") {
-    const Vec3f v = parse_vec3(e);
+    const Vec3d v = parse_vec3(e);
     if (!e.find("value"))
       return Transform::translate(vec_part(e, "x", 0), vec_part(e, "y", 0), vec_part(e, "z", 0));
     return Transform::translate(v.x, v.y, v.z);
@@ -89,7 +89,7 @@ Transform parse_step(const Element& e) {
     return Transform::scale(x, y, z);
   }
   if (e.tag == "rotate") {
-    const Vec3f axis = parse_vec3(e);
+    const auto axis = static_cast<Vec3f>(parse_vec3(e));
     if (!(length(axis) > 0)) throw InputError(e.where, "the axis of <rotate> is zero", "write y=\"1\", say");
     return Transform::rotate(axis.x, axis.y, axis.z,
                              parse_double(e.require("angle"), e.where, "angle of <rotate>"));
@@ -152,12 +152,11 @@ std::vector<double> parse_list(const std::string& text, const SourceLocation& wh
   return list;
 }
 
-Vec3f parse_vec3(const Element& element) {
+Vec3d parse_vec3(const Element& element) {
   if (element.find("value")) return list_vec3(element, "value");
   if (!has_xyz(element))
     throw InputError(element.where, "<" + element.tag + "> has neither x, y, z nor \"value\"");
-  return {static_cast<float>(vec_part(element, "x", 0)), static_cast<float>(vec_part(element, "y", 0)),
-          static_cast<float>(vec_part(element, "z", 0))};
+  return {vec_part(element, "x", 0), vec_part(element, "y", 0), vec_part(element, "z", 0)};
 }
 
 Transform parse_transform(const Element& element) {

@@ -20,7 +20,7 @@ bool parse_bool(const std::string& text, const SourceLocation& where, const std:
 std::vector<double> parse_list(const std::string& text, const SourceLocation& where, const std::string& what);
 
 // <point>, <vector>: x, y, z (0 if absent) or value="x, y, z".
-Vec3f parse_vec3(const Element& element);
+Vec3d parse_vec3(const Element& element);
 // The children of <transform>, each applied after the ones before it.
 Transform parse_transform(const Element& element);
 

@@ -96,7 +96,7 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
              scene_.lumens_per_unit;
     }
     open("point");
-    xml_.place("point", "position", profile->to_world.point({0, 0, 0}));
+    xml_.place("point", "position", profile->to_world.origin());
     xml_.color("intensity", profile->intensity * static_cast<float>(mean));
   } else if (const auto* sun = std::get_if<DirectionalLightDesc>(&e.kind)) {
     open("directional");

@@ -70,6 +70,7 @@ void MitsubaWriter::mesh(const MeshFileDesc& file, const std::string& id) {
 
 void MitsubaWriter::ply(const MeshData& mesh, const std::string& id, std::string name) {
   if (name.empty()) name = add_file("mesh_" + std::to_string(out_.files.size()), ".ply", ply_bytes(mesh));
+  origin_ = mesh.origin;
   open_shape("ply", id);
   xml_.string("filename", name);
   xml_.flag("face_normals", mesh.normals.empty());
@@ -115,6 +116,7 @@ void MitsubaWriter::curves(const ShapeDesc& s, const CurvesDesc& c, const std::s
         text += "\n";
       }
     }
+    origin_ = c.origin;
     name = add_file("curves_" + std::to_string(out_.files.size()), ".txt", std::move(text));
   }
   open_shape(linear ? "linearcurve" : "bsplinecurve", id);
@@ -128,6 +130,7 @@ void MitsubaWriter::shape(int index) {
   if (const auto* held = std::get_if<InlineMeshDesc>(&s.kind))
     if (!held->mesh || held->mesh->triangle_count() == 0)
       return warn(s.where, "shapes without a triangle (" + held->name + ")", "");
+  origin_ = {};
   if (const auto* file = std::get_if<MeshFileDesc>(&s.kind)) {
     mesh(*file, id);
   } else if (const auto* held = std::get_if<InlineMeshDesc>(&s.kind)) {
@@ -160,7 +163,8 @@ void MitsubaWriter::shape(int index) {
     open_shape("instance", id);
     xml_.reference(shape_ids_[static_cast<std::size_t>(copy->group)]);
   }
-  if (!group) xml_.transform("to_world", s.to_world);
+  if (!group)
+    xml_.transform("to_world", origin_ == Vec3d{} ? s.to_world : s.to_world * Transform::translate(origin_));
   if (!group && !instance) {
     if (s.flip_normals) xml_.flag("flip_normals", true);
     if (s.bsdf != kNone) xml_.reference(bsdf_ids_[static_cast<std::size_t>(s.bsdf)]);

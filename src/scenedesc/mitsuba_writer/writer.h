@@ -85,6 +85,7 @@ class MitsubaWriter {
   std::map<int, std::optional<BitmapTextureDesc>> painted_;
   std::vector<int> asked_;                     // textures that something reads
   std::set<int> written_;                      // of these
+  Vec3d origin_;                               // of the positions of the mesh or curves written last
   std::map<const void*, std::string> stored_;  // meshes and pictures that are used more than once
 };
 

@@ -54,6 +54,9 @@ class Xml {
   void place(const char* tag, const char* name, Vec3f v) {
     leaf(tag, {{"name", name}, {"x", digits(v.x)}, {"y", digits(v.y)}, {"z", digits(v.z)}});
   }
+  void place(const char* tag, const char* name, Vec3d v) {
+    leaf(tag, {{"name", name}, {"x", digits(v.x)}, {"y", digits(v.y)}, {"z", digits(v.z)}});
+  }
   void reference(const std::string& id, const char* name = nullptr) {
     if (name)
       leaf("ref", {{"name", name}, {"id", id}});

@@ -10,10 +10,12 @@ namespace {
 
 float area_of(const MeshData& mesh, std::size_t triangle, const Transform& to_world) {
   const auto corner = [&](std::size_t k) {
-    return to_world.point(mesh.positions[mesh.indices[3 * triangle + k]]);
+    return to_world.place(mesh.positions[mesh.indices[3 * triangle + k]] + mesh.origin);
   };
-  const Vec3f a = corner(0);
-  return 0.5f * length(cross(corner(1) - a, corner(2) - a));
+  // In double precision: the triangle may be small, and far away.
+  const Vec3d a = corner(0), u = corner(1) - a, v = corner(2) - a;
+  return static_cast<float>(0.5 *
+                            std::hypot(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x));
 }
 
 // pbrt takes the areas of quadrics as they are before their transform, and is one light of each.

@@ -20,9 +20,11 @@ Vec3f vec3(const std::vector<double>& v, std::size_t at) {
 }
 
 Transform look_at(const std::vector<double>& v, const Place& where) {
-  const Vec3f eye = vec3(v, 0), target = vec3(v, 3), up = vec3(v, 6);
-  if (!(length(target - eye) > 0)) throw InputError(where, "LookAt has the same eye and target");
-  if (!(length(up) > 0) || !(length(cross(normalize(target - eye), normalize(up))) > 1e-6f))
+  const Vec3d eye{v[0], v[1], v[2]}, target{v[3], v[4], v[5]};
+  const Vec3f up = vec3(v, 6);
+  if (eye == target) throw InputError(where, "LookAt has the same eye and target");
+  const auto forward = static_cast<Vec3f>(Transform::look_at(eye, target, up).axis(2));
+  if (!(length(up) > 0) || !(length(cross(forward, normalize(up))) > 1e-6f))
     throw InputError(where, "the up of LookAt is parallel to its line of sight", "choose another up");
   // The same columns in pbrt, where the first points to the right.
   return Transform::look_at(eye, target, up).inverse().value_or(Transform{});

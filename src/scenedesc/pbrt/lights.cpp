@@ -27,25 +27,26 @@ float power_scale(Params& p, float emitted) {
   return power > 0 ? power / emitted : 1;
 }
 
-Vec3f end_of(Params& p, Vec3f from) {
-  const Vec3f to = p.point3("to", {0, 0, 1});
-  if (!(length(to - from) > 0)) p.fail("to", "is the same point as \"from\"");
+Vec3d end_of(Params& p, Vec3d from) {
+  const Vec3d to = p.point3("to", {0, 0, 1});
+  if (to == from) p.fail("to", "is the same point as \"from\"");
   return to;
 }
 
 PointLightDesc point(Params& p, const Transform& to_world) {
   PointLightDesc out;
-  out.position = to_world.point(p.point3("from", {0, 0, 0}));
+  out.position = to_world.place(p.point3("from", {0, 0, 0}));
   out.intensity = spectrum(p, "I") * (scale_of(p) * power_scale(p, 4 * kPi));
   return out;
 }
 
 SpotLightDesc spot(Params& p, const Transform& to_world) {
   SpotLightDesc out;
-  const Vec3f from = p.point3("from", {0, 0, 0}), to = end_of(p, from);
-  const Vec3f position = to_world.point(from), axis = to_world.vector(to - from);
-  const Vec3f up = std::abs(axis.y) < 0.9f * length(axis) ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0};
-  out.to_world = Transform::look_at(position, position + axis, up);
+  const Vec3d from = p.point3("from", {0, 0, 0}), to = end_of(p, from);
+  const Vec3d position = to_world.place(from);
+  const Vec3f axis = normalize(to_world.vector(static_cast<Vec3f>(to - from)));
+  const Vec3f up = std::abs(axis.y) < 0.9f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0};
+  out.to_world = Transform::aimed(position, axis, up);
   const float cone = p.number("coneangle", 30), delta = p.number("conedeltaangle", 5);
   if (!(cone > 0 && cone <= 180)) p.fail("coneangle", "is not between 0 and 180");
   if (!(delta >= 0 && delta <= cone)) p.fail("conedeltaangle", "is not between 0 and \"coneangle\"");
@@ -78,8 +79,8 @@ decltype(EmitterDesc::kind) goniometric(Reader& reader, Params& p, const Transfo
 
 DirectionalLightDesc distant(Params& p, const Transform& to_world) {
   DirectionalLightDesc out;
-  const Vec3f from = p.point3("from", {0, 0, 0});
-  out.direction = normalize(to_world.vector(end_of(p, from) - from));
+  const Vec3d from = p.point3("from", {0, 0, 0});
+  out.direction = normalize(to_world.vector(static_cast<Vec3f>(end_of(p, from) - from)));
   out.irradiance = spectrum(p, "L") * scale_of(p);
   const float illuminance = p.number("illuminance", -1);
   if (illuminance > 0) out.irradiance *= illuminance;

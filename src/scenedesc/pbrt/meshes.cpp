@@ -46,7 +46,8 @@ void check_count(Params& p, const char* name, const List& list, std::size_t vert
 // Positions, normals and uv of the list, one of each per vertex.
 MeshData vertices(Params& p) {
   MeshData out;
-  out.positions = p.points3("P");
+  auto [positions, origin] = near_positions(p.places3("P"));
+  out.positions = std::move(positions), out.origin = origin;
   if (out.positions.empty())
     throw InputError(p.where_of("P"), p.title() + " has no points", "add \"point3 P\" [ … ]");
   out.normals = p.points3("N");
@@ -71,7 +72,8 @@ std::optional<Kind> triangle_mesh(Reader&, Params& p) {
 
 std::optional<Kind> loop_surface(Reader& reader, Params& p) {
   MeshData mesh;
-  mesh.positions = p.points3("P");
+  auto [positions, origin] = near_positions(p.places3("P"));
+  mesh.positions = std::move(positions), mesh.origin = origin;
   if (mesh.positions.empty())
     throw InputError(p.where_of("P"), p.title() + " has no points", "add \"point3 P\" [ … ]");
   mesh.indices = indices(p, mesh.positions.size(), 3);
@@ -90,6 +92,7 @@ std::optional<Kind> bilinear_mesh(Reader& reader, Params& p) {
   }
   p.numbers("faceIndices", ParamType::integer);
   MeshData mesh;
+  mesh.origin = control.origin;
   for (std::size_t f = 0; f < corners.size(); f += 4) {
     // In pbrt's order: (0,0), (1,0), (0,1), (1,1).
     const std::uint32_t* c = &corners[f];
@@ -128,7 +131,8 @@ std::optional<Kind> curve(Reader& reader, Params& p) {
   p.ignore({"splitdepth", "N"});
 
   CurvesDesc out;
-  out.points = p.points3("P");
+  auto [points, origin] = near_positions(p.places3("P"));
+  out.points = std::move(points), out.origin = origin;
   if (degree == 2) {
     if (basis == "bspline") p.fail("degree", "is 2 for a b-spline", "give a cubic one");
     // Quadratic pieces raised to cubic ones.

@@ -114,17 +114,24 @@ std::string Params::required_text(const char* name) {
   return text(name, {});
 }
 
-Vec3f Params::point3(const char* name, Vec3f fallback) {
+Vec3d Params::point3(const char* name, Vec3d fallback) {
   const Parameter* p = find(name, ParamType::point3);
   if (!p) return fallback;
   const auto& v = single(*this, name, p->numbers, 3);
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  return {v[0], v[1], v[2]};
 }
 
 const std::vector<double>& Params::numbers(const char* name, ParamType type) {
   static const std::vector<double> none;
   const Parameter* p = find(name, type);
   return p ? p->numbers : none;
+}
+
+std::vector<Vec3d> Params::places3(const char* name) {
+  const auto& v = numbers(name, ParamType::point3);
+  std::vector<Vec3d> out(v.size() / 3);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+  return out;
 }
 
 std::vector<Vec3f> Params::points3(const char* name) {

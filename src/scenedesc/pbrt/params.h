@@ -55,10 +55,11 @@ class Params {
   bool flag(const char* name, bool fallback);
   std::string text(const char* name, const std::string& fallback);
   std::string required_text(const char* name);
-  Vec3f point3(const char* name, Vec3f fallback);
+  Vec3d point3(const char* name, Vec3d fallback);
   // Lists; empty if there is none.
   const std::vector<double>& numbers(const char* name, ParamType type);
   std::vector<Vec3f> points3(const char* name);
+  std::vector<Vec3d> places3(const char* name);  // not rounded
   std::vector<Vec2f> points2(const char* name);
   std::vector<std::string> texts(const char* name);
 
