@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -30,11 +31,17 @@ double proc_bytes(const char* file, const std::string& name) {
   return kUnknownMemory;
 }
 
+// Address space that each thread takes beside what it fills: OpenBLAS maps 128 MiB (and tries for ever where
+// it cannot have them), the stack is 8 MiB. Only limits of address space see it.
+constexpr double kMappedPerThread = 136.0 * (1 << 20);
+
 double limit_left(int resource, const char* used) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknownMemory;
   const double taken = proc_bytes("/proc/self/status", used);
-  return std::isfinite(taken) ? static_cast<double>(limit.rlim_cur) - taken : kUnknownMemory;
+  return std::isfinite(taken) ? static_cast<double>(limit.rlim_cur) - taken -
+                                    kMappedPerThread * static_cast<double>(current_threads())
+                              : kUnknownMemory;
 }
 
 double number_in(const std::filesystem::path& file) {
@@ -67,6 +74,12 @@ double group_left() {
   return left;
 }
 
+double machine_left() {
+  const double memory = proc_bytes("/proc/meminfo", "MemAvailable"),
+               swap = proc_bytes("/proc/meminfo", "SwapFree");
+  return memory + (std::isfinite(swap) ? swap : 0);
+}
+
 std::string in_gigabytes(double bytes) {
   std::ostringstream text;
   text.precision(bytes < 1e10 ? 2 : 3);
@@ -77,10 +90,8 @@ std::string in_gigabytes(double bytes) {
 }  // namespace
 
 double available_memory() {
-  const double machine = proc_bytes("/proc/meminfo", "MemAvailable"),
-               swap = proc_bytes("/proc/meminfo", "SwapFree");
-  return std::max(0.0, std::min({machine + (std::isfinite(swap) ? swap : 0), group_left(),
-                                 limit_left(RLIMIT_AS, "VmSize"), limit_left(RLIMIT_DATA, "VmData")}));
+  return std::max(0.0, std::min({machine_left(), group_left(), limit_left(RLIMIT_AS, "VmSize"),
+                                 limit_left(RLIMIT_DATA, "VmData")}));
 }
 
 // Slopes of memory.peak_bytes on a room of diffuse walls: 10^5 … 4·10^6 lights (of 86 bytes, 91 more in the
@@ -100,9 +111,10 @@ double memory_of_reference(double pixels) { return (2 * 3 * 24 + 6 * 12) * pixel
 
 void require_memory(double bytes, const std::string& remedy) {
   if (const double left = available_memory(); bytes > left)
-    throw InputError("there is not enough memory: this takes about " + in_gigabytes(bytes) + ", and " +
-                         in_gigabytes(left) + " are left",
-                     remedy);
+    throw InputError(
+        "there is not enough memory: this takes about " + in_gigabytes(bytes) + ", and " +
+            in_gigabytes(left) + " are left",
+        remedy + (left < std::min(machine_left(), group_left()) ? "; or raise the limit (ulimit)" : ""));
 }
 
 void within_memory(const std::string& remedy, const std::function<void()>& work) {

@@ -238,6 +238,11 @@ TEST_F(Attempts, OnLimits) {
   const Outcome outcome = start_lumirank(many, {}, "ulimit -v 4000000");
   expect_refused(outcome, "there is not enough memory: this takes about 11 GB");
   EXPECT_NE(outcome.err.find("fewer --lights"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("ulimit"), std::string::npos) << outcome.err;
+  // Where not even the libraries' own buffers fit: refused, instead of waiting for them.
+  const Outcome little =
+      start_lumirank(render + Arguments{"-o", folder_ / "b.pfm", "--threads", "4"}, {}, "ulimit -v 800000");
+  EXPECT_TRUE(little.code == 2 || little.code == 0) << little.code << " " << little.err;
 }
 
 // The estimate holds what the report says of lights, receivers and the matrix of them, and is not much more.
