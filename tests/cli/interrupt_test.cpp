@@ -55,7 +55,7 @@ TEST(Interrupt, BeforeAnythingIsFinishedWritesNothing) {
   const TemporaryFolder folder;
   for (const char* command : {"render", "reference"}) {
     const Outcome outcome = interrupted({command, example("lamps"), "-o", folder / "a.exr", "--report",
-                                         folder / "r.json", "--size", "4000x4000"},
+                                         folder / "r.json", "--size", "1500x1500"},
                                         catches_interrupts);
     EXPECT_EQ(outcome.code, 130) << outcome.err;
     EXPECT_NE(outcome.err.find("nothing was written"), std::string::npos) << outcome.err;
