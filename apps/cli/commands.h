@@ -10,11 +10,12 @@
 #include "console.h"
 #include "lumirank/compare.h"
 #include "lumirank/lumirank.h"
+#include "run.h"
 
 namespace lumirank::cli {
 
 // Returns the exit code.
-using Action = std::function<int()>;
+using Action = std::function<int(Streams)>;
 
 void add_render(CLI::App& app, Action& action);
 void add_reference(CLI::App& app, Action& action);
@@ -51,9 +52,13 @@ struct OutputOptions {
 void add_output_options(CLI::App& command, OutputOptions& outputs);
 // Throws InputError before any work is done if something could not be written.
 void check_outputs(const OutputOptions& outputs, const RenderSettings& settings);
+// The same once the scene is known: none of its files, nor any other input, is written over.
+void check_inputs(const OutputOptions& outputs, const RenderSettings& settings, const CommonOptions& common,
+                  const Scene& scene);
 PreviewCallback preview_writer(const OutputOptions& outputs);
-// Writes images and report and says so; exit code 130 if the run was interrupted.
-int write_outputs(const OutputOptions& outputs, const RenderResult& result, Console& console, bool quiet);
+// Writes images and report, all or none, and says so; exit code 130 if the run was interrupted.
+int write_outputs(const OutputOptions& outputs, const RenderResult& result, Console& console, bool quiet,
+                  Streams streams);
 
 std::pair<std::string, std::string> split_assignment(const std::string& text, const char* option);
 

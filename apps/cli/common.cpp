@@ -1,6 +1,5 @@
+// What several commands share: the scene and the render settings.
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -8,6 +7,15 @@
 #include "commands.h"
 
 namespace lumirank::cli {
+namespace {
+
+// In the settings themselves an empty text stands for the default; on the command line it is a variable of a
+// script that was not set.
+void require_text(const std::string& key, const std::string& value) {
+  if (value.empty()) throw InputError("--" + key + " is empty", "leave it out for its default");
+}
+
+}  // namespace
 
 std::pair<std::string, std::string> split_assignment(const std::string& text, const char* option) {
   const std::size_t equals = text.find('=');
@@ -33,7 +41,8 @@ RenderSettings CommonOptions::render_settings() const {
     std::ifstream in(replay, std::ios::binary);
     std::ostringstream text;
     text << in.rdbuf();
-    if (!in) throw InputError({replay, 0}, "cannot be read", "give the report of an earlier render");
+    if (std::error_code error; !in || std::filesystem::is_directory(replay, error))
+      throw InputError({replay, 0}, "cannot be read", "give the report of an earlier render");
     settings = render_settings_from_report(text.str());
   }
   // A budget beside it is a wish for another picture.
@@ -76,6 +85,7 @@ void add_setting_options(CLI::App& command, CommonOptions& common, const std::ve
           .add_option_function<std::vector<std::string>>(
               "--" + key,
               [&common, key](const std::vector<std::string>& values) {
+                for (const auto& value : values) require_text(key, value);
                 std::string joined;
                 for (const auto& v : values) joined += (joined.empty() ? "" : ",") + v;
                 common.fields[key] = joined;
@@ -84,7 +94,12 @@ void add_setting_options(CLI::App& command, CommonOptions& common, const std::ve
           ->allow_extra_args(false);
     } else {
       command.add_option_function<std::string>(
-          "--" + key, [&common, key](const std::string& value) { common.fields[key] = value; }, help);
+          "--" + key,
+          [&common, key](const std::string& value) {
+            require_text(key, value);
+            common.fields[key] = value;
+          },
+          help);
     }
   }
   if (keys.empty()) {
@@ -95,76 +110,6 @@ void add_setting_options(CLI::App& command, CommonOptions& common, const std::ve
         "REPORT.json: the same settings again, and what the clock decided under --time; other options "
         "win over it");
   }
-}
-
-namespace {
-
-void read_range(const std::string& text, DisplaySettings& display) {
-  std::istringstream in(text);
-  char colon = 0;
-  if (!(in >> display.lux_low >> colon >> display.lux_high) || colon != ':' || in.peek() != EOF ||
-      !(display.lux_low >= 0 && display.lux_high > display.lux_low && display.lux_high < 1e12))
-    throw InputError("'" + text + "' is not a range of lux", "write it as LOW:HIGH with 0 ≤ LOW < HIGH");
-}
-
-// Beside each PNG picture: room.png → room.illuminance.png.
-std::vector<std::string> illuminance_files(const OutputOptions& outputs) {
-  std::vector<std::string> files;
-  for (const auto& image : outputs.images) {
-    std::filesystem::path file(image);
-    if (file.extension() == ".png") files.push_back(file.replace_extension(".illuminance.png").string());
-  }
-  return files;
-}
-
-}  // namespace
-
-void add_output_options(CLI::App& command, OutputOptions& outputs) {
-  command.add_option("-o,--output", outputs.images, "image file: .exr, .png or .pfm; repeatable")
-      ->required()
-      ->allow_extra_args(false);
-  command.add_option("--report", outputs.report, "JSON file for times, counts and settings");
-  command.add_option("--preview", outputs.preview, "PNG file that is rewritten while the estimate improves");
-  command.add_option("--exposure", outputs.display.exposure, "stops, for PNG (default 0)");
-  command.add_option("--tonemap", outputs.display.tonemap, "for PNG: none, reinhard or agx (default none)")
-      ->check(CLI::IsMember({"none", "reinhard", "agx"}));
-  command.add_option_function<std::string>(
-      "--illuminance-range", [&outputs](const std::string& text) { read_range(text, outputs.display); },
-      "LOW:HIGH, lux: the scale of the false colours of --aov illuminance (default: 0 to a round number)");
-}
-
-void check_outputs(const OutputOptions& outputs, const RenderSettings& settings) {
-  const bool illuminance = std::count(settings.aovs.begin(), settings.aovs.end(), "illuminance") > 0;
-  if (!(std::abs(outputs.display.exposure) <= 100))  // also what is not a number
-    throw InputError("--exposure must lie between -100 and 100 stops");
-  for (const auto& file : outputs.images) check_writable(file);
-  if (illuminance)
-    for (const auto& file : illuminance_files(outputs)) check_writable(file);
-  if (!outputs.preview.empty()) check_writable(outputs.preview);
-  if (!outputs.report.empty()) check_text_writable(outputs.report);
-}
-
-PreviewCallback preview_writer(const OutputOptions& outputs) {
-  if (outputs.preview.empty()) return {};
-  return [outputs](const Picture& picture) { write_picture(outputs.preview, picture, outputs.display); };
-}
-
-int write_outputs(const OutputOptions& outputs, const RenderResult& result, Console& console, bool quiet) {
-  for (const auto& file : outputs.images) write_picture(file, result.picture, outputs.display);
-  const auto& planes = result.picture.planes;
-  std::vector<std::string> written = outputs.images;
-  if (std::any_of(planes.begin(), planes.end(), [](const Plane& p) { return p.name == "illuminance"; }))
-    for (const auto& file : illuminance_files(outputs))
-      write_illuminance(file, result.picture, outputs.display), written.push_back(file);
-  if (!outputs.preview.empty()) write_picture(outputs.preview, result.picture, outputs.display);
-  if (!outputs.report.empty()) write_text(outputs.report, result.report_json);
-  console.clear();
-  if (result.interrupted)
-    std::fprintf(stderr, "interrupted: what was finished has been written to %s\n",
-                 outputs.images.front().c_str());
-  else if (!quiet)
-    for (const auto& file : written) std::printf("wrote %s\n", file.c_str());
-  return result.interrupted ? 130 : 0;
 }
 
 }  // namespace lumirank::cli

@@ -4,32 +4,20 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
+
+#include "process.h"
 
 namespace lumirank::cli {
-
-std::atomic<bool> g_interrupted{false};
 
 namespace {
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-void on_signal(int) {
-  if (g_interrupted.exchange(true)) _exit(130);
-}
 }  // namespace
 
-void install_signal_handlers() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-Console::Console(Verbosity verbosity) : verbosity_(verbosity), terminal_(isatty(STDERR_FILENO) != 0) {}
+Console::Console(Verbosity verbosity, std::FILE* stream)
+    : verbosity_(verbosity), stream_(stream), terminal_(isatty(fileno(stream)) != 0) {}
 
 Console::~Console() { clear(); }
 
@@ -38,12 +26,12 @@ Sinks Console::sinks() {
   if (verbosity_ == Verbosity::verbose)
     sinks.info = [this](const std::string& m) {
       clear();
-      std::fprintf(stderr, "%s\n", m.c_str());
+      std::fprintf(stream_, "%s\n", m.c_str());
     };
   if (verbosity_ != Verbosity::quiet)
     sinks.warning = [this](const std::string& m) {
       clear();
-      std::fprintf(stderr, "warning: %s\n", m.c_str());
+      std::fprintf(stream_, "warning: %s\n", m.c_str());
     };
   if (verbosity_ != Verbosity::quiet && terminal_)
     sinks.progress = [this](const char* phase, double fraction) { draw(phase, fraction); };
@@ -54,7 +42,7 @@ Sinks Console::sinks() {
 void Console::clear() {
   const std::scoped_lock lock(mutex_);
   if (!drawn_) return;
-  std::fprintf(stderr, "\r\033[K");
+  std::fprintf(stream_, "\r\033[K");
   drawn_ = false;
 }
 
@@ -73,12 +61,12 @@ void Console::draw(const char* phase, double fraction) {
   bar[kWidth] = 0;
   const double elapsed = t - phase_start_;
   if (furthest_ > 0.01 && elapsed > 0.3) {
-    std::fprintf(stderr, "\r\033[K%-16s [%s] %3.0f %%  %.0f s left", phase, bar, 100 * furthest_,
+    std::fprintf(stream_, "\r\033[K%-16s [%s] %3.0f %%  %.0f s left", phase, bar, 100 * furthest_,
                  elapsed * (1 - furthest_) / furthest_);
   } else {
-    std::fprintf(stderr, "\r\033[K%-16s [%s] %3.0f %%", phase, bar, 100 * furthest_);
+    std::fprintf(stream_, "\r\033[K%-16s [%s] %3.0f %%", phase, bar, 100 * furthest_);
   }
-  std::fflush(stderr);
+  std::fflush(stream_);
   drawn_ = true;
 }
 

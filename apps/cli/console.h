@@ -1,7 +1,7 @@
-// The terminal: warnings, a progress bar with the remaining time, and Ctrl-C.
+// The terminal: warnings, and a progress bar with the remaining time.
 #pragma once
 
-#include <atomic>
+#include <cstdio>
 #include <mutex>
 #include <string>
 
@@ -13,7 +13,7 @@ enum class Verbosity { quiet, normal, verbose };
 
 class Console {
  public:
-  explicit Console(Verbosity verbosity);
+  Console(Verbosity verbosity, std::FILE* stream);
   ~Console();
   Sinks sinks();
   // Removes the bar, so that other text can be printed.
@@ -23,15 +23,12 @@ class Console {
   void draw(const char* phase, double fraction);
 
   Verbosity verbosity_;
+  std::FILE* stream_;
   bool terminal_;
   std::mutex mutex_;
   std::string phase_;
   double phase_start_ = 0, last_draw_ = 0, furthest_ = 0;
   bool drawn_ = false;
 };
-
-// Set by SIGINT and SIGTERM; a second signal ends the program at once.
-extern std::atomic<bool> g_interrupted;
-void install_signal_handlers();
 
 }  // namespace lumirank::cli

@@ -18,13 +18,14 @@ void add_convert(CLI::App& app, Action& action) {
       ->required();
   command->footer("Example:\n  lumirank convert room.glb room.xml\n");
   command->callback([options, &action] {
-    action = [options] {
-      Console console(options->common.verbosity());
+    action = [options](Streams streams) {
+      Console console(options->common.verbosity(), streams.err);
       const Scene scene = Scene::load(options->common.scene, options->common.load_options(), console.sinks());
       const auto files = convert(scene, options->output, console.sinks());
       console.clear();
       if (!options->common.quiet)
-        std::printf("wrote %s and %zu files beside it\n", files.back().c_str(), files.size() - 1);
+        std::fprintf(streams.out, "wrote %s and %zu files beside it\n", files.back().c_str(),
+                     files.size() - 1);
       return 0;
     };
   });

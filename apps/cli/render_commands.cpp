@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "values.h"
 
 namespace lumirank::cli {
 
@@ -22,15 +23,16 @@ void add_render(CLI::App& app, Action& action) {
       "room.json\n"
       "  lumirank render room.xml -o room.exr --time 10 --preview room.png --aov light:*\n");
   command->callback([options, &action] {
-    action = [options] {
+    action = [options](Streams streams) {
       const CommonOptions& common = options->common;
       const RenderSettings settings = common.render_settings();
       validate(settings);
       check_outputs(options->outputs, settings);
-      Console console(common.verbosity());
+      Console console(common.verbosity(), streams.err);
       const Scene scene = Scene::load(common.scene, common.load_options(), console.sinks());
+      check_inputs(options->outputs, settings, common, scene);
       const RenderResult result = render(scene, settings, console.sinks(), preview_writer(options->outputs));
-      return write_outputs(options->outputs, result, console, common.quiet);
+      return write_outputs(options->outputs, result, console, common.quiet, streams);
     };
   });
 }
@@ -47,30 +49,29 @@ void add_reference(CLI::App& app, Action& action) {
   add_output_options(*command, options->outputs);
   add_setting_options(*command, options->common,
                       {"size", "max-depth", "only", "seed", "threads", "camera", "crop", "aov"});
-  command
-      ->add_option("--spp", options->how.spp,
-                   "paths per pixel (default 64 if neither --time nor --error is given)")
-      ->check(CLI::Range(1, 1 << 20));
-  command->add_option("--time", options->how.time, "seconds")->check(CLI::PositiveNumber);
-  command->add_option("--error", options->how.error, "stop when the stated relative L1 error is below")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--paths", options->how.paths, "all, columns (those that the matrix carries) or rest")
-      ->check(CLI::IsMember({"all", "columns", "rest"}));
+  add_count(*command, "--spp", options->how.spp, 1, 1 << 20,
+            "paths per pixel (default 64 if neither --time nor --error is given)");
+  add_number(*command, "--time", options->how.time, {0, 1e7, true, "seconds"}, "seconds");
+  add_number(*command, "--error", options->how.error, {0, 10, true},
+             "stop when the stated relative L1 error is below");
+  add_choice(*command, "--paths", options->how.paths, {"all", "columns", "rest"},
+             "all, columns (those that the matrix carries) or rest");
   command->footer(
       "Examples:\n"
       "  lumirank reference room.xml -o truth.exr --spp 1024\n"
       "  lumirank reference room.xml -o truth.exr --paths columns --error 0.01\n");
   command->callback([options, &action] {
-    action = [options] {
+    action = [options](Streams streams) {
       const CommonOptions& common = options->common;
       const RenderSettings settings = common.render_settings();
       check_outputs(options->outputs, settings);
-      Console console(common.verbosity());
+      Console console(common.verbosity(), streams.err);
       const Scene scene = Scene::load(common.scene, common.load_options(), console.sinks());
+      check_inputs(options->outputs, settings, common, scene);
       const RenderResult result =
           reference(scene, settings, options->how, console.sinks(), preview_writer(options->outputs));
-      const int code = write_outputs(options->outputs, result, console, common.quiet);
-      if (!common.quiet) std::printf("%s\n", result.summary.c_str());
+      const int code = write_outputs(options->outputs, result, console, common.quiet, streams);
+      if (!common.quiet) std::fprintf(streams.out, "%s\n", result.summary.c_str());
       return code;
     };
   });
@@ -83,8 +84,8 @@ void add_error(CLI::App& app, Action& action) {
   command->add_option("reference", files->second, "reference file")->required();
   command->footer("Example:\n  lumirank error room.exr truth.exr\n");
   command->callback([files, &action] {
-    action = [files] {
-      std::fputs(error_json(files->first, files->second).c_str(), stdout);
+    action = [files](Streams streams) {
+      print(streams, error_json(files->first, files->second));
       return 0;
     };
   });
@@ -101,14 +102,14 @@ void add_info(CLI::App& app, Action& action) {
   command->add_flag("--json", options->json, "as JSON");
   command->footer("Example:\n  lumirank info room.xml\n");
   command->callback([options, &action] {
-    action = [options] {
-      Console console(options->common.verbosity());
+    action = [options](Streams streams) {
+      Console console(options->common.verbosity(), streams.err);
       Sinks sinks = console.sinks();
       sinks.warning = {};  // the listing has them
       const Scene scene = Scene::load(options->common.scene, options->common.load_options(), sinks);
       const std::string text = options->json ? scene.info_json(sinks) : scene.info_text(sinks);
       console.clear();
-      std::fputs(text.c_str(), stdout);
+      print(streams, text);
       return 0;
     };
   });
@@ -120,8 +121,8 @@ void add_methods(CLI::App& app, Action& action) {
   command->add_flag("--json", *json, "as JSON");
   command->footer("Example:\n  lumirank methods --json\n");
   command->callback([json, &action] {
-    action = [json] {
-      std::fputs((*json ? methods_json() : methods_text()).c_str(), stdout);
+    action = [json](Streams streams) {
+      print(streams, (*json ? methods_json() : methods_text()));
       return 0;
     };
   });

@@ -30,6 +30,9 @@ class Scene {
   std::string info_text(const Sinks& sinks = {}) const;
   std::string info_json(const Sinks& sinks = {}) const;
 
+  // The files that it was read from and those that it will be built from.
+  std::vector<std::string> files() const;
+
   struct Impl;
   const Impl& impl() const { return *impl_; }
 
@@ -76,6 +79,27 @@ void write_illuminance(const std::string& filename, const Picture& picture,
 void write_text(const std::string& filename, const std::string& text);
 // Throws InputError if write_text could not write there; leaves nothing behind.
 void check_text_writable(const std::string& filename);
+
+// Throws InputError if two of the outputs are one file (through whatever links), or one of them is an input:
+// Scene::files(), say.
+void check_distinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+
+// What this thread writes by the functions above while it lives appears in commit(), all of it or nothing.
+class FilesTogether {
+ public:
+  FilesTogether();
+  ~FilesTogether();
+  FilesTogether(const FilesTogether&) = delete;
+  FilesTogether& operator=(const FilesTogether&) = delete;
+  void commit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// For the signal handler of a host that ends the process in the middle of a write; it may be called there.
+void remove_temporary_files() noexcept;
 
 // Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
 std::string error_json(const std::string& image_file, const std::string& reference_file);

@@ -39,9 +39,11 @@ void throw_unknown_key(const std::string& method, const std::string& key,
 }
 
 void throw_wrong_value(const std::string& method, const Parameter& parameter, const std::string& value) {
+  const std::string kind = parameter.type == "choice"    ? "one of "
+                           : parameter.type == "integer" ? "an integer in "
+                                                         : "a " + parameter.type + " in ";
   throw InputError(method + ": '" + value + "' is not a value of '" + parameter.key + "'",
-                   "give " + std::string(parameter.type == "choice" ? "one of " : "a ") +
-                       (parameter.type == "choice" ? "" : parameter.type + " in ") + parameter.range);
+                   "give " + kind + parameter.range);
 }
 
 SettingsMap effective_settings(const MethodInfo& method, const SettingsMap& settings) {

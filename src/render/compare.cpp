@@ -11,6 +11,8 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
+#include "film/atomic_file.h"
+#include "film/file_identity.h"
 #include "film/image_io.h"
 #include "film/metrics.h"
 #include "linalg/svd.h"
@@ -19,6 +21,7 @@
 #include "render/compare_plan.h"
 #include "render/error_advice.h"
 #include "render/html_text.h"
+#include "render/memory.h"
 #include "render/pipeline.h"
 #include "render/reference.h"
 #include "render/sampled_truth.h"
@@ -45,17 +48,31 @@ class Comparison {
     results_.scene = (file.parent_path().filename() / file.filename()).string();
     results_.version = version();
     results_.width = setup_.view.width, results_.height = setup_.view.height;
+    require_memory_of_runs();
     if (is_file()) read_reference();
+    require_receivers();
+    require_outputs(scene.files());
   }
 
   bool run() {
     prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
     // Not before: a comparison that is refused leaves nothing behind.
     std::error_code code;
-    fs::create_directories(folder_, code);
+    const bool made = fs::create_directories(folder_, code);
     if (code)
       throw InputError({folder_, 0}, "the folder cannot be made: " + code.message(), "choose another place");
     warn_of_errors();
+    try {
+      return run_all();
+    } catch (const InputError& error) {  // a full disk
+      if (written_) throw InputError(error.what(), "what was finished before is in " + folder_);
+      if (made) fs::remove(folder_, code);
+      throw;
+    }
+  }
+
+ private:
+  bool run_all() {
     try {
       make_reference();
       for (std::size_t k = 0; k < plan_.size(); ++k) {
@@ -70,7 +87,6 @@ class Comparison {
     return finish(true);
   }
 
- private:
   // Of methods that --error does not steer, once each.
   void warn_of_errors() const {
     std::set<std::string> warned;
@@ -109,6 +125,59 @@ class Comparison {
     film::write_image(path(name), layers);
   }
 
+  // The reference's file may be the one that an earlier comparison left here.
+  bool reference_is_kept() const {
+    return is_file() &&
+           film::file_identity(settings_.reference) == film::file_identity(path("reference.exr"));
+  }
+
+  static std::string stem_of(std::size_t run) { return "run_" + std::to_string(run); }
+
+  // Before any work: none of them is a file that is read, or one that cannot be written.
+  void require_outputs(std::vector<std::string> inputs) const {
+    std::vector<std::string> outputs = {path("results.json"), path("results.csv"), path("index.html")};
+    if (sampled_receivers() == 0) {
+      outputs.push_back(path("reference.png"));
+      if (!reference_is_kept()) outputs.push_back(path("reference.exr"));
+    }
+    for (std::size_t k = 0; k < plan_.size(); ++k)
+      for (const char* ending : {".png", "_error.png"}) outputs.push_back(path(stem_of(k) + ending));
+    if (is_file()) inputs.push_back(settings_.reference);
+    film::require_distinct(outputs, inputs);
+    if (std::error_code error; !fs::is_directory(folder_, error)) {
+      fs::path there = fs::absolute(folder_, error).lexically_normal();
+      while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+      if (!fs::is_directory(there, error))
+        throw InputError({folder_, 0}, "the folder cannot be made: " + there.string() + " is not a folder",
+                         "choose another place");
+      return;
+    }
+    for (const std::string& output : outputs) const film::AtomicFile probe(output);
+  }
+
+  // The largest of the runs, as far as it is known before them.
+  void require_memory_of_runs() const {
+    double most = 0;
+    for (const PlannedRun& run : plan_) {
+      const double samples =
+          static_cast<double>(setup_.view.width) * static_cast<double>(setup_.view.height) * run.spp;
+      require_countable(samples);
+      most = std::max(most, memory_of_picture(samples, static_cast<double>(run.lights), false));
+    }
+    require_memory(most, kSmallerPicture);
+  }
+
+  // What a reference at some receivers can have at most.
+  void require_receivers() const {
+    const auto most = static_cast<std::size_t>(setup_.view.width) *
+                      static_cast<std::size_t>(setup_.view.height) *
+                      static_cast<std::size_t>(settings_.base.spp);
+    if (sampled_receivers() > most)
+      throw InputError("'" + settings_.reference + "' asks for more receivers than the " +
+                           std::to_string(most) + " film samples of this render",
+                       "write brute-force for all of them, or a smaller number");
+  }
+
   void make_reference() {
     const Timer timer;
     if (const std::size_t count = sampled_receivers(); count > 0) {
@@ -144,8 +213,11 @@ class Comparison {
     }
     results_.reference_seconds = timer.seconds();
     results_.reference_image = "reference.png";
+    film::FilesTogether together;
     save("reference.png", reference_);
-    save("reference.exr", reference_);
+    if (!reference_is_kept()) save("reference.exr", reference_);
+    together.commit();
+    written_ = true;
   }
 
   bool is_file() const {
@@ -238,7 +310,8 @@ class Comparison {
         result.settings[key] = std::to_string(static_cast<long long>(value));
 
     const film::Image image = image_of(estimate.sums);
-    const std::string stem = "run_" + std::to_string(results_.runs.size());
+    const std::string stem = stem_of(results_.runs.size());
+    film::FilesTogether together;
     result.image_file = stem + ".png";
     save(result.image_file, image);
     if (truth_) {
@@ -250,6 +323,8 @@ class Comparison {
       result.error_image_file = stem + "_error.png";
       save(result.error_image_file, film::false_color_error(image, reference_));
     }
+    together.commit();
+    written_ = true;
     results_.runs.push_back(std::move(result));
     return true;
   }
@@ -327,6 +402,7 @@ class Comparison {
   double columns_per_second_ = 0;
   film::Image reference_;
   std::unique_ptr<SampledTruth> truth_;  // instead of reference_
+  bool written_ = false;                 // something is in the folder
   CompareResults results_;
 };
 
@@ -338,7 +414,9 @@ bool compare(const Scene& scene, const CompareSettings& settings, const std::str
   if (settings.base.compensate > 0)
     throw InputError("a comparison cannot compensate for clamping", "leave out 'compensate'");
   bool whole = false;
-  with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
+  within_memory(kSmallerPicture, [&] {
+    with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
+  });
   return whole;
 }
 

@@ -53,6 +53,27 @@ void apply(PlannedRun& run, const SweepKey& key, const std::string& value) {
   }
 }
 
+bool has_parameter(const methods::MethodInfo& info, const std::string& key) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(),
+                     [&](const auto& p) { return p.key == key; });
+}
+
+// --set is for the methods that have the parameter; one that none of them has is a mistake.
+void require_known_settings(const CompareSettings& settings) {
+  for (const auto& setting : settings.base.method_settings) {
+    std::string valid;
+    bool known = false;
+    for (const std::string& name : settings.methods) {
+      const methods::MethodInfo& info = methods::find_method(name);
+      known = known || has_parameter(info, setting.first);
+      for (const auto& p : info.parameters) valid += (valid.empty() ? "" : ", ") + name + "." + p.key;
+    }
+    if (!known)
+      throw InputError("no method that is compared has the parameter '" + setting.first + "'",
+                       valid.empty() ? "they have none" : "they have " + valid);
+  }
+}
+
 }  // namespace
 
 std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
@@ -70,6 +91,7 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
     if (!(time > 0 && time <= 1e7))  // also what is not a number
       throw InputError("a time budget of --times is not positive", "give seconds, --times 1,2,4");
 
+  require_known_settings(settings);
   std::vector<PlannedRun> runs;
   for (const std::string& name : settings.methods) {
     const methods::MethodInfo& info = methods::find_method(name);
@@ -77,10 +99,8 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
     base.method = base.label = base.series = name;
     base.lights = settings.base.lights;
     base.spp = settings.base.spp;
-    // --set is for the methods that have the parameter.
     for (const auto& setting : settings.base.method_settings)
-      if (std::any_of(info.parameters.begin(), info.parameters.end(),
-                      [&](const auto& p) { return p.key == setting.first; }))
+      if (has_parameter(info, setting.first))
         base.method_settings.insert_or_assign(setting.first, setting.second);
 
     // Every sweep of this method, and --times, is a curve of its own: they are not multiplied with each

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "film/atomic_file.h"
+#include "film/file_identity.h"
 #include "lumirank/convert.h"
 #include "render/paint.h"
 #include "render/pipeline.h"
@@ -33,13 +34,7 @@ std::vector<std::string> convert(const Scene& scene, const std::string& filename
   for (const auto& file : written.files)
     names.push_back((fs::path(filename).parent_path() / file.name).string());
   names.push_back(filename);
-  for (const std::string& name : names)
-    for (const std::string& input : scenedesc::files_of(desc)) {
-      std::error_code absent;
-      if (fs::equivalent(name, input, absent) && !absent)
-        throw InputError({name, 0}, "this file is part of the scene that is converted",
-                         "choose another name");
-    }
+  film::require_distinct(names, scene.files());
   for (const auto& w : written.warnings) {
     std::string text = to_string(w.where);
     text += (text.empty() ? "" : ": ") + w.what;
@@ -48,9 +43,11 @@ std::vector<std::string> convert(const Scene& scene, const std::string& filename
     sinks.warn(text);
   }
   // The scene last: whoever finds it finds all its files.
+  film::FilesTogether together;
   for (std::size_t k = 0; k < written.files.size(); ++k)
     film::write_whole_file(names[k], written.files[k].bytes);
   film::write_whole_file(filename, written.xml);
+  together.commit();
   return names;
 }
 

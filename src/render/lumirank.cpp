@@ -8,17 +8,21 @@
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "film/atomic_file.h"
+#include "film/file_identity.h"
 #include "film/image_io.h"
 #include "film/metrics.h"
 #include "film/scale_bar.h"
 #include "render/aovs.h"
 #include "render/error_advice.h"
+#include "render/memory.h"
 #include "render/pipeline.h"
 #include "render/preview_throttle.h"
 #include "render/reference.h"
 #include "render/render_run.h"
 #include "render/report.h"
 #include "render/view_check.h"
+#include "scenedesc/files.h"
+#include "scenedesc/mitsuba_writer/mitsuba_writer.h"
 #include "scenedesc/readers.h"
 
 namespace lumirank {
@@ -47,10 +51,13 @@ world::World build_world(const Scene& scene, const Sinks& sinks,
   std::vector<scenedesc::Warning> warnings;
   world::BuildOptions options;
   options.strict = scene.impl().options.strict;
-  world::World world = world::World::build(scene.impl().desc, options, warnings, sinks);
+  std::optional<world::World> world;
+  rendering::within_memory("the scene is too large for this machine", [&] {
+    world.emplace(world::World::build(scene.impl().desc, options, warnings, sinks));
+  });
   tell(sinks, warnings);
   if (keep) *keep = std::move(warnings);
-  return world;
+  return std::move(*world);
 }
 
 film::LayeredImage to_layers(const Picture& picture) {
@@ -77,6 +84,19 @@ film::DisplayOptions to_display_options(const DisplaySettings& display) {
   else if (display.tonemap != "none")
     throw InputError("'" + display.tonemap + "' is not a tone map", "choose one of none|reinhard|agx");
   return options;
+}
+
+double pixels_of(const rendering::View& view) {
+  return static_cast<double>(view.width) * static_cast<double>(view.height);
+}
+
+double memory_of(const rendering::View& view, const RenderSettings& settings, std::size_t lights) {
+  return rendering::memory_of_picture(pixels_of(view) * settings.spp, static_cast<double>(lights),
+                                      !settings.aovs.empty());
+}
+
+void within_memory_and_threads(const RenderSettings& settings, const std::function<void()>& work) {
+  rendering::within_memory(rendering::kSmallerPicture, [&] { with_threads(settings.threads, work); });
 }
 
 nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
@@ -131,11 +151,21 @@ Scene Scene::load(const std::string& filename, const LoadOptions& options, const
   read.strict = options.strict;
   read.environment = options.environment;
   read.allow_missing = options.allow_missing;
-  impl->desc = scenedesc::read_scene(filename, read);
+  const scenedesc::FilesRead files;
+  rendering::within_memory("the scene is too large for this machine",
+                           [&] { impl->desc = scenedesc::read_scene(filename, read); });
+  impl->files_read = files.names();
   tell(sinks, impl->desc.warnings);
   Scene scene;
   scene.impl_ = std::move(impl);
   return scene;
+}
+
+std::vector<std::string> Scene::files() const {
+  std::vector<std::string> files = impl_->files_read;
+  const auto later = scenedesc::files_of(impl_->desc);
+  files.insert(files.end(), later.begin(), later.end());
+  return files;
 }
 
 std::string Scene::info_json(const Sinks& sinks) const { return info_object(*this, sinks).dump(1) + "\n"; }
@@ -175,7 +205,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
                     const PreviewCallback& on_preview) {
   validate(settings);
   RenderResult result;
-  with_threads(settings.threads, [&] {
+  within_memory_and_threads(settings, [&] {
     const Timer timer;
     rendering::RenderTask task;
     task.timer = timer;
@@ -185,9 +215,13 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     task.method = task.info->make(settings.method_settings);
     if (const std::string text = rendering::error_not_aimed_at(*task.info, settings.error); !text.empty())
       sinks.warn(text);
+    rendering::require_countable(pixels_of(task.view) * settings.spp);
+    const double memory = memory_of(task.view, settings, rendering::lights_for(*task.info, settings));
+    rendering::require_memory(memory, rendering::kSmallerPicture);
     const world::World world = build_world(scene, sinks);
     task.build_seconds = timer.seconds();
     if (const std::string text = rendering::empty_view(world, task.view); !text.empty()) sinks.warn(text);
+    rendering::require_memory(memory, rendering::kSmallerPicture);  // the scene has taken its part
     if (sinks.cancelled()) throw Cancelled();
     rendering::check_aovs(world, settings);
     task.world = &world;
@@ -204,9 +238,10 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     if (aov != "direct" && aov != "indirect" && aov != "emission")
       throw InputError("the reference has no AOV '" + aov + "'", "it has direct, indirect and emission");
   RenderResult result;
-  with_threads(settings.threads, [&] {
+  within_memory_and_threads(settings, [&] {
     const Timer timer;
     const rendering::View view = rendering::make_view(scene.impl().desc, settings);
+    rendering::require_memory(rendering::memory_of_reference(pixels_of(view)), rendering::kSmallerPicture);
     const world::World world = build_world(scene, sinks);
     const double build_seconds = timer.seconds();
     if (const std::string text = rendering::empty_view(world, view); !text.empty()) sinks.warn(text);
@@ -263,6 +298,19 @@ void write_text(const std::string& filename, const std::string& text) {
 }
 
 void check_text_writable(const std::string& filename) { const film::AtomicFile probe(filename); }
+
+void check_distinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  film::require_distinct(outputs, inputs);
+}
+
+struct FilesTogether::Impl {
+  film::FilesTogether files;
+};
+FilesTogether::FilesTogether() : impl_(std::make_unique<Impl>()) {}
+FilesTogether::~FilesTogether() = default;
+void FilesTogether::commit() { impl_->files.commit(); }
+
+void remove_temporary_files() noexcept { film::remove_temporary_files(); }
 
 std::string error_json(const std::string& image_file, const std::string& reference_file) {
   const auto image = film::read_image(image_file), reference_image = film::read_image(reference_file);

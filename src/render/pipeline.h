@@ -101,5 +101,6 @@ namespace lumirank {
 struct Scene::Impl {
   scenedesc::SceneDesc desc;
   LoadOptions options;
+  std::vector<std::string> files_read;  // by the reader; pictures and meshes are read when the scene is built
 };
 }  // namespace lumirank

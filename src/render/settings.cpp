@@ -23,7 +23,9 @@ T parse_number(const std::string& key, const std::string& text) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   bool ok = code == std::errc{} && end == text.data() + text.size();
   if constexpr (std::is_floating_point_v<T>) ok = ok && std::isfinite(value);
-  if (!ok) throw InputError("'" + text + "' is not a valid number for '" + key + "'");
+  if (!ok)
+    throw InputError("'" + text + "' is not a valid number for '" + key + "'",
+                     std::is_integral_v<T> ? "give a whole number, in digits only" : "");
   return value;
 }
 
@@ -33,12 +35,13 @@ std::string format_number(double v) {
   return code == std::errc{} ? std::string(buffer, end) : std::string{};
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
+// With its empty parts: 800xx600 is not a size.
+std::vector<std::string> split_settings(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::size_t begin = 0;
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
-    if (end > begin) parts.push_back(text.substr(begin, end - begin));
+    parts.push_back(text.substr(begin, end - begin));
     begin = end + 1;
   }
   return parts;
@@ -97,7 +100,7 @@ Row size_row() {
   return {{"size", "text", "", "WxH, each 1 … 65536", "pixels", "resolution; default: as the scene says"},
           [](RenderSettings& s, const std::string& text) {
             if (text.empty()) return void(s.width = s.height = 0);
-            const auto parts = split(text, 'x');
+            const auto parts = split_settings(text, 'x');
             if (parts.size() != 2) throw InputError("'" + text + "' is not a size", "write it as 800x600");
             const int w = parse_number<int>("size", parts[0]), h = parse_number<int>("size", parts[1]);
             if (w < 1 || h < 1 || w > 65536 || h > 65536)
@@ -113,12 +116,15 @@ Row crop_row() {
   return {{"crop", "text", "", "X,Y,W,H", "pixels", "render only this window of the film"},
           [](RenderSettings& s, const std::string& text) {
             if (text.empty()) return void(std::fill(s.crop, s.crop + 4, 0));
-            const auto parts = split(text, ',');
+            const auto parts = split_settings(text, ',');
             if (parts.size() != 4) throw InputError("'" + text + "' is not a crop", "write it as X,Y,W,H");
             for (int i = 0; i < 4; ++i)
               s.crop[i] = parse_number<int>("crop", parts[static_cast<std::size_t>(i)]);
             if (s.crop[0] < 0 || s.crop[1] < 0 || s.crop[2] < 1 || s.crop[3] < 1)
               throw InputError("the crop " + text + " is negative or empty");
+            if (*std::max_element(s.crop, s.crop + 4) > 65536)
+              throw InputError("the crop " + text + " is out of range",
+                               "no film is larger than 65536 pixels");
           },
           [](const RenderSettings& s) {
             if (s.crop[2] == 0) return std::string{};
@@ -141,13 +147,17 @@ Row aov_row() {
            "all of them"},
           [](RenderSettings& s, const std::string& text) {
             s.aovs.clear();
-            for (const auto& name : split(text, ',')) {
+            if (text.empty()) return;
+            for (const auto& name : split_settings(text, ',')) {
+              if (name.empty())
+                throw InputError("'" + text + "' has an empty name among its AOVs",
+                                 "write them as albedo,depth");
               if (!known_aov(name))
                 throw InputError(
                     "'" + name + "' is not an AOV",
                     "choose from direct, indirect, emission, illuminance, albedo, normal, depth, position, "
                     "samples, light:NAME");
-              s.aovs.push_back(name);
+              if (std::find(s.aovs.begin(), s.aovs.end(), name) == s.aovs.end()) s.aovs.push_back(name);
             }
           },
           [](const RenderSettings& s) {
@@ -199,11 +209,11 @@ const std::vector<Row>& table() {
     t.push_back(choice({"only", "", "all", "", "", "leave out the other part"}, &S::only,
                        {"all", "direct", "indirect"}));
     t.push_back(number<std::uint64_t>({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"},
-                                      &S::seed, 0, 9.3e18));
+                                      &S::seed, 0, 9223372036854775808.0));
     t.push_back(number<std::uint64_t>(
         {"method-seed", "", "0", "0 … 2^63", "",
          "other random choices of the method on the same lights and receivers; 0: as --seed"},
-        &S::method_seed, 0, 9.3e18));
+        &S::method_seed, 0, 9223372036854775808.0));
     t.push_back(
         number<int>({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
                     &S::threads, 0, 1024));

@@ -9,7 +9,11 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr const char* kMissing = "does not exist";
-}
+thread_local FilesRead* t_files_read = nullptr;
+}  // namespace
+
+FilesRead::FilesRead() : outer_(t_files_read) { t_files_read = this; }
+FilesRead::~FilesRead() { t_files_read = outer_; }
 
 std::string resolve_path(const std::string& name, const std::string& file) {
   fs::path path(name);
@@ -21,6 +25,7 @@ std::string resolve_path(const std::string& name, const std::string& file) {
 
 std::string try_read_file(const std::string& filename, std::string& bytes) {
   std::error_code error;
+  if (t_files_read) t_files_read->names_.push_back(filename);
   const fs::file_status status = fs::status(filename, error);
   if (!fs::exists(status)) return kMissing;
   if (fs::is_directory(status)) return "is a folder";

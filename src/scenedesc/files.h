@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -18,6 +19,22 @@ std::string try_read_file(const std::string& filename, std::string& bytes);
 // bytes.
 std::string read_file(const std::string& filename, const SourceLocation& where,
                       std::uintmax_t most = UINTMAX_MAX);
+
+// The names of all files that this thread reads by the functions above while it lives: what a scene consists
+// of, includes and tables too.
+class FilesRead {
+ public:
+  FilesRead();
+  ~FilesRead();
+  FilesRead(const FilesRead&) = delete;
+  FilesRead& operator=(const FilesRead&) = delete;
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  friend std::string try_read_file(const std::string& filename, std::string& bytes);
+  std::vector<std::string> names_;
+  FilesRead* outer_;
+};
 
 // A scene file as text, which has at most this size; geometry belongs into mesh files beside it.
 inline constexpr std::uintmax_t kLargestText = 256u << 20;

@@ -113,7 +113,7 @@ TEST_F(Compare, WhatIsRefusedLeavesNoFolder) {
   };
   const Case cases[] = {
       {{"--methods", "magic"}, "there is no method 'magic'; methods: brute-force"},
-      {{"--methods", ","}, "no method to compare"},
+      {{"--methods", ","}, "empty part"},
       {{"--sweep", "row-column-sampling.lamps=1,2"}, "valid parameters: rows, columns"},
       {{"--sweep", "brute-force.x=1"}, "--methods"},
       {{"--sweep", "lamps=1"}, "METHOD.KEY, lights or spp"},

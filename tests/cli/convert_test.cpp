@@ -27,7 +27,7 @@ TEST(ConvertCommand, WritesMeshesBesideIt) {
       << "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" "
          "8\nWorldBegin\n"
          "AreaLightSource \"diffuse\"\nShape \"trianglemesh\" \"point3 P\" [ -1 -1 3  1 -1 3  0 1 3 ]\n";
-  const Outcome outcome = lumirank({"convert", "scene.pbrt", "new.xml"}, folder / "");
+  const Outcome outcome = start_lumirank({"convert", "scene.pbrt", "new.xml"}, folder / "");
   EXPECT_SUCCESS(outcome);
   EXPECT_NE(outcome.out.find("new.xml and 1 files"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("photometric"), std::string::npos) << outcome.err;
@@ -36,8 +36,8 @@ TEST(ConvertCommand, WritesMeshesBesideIt) {
   const std::string mesh = files[0];
   EXPECT_TRUE(mesh.starts_with("new.") && mesh.ends_with(".ply")) << mesh;
   EXPECT_NE(read_text(folder / "new.xml").find("\"" + mesh + "\""), std::string::npos);
-  EXPECT_SUCCESS(lumirank({"info", "new.xml", "--strict"}, folder / ""));
-  EXPECT_EQ(lumirank({"convert", "scene.pbrt", "new.xml", "--quiet"}, folder / "").out, "");
+  EXPECT_SUCCESS(start_lumirank({"info", "new.xml", "--strict"}, folder / ""));
+  EXPECT_EQ(start_lumirank({"convert", "scene.pbrt", "new.xml", "--quiet"}, folder / "").out, "");
 }
 
 TEST(ConvertCommand, Refuses) {
@@ -45,7 +45,7 @@ TEST(ConvertCommand, Refuses) {
   const std::string scene = write_scene(folder, small_room());
   expect_refused(lumirank({"convert", scene}), "output");
   expect_refused(lumirank({"convert", scene, folder / "a.glb"}), ".xml");
-  expect_refused(lumirank({"convert", scene, scene}), "part of the scene");
+  expect_refused(lumirank({"convert", scene, scene}), "is an input");
   expect_refused(lumirank({"convert", scene, folder / "nowhere/a.xml"}), "nowhere");
   expect_refused(lumirank({"convert", folder / "none.xml", folder / "a.xml"}), "none.xml");
   const std::string phong =

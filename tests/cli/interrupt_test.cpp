@@ -1,8 +1,11 @@
 // Ctrl-C: what was finished is written and said; before that, nothing is.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 
+#include "film/atomic_file.h"
+#include "process.h"
 #include "program.h"
 
 namespace lumirank::test {
@@ -52,7 +55,7 @@ TEST(Interrupt, BeforeAnythingIsFinishedWritesNothing) {
   const TemporaryFolder folder;
   for (const char* command : {"render", "reference"}) {
     const Outcome outcome = interrupted({command, example("lamps"), "-o", folder / "a.exr", "--report",
-                                         folder / "r.json", "--size", "4000x4000"},
+                                         folder / "r.json", "--size", "1500x1500"},
                                         catches_interrupts);
     EXPECT_EQ(outcome.code, 130) << outcome.err;
     EXPECT_NE(outcome.err.find("nothing was written"), std::string::npos) << outcome.err;
@@ -89,6 +92,19 @@ TEST(Interrupt, AComparisonKeepsItsRuns) {
   EXPECT_TRUE(fs::exists(out + "/" + json["runs"][0]["image"].get<std::string>()));
   EXPECT_NE(read_text(out + "/index.html").find("Interrupted: 1 of 2 runs"), std::string::npos);
   EXPECT_TRUE(fs::exists(out + "/results.csv"));
+}
+
+// In the middle of writing: the process ends at once, and takes its temporary files along.
+TEST(Interrupt, ASecondOneLeavesNoTemporaryFile) {
+  const TemporaryFolder folder;
+  const auto twice = [&] {
+    cli::prepare_process();
+    const film::AtomicFile first(folder / "a.exr"), second(folder / "b.exr");
+    if (files_in(folder / "").size() == 2) raise(SIGINT);
+    raise(SIGTERM);
+  };
+  EXPECT_EXIT(twice(), testing::ExitedWithCode(130), "");
+  EXPECT_TRUE(files_in(folder / "").empty());
 }
 
 }  // namespace

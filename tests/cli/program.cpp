@@ -14,6 +14,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -22,6 +24,7 @@
 
 #include "base/rgb.h"
 #include "film/image_io.h"
+#include "run.h"
 
 namespace lumirank::test {
 namespace {
@@ -31,8 +34,9 @@ namespace fs = std::filesystem;
 // A running program with its two streams in files: no pipe can fill up and stall it.
 class Process {
  public:
-  Process(const Arguments& arguments, const std::string& folder) {
+  Process(const Arguments& arguments, const std::string& folder, const std::string& limits = {}) {
     std::vector<std::string> words = {LUMIRANK_PROGRAM};
+    if (!limits.empty()) words = {"/bin/sh", "-c", limits + "; exec \"$0\" \"$@\"", LUMIRANK_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (auto& word : words) argv.push_back(word.data());
@@ -44,7 +48,7 @@ class Process {
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
     if (!folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-    const int failed = posix_spawn(&pid_, LUMIRANK_PROGRAM, &actions, nullptr, argv.data(), environ);
+    const int failed = posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw std::runtime_error("the program could not be started");
   }
@@ -80,10 +84,48 @@ class Process {
   bool ended_ = false;
 };
 
+// A stream whose text is kept.
+class MemoryStream {
+ public:
+  MemoryStream() : stream_(open_memstream(&data_, &size_)) {}
+  ~MemoryStream() {
+    std::fclose(stream_);
+    std::free(data_);
+  }
+  MemoryStream(const MemoryStream&) = delete;
+  MemoryStream& operator=(const MemoryStream&) = delete;
+  std::FILE* stream() { return stream_; }
+  std::string text() {
+    std::fflush(stream_);
+    return {data_, size_};
+  }
+
+ private:
+  char* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::FILE* stream_;
+};
+
 }  // namespace
 
-Outcome lumirank(const Arguments& arguments, const std::string& folder) {
-  return Process(arguments, folder).wait();
+Outcome lumirank(const Arguments& arguments) {
+  MemoryStream out, err;
+  Outcome outcome;
+  outcome.code = cli::run(arguments, {out.stream(), err.stream()});
+  outcome.out = out.text(), outcome.err = err.text();
+  return outcome;
+}
+
+Outcome lumirank_into(std::FILE* out, const Arguments& arguments) {
+  MemoryStream err;
+  Outcome outcome;
+  outcome.code = cli::run(arguments, {out, err.stream()});
+  outcome.err = err.text();
+  return outcome;
+}
+
+Outcome start_lumirank(const Arguments& arguments, const std::string& folder, const std::string& limits) {
+  return Process(arguments, folder, limits).wait();
 }
 
 Outcome interrupted(const Arguments& arguments, const std::function<bool(pid_t)>& when) {

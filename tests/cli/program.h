@@ -1,9 +1,10 @@
-// The built program as a person meets it: started with arguments, read by its exit code, output and files.
+// The program as a person meets it: given a command line, read by its exit code, output and files.
 #pragma once
 
 #include <gtest/gtest.h>
 #include <sys/types.h>
 
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -22,15 +23,22 @@ struct Outcome {
 
 using Arguments = std::vector<std::string>;
 
-// Runs the program to its end. `folder`: where it is started; "": here.
-Outcome lumirank(const Arguments& arguments, const std::string& folder = {});
+// Runs one command line to its end, in this process: everything of the program but main().
+Outcome lumirank(const Arguments& arguments);
+// The same with its results on a stream that the caller has opened.
+Outcome lumirank_into(std::FILE* out, const Arguments& arguments);
+
+// Starts the program itself. `folder`: where it is started, "": here. `limits`: what its shell says before
+// ("ulimit -f 1").
+Outcome start_lumirank(const Arguments& arguments, const std::string& folder = {},
+                       const std::string& limits = {});
 
 // Runs the program and sends it SIGINT as soon as `when` holds; fails if it ends before that.
 Outcome interrupted(const Arguments& arguments, const std::function<bool(pid_t)>& when);
 // The program has come so far that it would not simply be killed.
 bool catches_interrupts(pid_t program);
 
-// The same for every argument list, a few at a time: the program's start is most of a small run.
+// lumirank() for every argument list, a few at a time.
 std::vector<Outcome> lumirank_each(const std::vector<Arguments>& runs);
 
 std::string example(const std::string& name);  // of examples/
