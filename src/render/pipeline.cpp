@@ -224,6 +224,7 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
   const transport::Receivers aim = aim_at(setup, settings.seed, sinks);
   ls.receivers = &aim;
   ls.diffuse_only = settings.light_type == "diffuse-point";
+  ls.traced_direct_below = static_cast<float>(setup.traced_below);
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
   setup.held = {};
   if (settings.compensate > 0) {

@@ -103,7 +103,7 @@ struct EmissionGuide::Node {
   double strength() const { return std::sqrt(mean_square) * box.volume(); }
 };
 
-EmissionGuide EmissionGuide::fit(std::span<const Observation> observations) {
+EmissionGuide EmissionGuide::fit(std::span<const Observation> observations, Spread spread) {
   EmissionGuide guide;
   Node root;
   root.box = guide.boxes_[0];
@@ -127,13 +127,16 @@ EmissionGuide EmissionGuide::fit(std::span<const Observation> observations) {
     open.push_back(std::move(other));
     open.push_back(std::move(node));
   }
+  const auto strength_of = [&](const Node& node) {
+    return spread == Spread::by_density ? node.strength() : node.importance;
+  };
   double strength = 0;
-  for (const Node& node : done) strength += node.strength();
+  for (const Node& node : done) strength += strength_of(node);
   guide.boxes_.clear();
   guide.cdf_.assign(1, 0.0);
   for (const Node& node : done) {
     guide.boxes_.push_back(node.box);
-    const double p = (1 - kEvenPart) * node.strength() / strength + kEvenPart * node.box.volume();
+    const double p = (1 - kEvenPart) * strength_of(node) / strength + kEvenPart * node.box.volume();
     guide.cdf_.push_back(guide.cdf_.back() + p);
   }
   for (double& c : guide.cdf_) c /= guide.cdf_.back();
