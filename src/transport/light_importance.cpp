@@ -11,7 +11,7 @@ namespace {
 // A cell with more sites is halved.
 constexpr std::size_t kSitesInCell = 16;
 // A cell counts as if it held this many sites more with the mean of the cell that it was cut from.
-constexpr float kPriorSites = 4;
+constexpr float kPriorSites = 1;
 
 float mean_value(std::span<const LightImportance::Site> sites, float before, float prior) {
   double sum = static_cast<double>(prior) * before;
@@ -49,12 +49,12 @@ LightImportance::LightImportance(std::span<const Site> sites) {
     nodes_.emplace_back();
     nodes_.back().value = mean_value(part, all, kPriorSites);
     nodes_.back().seen = nodes_.back().seen_here = any_seen(part);
-    divide(root_[side], part, false);
+    divide(root_[side], part);
     begin = end;
   }
 }
 
-void LightImportance::divide(std::uint32_t node, std::span<Site> sites, bool seen_before) {
+void LightImportance::divide(std::uint32_t node, std::span<Site> sites) {
   if (sites.size() <= kSitesInCell) return;
   Bounds3f box;
   for (const Site& s : sites) box.extend(s.position);
@@ -75,9 +75,9 @@ void LightImportance::divide(std::uint32_t node, std::span<Site> sites, bool see
     Node& half_node = nodes_[child + k];
     half_node.value = mean_value(parts[k], before, kPriorSites);
     half_node.seen_here = any_seen(parts[k]);
-    half_node.seen = seen_here || seen_before;
+    half_node.seen = half_node.seen_here || seen_here;
   }
-  for (std::uint32_t k = 0; k < 2; ++k) divide(child + k, parts[k], seen_here);
+  for (std::uint32_t k = 0; k < 2; ++k) divide(child + k, parts[k]);
 }
 
 const LightImportance::Node* LightImportance::leaf(Vec3f position, Vec3f normal) const {

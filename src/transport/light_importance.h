@@ -42,12 +42,12 @@ class LightImportance {
     float split = 0, value = 0;
     std::uint32_t child = kNone;  // the lower half; the upper one comes next. kNone: a leaf
     std::uint8_t axis = 0;
-    bool seen = false;  // anything here, or in one of the two cells that this one was cut from
+    bool seen = false;  // anything here, or in the cell that this one was cut from
     bool seen_here = false;
   };
   static std::size_t side_of(Vec3f normal);
   const Node* leaf(Vec3f position, Vec3f normal) const;
-  void divide(std::uint32_t node, std::span<Site> sites, bool seen_before);
+  void divide(std::uint32_t node, std::span<Site> sites);
 
   std::vector<Node> nodes_;
   std::array<std::uint32_t, kSides> root_{};

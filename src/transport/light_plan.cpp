@@ -24,10 +24,11 @@ constexpr double kMostPathsPerLight = 32;
 // More paths are traced until lights are worth this part of as many equal ones, or there are so many per
 // light.
 constexpr double kWorth = 0.7, kMostRoulettePaths = 16;
-// Where receivers see it, light is held to be of use between these many times the mean: what is of little use
-// to all together may be close to a few, and must not be heavy. And of all that is kept, about this part may
-// be lights of places that the pilots never saw.
-constexpr double kLeastUse = 0.7, kGreatestUse = 3, kUnseenShare = 0.2;
+// Where receivers see it, light is held to be of use between these many times a typical one's: what is of
+// little use to all together may be close to a few, and must not be heavy. The lower bound may add this part
+// to the use of all; and of all that is kept, about the last part may be lights of places that the pilots
+// never saw.
+constexpr double kLeastUse = 0.7, kGreatestUse = 3, kLowShare = 0.25, kUnseenShare = 0.1;
 
 struct Pilot {
   double lights_per_path = 0;
@@ -106,24 +107,35 @@ std::size_t natural_paths(double wanted, double lights_per_path) {
 // How far importance may differ between places, and the uses of the pilot's lights then. Nothing if no light
 // is of any.
 std::optional<LightImportance::Range> bounded_uses(const Pilot& pilot, std::vector<double>& uses) {
-  double seen = 0, unseen = 0, use = 0;  // power
-  for (std::size_t k = 0; k < pilot.powers.size(); ++k) {
-    const bool some = pilot.importances[k] >= 0;
-    (some ? seen : unseen) += pilot.powers[k];
-    if (some) use += pilot.powers[k] * pilot.importances[k];
+  const std::size_t n = pilot.powers.size();
+  double use = 0, use_of_importance = 0, unseen = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double power = pilot.powers[k], importance = pilot.importances[k];
+    if (importance < 0) unseen += power;
+    if (importance > 0) use += power * importance, use_of_importance += power * importance * importance;
   }
   if (!(use > 0)) return std::nullopt;
-  const double mean = use / seen;
-  LightImportance::Range range;
-  range.low = static_cast<float>(mean * kLeastUse), range.high = static_cast<float>(mean * kGreatestUse);
-  use = 0;
-  for (std::size_t k = 0; k < pilot.powers.size(); ++k)
-    if (pilot.importances[k] >= 0)
-      use += pilot.powers[k] * std::clamp(pilot.importances[k], range.low, range.high);
-  // Not above what is seen.
-  range.unseen =
-      std::min(unseen > 0 ? static_cast<float>(kUnseenShare * use / unseen) : range.low, range.low);
-  for (std::size_t k = 0; k < pilot.powers.size(); ++k) {
+  // That of the place where an average use comes from, not of an average light: under a sky nearly all power
+  // is where hardly anything is seen of it.
+  const double typical = use_of_importance / use, high = typical * kGreatestUse;
+  const auto use_with = [&](double low) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      if (pilot.importances[k] >= 0)
+        sum += pilot.powers[k] * std::clamp<double>(pilot.importances[k], low, high);
+    return sum;
+  };
+  const double bounded = use_with(0);
+  double low = 0, above = typical * kLeastUse;
+  if (use_with(above) <= (1 + kLowShare) * bounded) low = above;
+  for (int step = 0; step < 40 && low < above; ++step) {
+    const double middle = 0.5 * (low + above);
+    (use_with(middle) <= (1 + kLowShare) * bounded ? low : above) = middle;
+  }
+  LightImportance::Range range{static_cast<float>(low), static_cast<float>(high), static_cast<float>(low)};
+  if (unseen > 0)
+    range.unseen = std::min(range.low, static_cast<float>(kUnseenShare * use_with(low) / unseen));
+  for (std::size_t k = 0; k < n; ++k) {
     const float importance = pilot.importances[k];
     uses.push_back(pilot.powers[k] *
                    (importance >= 0 ? std::clamp(importance, range.low, range.high) : range.unseen));

@@ -14,7 +14,7 @@ namespace lumirank::transport {
 namespace {
 
 constexpr int kRaysPerReceiver = 2;              // to what it sees
-constexpr int kEmitterSamples = 4;               // at each end of these
+constexpr int kEmitterSamples = 8;               // at each end of these
 constexpr int kDirectSamples = 2;                // at each receiver
 constexpr std::uint64_t kRandomId = 1ull << 60;  // of the numbers; no path has it
 constexpr float kBelowOne = 0x1.fffffep-1f;

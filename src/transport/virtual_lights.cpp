@@ -1,21 +1,18 @@
 #include "transport/virtual_lights.h"
 
-#include <algorithm>
 #include <atomic>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "transport/emitter_lights.h"
-#include "transport/halves.h"
+#include "transport/light_areas.h"
 #include "transport/light_plan.h"
-#include "transport/neighbour_distance.h"
 #include "transport/particle.h"
 
 namespace lumirank::transport {
 namespace {
 
 constexpr std::size_t kPathsPerPiece = 1024;
-constexpr int kNeighbour = 10;
 
 void trace_particles(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings,
                      std::span<LightBatch> pieces, const Sinks& sinks) {
@@ -31,33 +28,6 @@ void trace_particles(const world::World& world, const EmitterChoice& choice, con
     sinks.report("virtual lights", static_cast<double>(done) / static_cast<double>(settings.paths));
   });
   if (sinks.cancelled()) throw Cancelled();
-}
-
-// The area that a surface light stands for: a disc that holds ten lights has a tenth of it for each. Each
-// half is measured by itself, for clamping would otherwise couple the two; a light of it stands for as much
-// less as there are more lights in both. Its own particle's lights do not count (neighbour_distance.h).
-void measure_areas(VirtualLights& lights, float scene_radius) {
-  std::vector<std::size_t> which[2];
-  std::vector<Vec3f> points[2];
-  std::vector<std::uint32_t> paths[2];
-  for (std::size_t j = 0; j < lights.size(); ++j) {
-    if (lights.kind[j] != LightKind::surface) continue;
-    const std::size_t h = lights.half[j] == 2 ? 1 : 0;
-    which[h].push_back(j);
-    points[h].push_back(lights.position[j]);
-    paths[h].push_back(lights.path[j]);
-  }
-  const auto all = static_cast<float>(which[0].size() + which[1].size());
-  for (std::size_t h = 0; h < 2; ++h) {
-    const float share = static_cast<float>(which[h].size()) / all;
-    const std::vector<Neighbour> found = neighbours(points[h], paths[h], kNeighbour);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const Neighbour& n = found[i];
-      const float disc =
-          n.count > 0 ? n.distance_squared / static_cast<float>(n.count) : square(scene_radius);
-      lights.area[which[h][i]] = kPi * disc * share;
-    }
-  }
 }
 
 }  // namespace
