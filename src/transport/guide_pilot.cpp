@@ -64,11 +64,11 @@ struct Round {
 
 Round run_round(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings,
                 const Relevance& relevance) {
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kPathsAtOnce = 256;
   const ParticleTracer tracer(world, choice, settings);
-  std::vector<Round> pieces((settings.paths + kGrain - 1) / kGrain);
-  parallel_for(settings.paths, kGrain, [&](std::size_t begin, std::size_t end) {
-    Round& piece = pieces[begin / kGrain];
+  std::vector<Round> pieces((settings.paths + kPathsAtOnce - 1) / kPathsAtOnce);
+  parallel_for(settings.paths, kPathsAtOnce, [&](std::size_t begin, std::size_t end) {
+    Round& piece = pieces[begin / kPathsAtOnce];
     LightBatch batch;
     for (std::size_t path = begin; path < end; ++path) {
       batch.lights.clear(), batch.closures = {};

@@ -46,11 +46,11 @@ Pilot run_pilot(const world::World& world, const EmitterChoice& choice, const Pa
     std::vector<double> powers;
     std::vector<float> importances;
   };
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kPathsAtOnce = 256;
   const ParticleTracer tracer(world, choice, settings);
-  std::vector<Piece> pieces((settings.paths + kGrain - 1) / kGrain);
-  parallel_for(settings.paths, kGrain, [&](std::size_t begin, std::size_t end) {
-    Piece& piece = pieces[begin / kGrain];
+  std::vector<Piece> pieces((settings.paths + kPathsAtOnce - 1) / kPathsAtOnce);
+  parallel_for(settings.paths, kPathsAtOnce, [&](std::size_t begin, std::size_t end) {
+    Piece& piece = pieces[begin / kPathsAtOnce];
     LightBatch batch;
     PathTally tally;
     for (std::size_t path = begin; path < end; ++path) tracer.trace(path, batch, &tally);

@@ -134,13 +134,13 @@ float part_by_columns(const Receivers& receivers, std::size_t i, float traced_be
 
 ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice& choice,
                                  const Receivers& receivers, std::uint64_t seed, float traced_below) {
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kReceiversAtOnce = 256;
   ReceiverPilot all;
   if (receivers.size() == 0 || choice.empty()) return all;
   const EmitterPilot emitter_pilot(world, choice);
-  std::vector<ReceiverPilot> pieces((receivers.size() + kGrain - 1) / kGrain);
-  parallel_for(receivers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    ReceiverPilot& piece = pieces[begin / kGrain];
+  std::vector<ReceiverPilot> pieces((receivers.size() + kReceiversAtOnce - 1) / kReceiversAtOnce);
+  parallel_for(receivers.size(), kReceiversAtOnce, [&](std::size_t begin, std::size_t end) {
+    ReceiverPilot& piece = pieces[begin / kReceiversAtOnce];
     for (std::size_t i = begin; i < end; ++i) {
       Rng rng(seed, Stage::pilot, kRandomId, i);
       const float weight = max_component(receivers.weight[i]);
