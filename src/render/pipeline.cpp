@@ -243,6 +243,7 @@ void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count
     aim = std::make_unique<transport::Receivers>(aim_at(setup, settings.seed, sinks));
   ls.receivers = aim.get();
   ls.diffuse_only = settings.light_type == "diffuse-point";
+  ls.traced_direct_below = static_cast<float>(setup.traced_below);
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
   setup.held = {};
   if (settings.compensate > 0) {

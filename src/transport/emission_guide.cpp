@@ -11,10 +11,13 @@ namespace {
 
 // This part of all paths stays spread evenly: what the pilot did not find must still be found.
 constexpr double kEvenPart = 0.3;
-// A box is halved while it holds more than this part of the importance, enough observations to tell, and
-// room.
+// Of the others, this part goes where importance was found, the rest where it may be: a large box with few
+// strong observations has a great mean square, and would draw away what small boxes hold for certain.
+constexpr double kByImportance = 0.75;
+// A box is halved while it holds more than this part of the importance, enough observations to tell (fewer
+// if all of them are of paths that count), and room.
 constexpr double kSplitAbove = 1.0 / 512;
-constexpr std::size_t kFewest = 32;
+constexpr std::size_t kFewest = 32, kFewestImportant = 8;
 // A box counts as if it held this many observations more, as strong as those of the box that it was cut from:
 // a few that brought nothing do not prove that nothing is there.
 constexpr double kPrior = 6;
@@ -103,7 +106,7 @@ struct EmissionGuide::Node {
   double strength() const { return std::sqrt(mean_square) * box.volume(); }
 };
 
-EmissionGuide EmissionGuide::fit(std::span<const Observation> observations) {
+EmissionGuide EmissionGuide::fit(std::span<const Observation> observations, Spread spread) {
   EmissionGuide guide;
   Node root;
   root.box = guide.boxes_[0];
@@ -112,6 +115,7 @@ EmissionGuide EmissionGuide::fit(std::span<const Observation> observations) {
   const double total = root.importance;
   if (!(total > 0)) return guide;
 
+  const std::size_t fewest = spread == Spread::by_density ? kFewest : kFewestImportant;
   std::vector<Node> open, done;
   open.push_back(std::move(root));
   while (!open.empty()) {
@@ -119,7 +123,7 @@ EmissionGuide EmissionGuide::fit(std::span<const Observation> observations) {
     open.pop_back();
     const bool room =
         std::any_of(node.box.size.begin(), node.box.size.end(), [](float s) { return s > kSmallest; });
-    if (!room || node.importance <= kSplitAbove * total || node.inside.size() < kFewest) {
+    if (!room || node.importance <= kSplitAbove * total || node.inside.size() < fewest) {
       done.push_back(std::move(node));
       continue;
     }
@@ -127,13 +131,16 @@ EmissionGuide EmissionGuide::fit(std::span<const Observation> observations) {
     open.push_back(std::move(other));
     open.push_back(std::move(node));
   }
-  double strength = 0;
-  for (const Node& node : done) strength += node.strength();
+  double strength = 0, importance = 0;
+  for (const Node& node : done) strength += node.strength(), importance += node.importance;
+  const double by_importance = spread == Spread::by_density ? kByImportance : 1;
   guide.boxes_.clear();
   guide.cdf_.assign(1, 0.0);
   for (const Node& node : done) {
     guide.boxes_.push_back(node.box);
-    const double p = (1 - kEvenPart) * node.strength() / strength + kEvenPart * node.box.volume();
+    const double found =
+        (1 - by_importance) * node.strength() / strength + by_importance * node.importance / importance;
+    const double p = (1 - kEvenPart) * found + kEvenPart * node.box.volume();
     guide.cdf_.push_back(guide.cdf_.back() + p);
   }
   for (double& c : guide.cdf_) c /= guide.cdf_.back();

@@ -35,8 +35,11 @@ class EmissionGuide {
     float value = 0;  // importance of the path, over the density with which it was drawn
     float density = 1;
   };
+  // How the observations came about: drawn with the densities that they tell, or spread like importance
+  // itself (then their densities are not looked at, and boxes are drawn by the importance that they hold).
+  enum class Spread : std::uint8_t { by_density, by_importance };
   // Boxes are halved where much of the importance is found, along the axis whose halves differ most.
-  static EmissionGuide fit(std::span<const Observation> observations);
+  static EmissionGuide fit(std::span<const Observation> observations, Spread spread = Spread::by_density);
 
   std::size_t boxes() const { return boxes_.size(); }
 

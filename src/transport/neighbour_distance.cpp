@@ -1,20 +1,25 @@
 #include "transport/neighbour_distance.h"
 
-#include <algorithm>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "transport/point_tree.h"
 
 namespace lumirank::transport {
 
-std::vector<float> neighbour_distance_squared(std::span<const Vec3f> points, int k) {
-  std::vector<float> result(points.size(), 0.0f);
+std::vector<Neighbour> neighbours(std::span<const Vec3f> points, std::span<const std::uint32_t> group,
+                                  int k) {
+  std::vector<Neighbour> result(points.size());
   if (points.size() < 2) return result;
-  const int usable = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(k), points.size() - 1));
-  const PointTree tree(points);
+  std::vector<std::uint32_t> own;
+  if (group.empty()) {
+    own.resize(points.size());
+    std::iota(own.begin(), own.end(), 0u);
+    group = own;
+  }
+  const PointTree tree(points, group);
   parallel_for(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    // The point itself is among its neighbours.
-    for (std::size_t i = begin; i < end; ++i) result[i] = tree.kth_distance_squared(points[i], usable + 1);
+    for (std::size_t i = begin; i < end; ++i) result[i] = tree.kth_of_others(points[i], group[i], k);
   });
   return result;
 }

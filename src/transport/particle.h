@@ -8,6 +8,7 @@
 #include "transport/emission_guide.h"
 #include "transport/emitter_choice.h"
 #include "transport/light_record.h"
+#include "transport/light_roulette.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -15,11 +16,12 @@ namespace lumirank::transport {
 struct ParticleSettings {
   std::uint64_t seed = 1;
   Stage stage = Stage::particles;
-  std::size_t paths = 1;                 // powers are divided by it
-  int deepest = -1;                      // greatest depth of a light; -1: unlimited
-  std::uint64_t first_id = 0;            // random numbers belong to first_id + path
-  const EmissionGuide* guide = nullptr;  // not owned; nullptr: uniform
-  bool diffuse_only = false;             // as in LightSettings
+  std::size_t paths = 1;                    // powers are divided by it
+  int deepest = -1;                         // greatest depth of a light; -1: unlimited
+  std::uint64_t first_id = 0;               // random numbers belong to first_id + path
+  const EmissionGuide* guide = nullptr;     // not owned; nullptr: uniform
+  bool diffuse_only = false;                // as in LightSettings
+  const LightRoulette* roulette = nullptr;  // not owned; nullptr: all lights are kept
 };
 
 // What a path met, for the pilot.
@@ -37,11 +39,24 @@ class ParticleTracer {
   ParticleTracer(const ParticleTracer&) = delete;
 
   // Path number `path` of settings.paths: its lights are appended to `batch`. A function of (seed,
-  // stage, path, guide). Returns where it started.
+  // stage, path, guide, roulette). Returns where it started.
   EmissionGuide::Start trace(std::size_t path, LightBatch& batch, PathTally* tally = nullptr) const;
 
  private:
+  // A path, or one of those that a heavy one was split into.
+  struct Branch {
+    geometry::Ray ray;
+    Rgb flux;
+    float level;  // of flux: less is paid in the chance to survive
+    int depth;    // of the next vertex
+  };
+  struct Visit;
   void follow(const EmissionGuide::Start& start, Rng& rng, LightBatch& batch, PathTally* tally) const;
+  // One vertex of a branch: leaves its light, and pushes what goes on.
+  void step(const Branch& branch, Visit& visit) const;
+  int leave(LightRecord& light, const scatter::Closure& shining, Visit& visit) const;
+  bool scatter_on(const world::SurfaceHit& hit, const scatter::Closure& closure, Vec3f incoming,
+                  Branch& branch, Rng& rng) const;
 
   const world::World& world_;
   const EmitterChoice& choice_;

@@ -10,7 +10,12 @@ namespace {
 constexpr std::uint32_t kLeaf = 16;
 }
 
-PointTree::PointTree(std::span<const Vec3f> points) : points_(points.begin(), points.end()) {
+PointTree::PointTree(std::span<const Vec3f> points) : PointTree(points, {}) {}
+
+PointTree::PointTree(std::span<const Vec3f> points, std::span<const std::uint32_t> group) {
+  points_.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points_.push_back({points[i], group.empty() ? kNoGroup - 1 : group[i]});
   std::size_t leaves = 1;
   levels_ = 0;
   while (points_.size() > leaves * kLeaf) leaves *= 2, ++levels_;
@@ -22,10 +27,15 @@ PointTree::PointTree(std::span<const Vec3f> points) : points_(points.begin(), po
 }
 
 float PointTree::kth_distance_squared(Vec3f p, int k) const {
-  Query q{p, static_cast<std::size_t>(k), {}};
+  return kth_of_others(p, kNoGroup, k).distance_squared;
+}
+
+Neighbour PointTree::kth_of_others(Vec3f p, std::uint32_t group, int k) const {
+  Query q{p, static_cast<std::size_t>(k), group, {}};
   q.heap.reserve(q.wanted);
   visit(0, 0, 0, Vec3f{}, q);
-  return q.heap.front();
+  if (q.heap.empty()) return {};
+  return {q.heap.front(), static_cast<int>(q.heap.size())};
 }
 
 void PointTree::Query::offer(float d2) {
@@ -51,20 +61,22 @@ void PointTree::split(int level, std::size_t k, std::size_t node) {
   const auto [begin, end] = range(level, k);
   const std::size_t middle = range(level + 1, 2 * k).second;
   Bounds3f box;
-  for (std::size_t i = begin; i < end; ++i) box.extend(points_[i]);
+  for (std::size_t i = begin; i < end; ++i) box.extend(points_[i].p);
   const Vec3f size = box.diagonal();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(begin), at(middle), at(end), [axis](Vec3f a, Vec3f b) { return a[axis] < b[axis]; });
+  std::nth_element(at(begin), at(middle), at(end),
+                   [axis](const Point& a, const Point& b) { return a.p[axis] < b.p[axis]; });
   axis_[node] = static_cast<std::uint8_t>(axis);
-  split_[node] = points_[middle][axis];
+  split_[node] = points_[middle].p[axis];
 }
 
 // `off`: how far p is from the node's box, per axis (a lower bound).
 void PointTree::visit(int level, std::size_t k, std::size_t node, Vec3f off, Query& q) const {
   if (level == levels_) {
     const auto [begin, end] = range(level, k);
-    for (std::size_t i = begin; i < end; ++i) q.offer(length_squared(points_[i] - q.p));
+    for (std::size_t i = begin; i < end; ++i)
+      if (points_[i].group != q.without) q.offer(length_squared(points_[i].p - q.p));
     return;
   }
   const int axis = axis_[node];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "transport/neighbour_distance.h"
 
 namespace lumirank::transport {
 
@@ -15,14 +16,19 @@ namespace lumirank::transport {
 class PointTree {
  public:
   explicit PointTree(std::span<const Vec3f> points);
+  // Points that belong to groups.
+  PointTree(std::span<const Vec3f> points, std::span<const std::uint32_t> group);
 
   // The k-th smallest squared distance from `p` to a point (k ≥ 1, at most the number of points), exact.
   float kth_distance_squared(Vec3f p, int k) const;
+  // The same among the points of other groups; the farthest of these if they are fewer.
+  Neighbour kth_of_others(Vec3f p, std::uint32_t group, int k) const;
 
  private:
   struct Query {
     Vec3f p;
     std::size_t wanted;
+    std::uint32_t without;  // points of this group do not count
     std::vector<float> heap;
     bool full() const { return heap.size() == wanted; }
     void offer(float d2);
@@ -32,7 +38,13 @@ class PointTree {
   void split(int level, std::size_t k, std::size_t node);
   void visit(int level, std::size_t k, std::size_t node, Vec3f off, Query& q) const;
 
-  std::vector<Vec3f> points_;
+  static constexpr std::uint32_t kNoGroup = 0xffffffffu;
+  struct Point {
+    Vec3f p;
+    std::uint32_t group;
+  };
+
+  std::vector<Point> points_;
   std::vector<std::uint8_t> axis_;
   std::vector<float> split_;
   int levels_;

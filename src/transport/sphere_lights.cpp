@@ -50,11 +50,15 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
                      const Sinks& sinks) {
   std::vector<std::size_t> which;
   std::vector<Vec3f> points;
-  for (std::size_t j = 0; j < lights.size(); ++j)
-    if (lights.kind[j] == LightKind::surface) which.push_back(j), points.push_back(lights.position[j]);
+  std::vector<std::uint32_t> paths;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    if (lights.kind[j] != LightKind::surface) continue;
+    which.push_back(j), points.push_back(lights.position[j]);
+    if (!lights.path.empty()) paths.push_back(lights.path[j]);
+  }
   lights.radius.assign(lights.size(), 0);
   lights.hidden.assign(lights.size(), 0);
-  const std::vector<float> distance2 = neighbour_distance_squared(points, kSphereNeighbour);
+  const std::vector<Neighbour> found = neighbours(points, paths, kSphereNeighbour);
   const float scale =
       settings.radius_scale > 0 ? settings.radius_scale : automatic_radius_scale(which.size());
   const float largest = world.bounds().radius();
@@ -62,7 +66,8 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
     if (sinks.cancelled()) return;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t j = which[k];
-      lights.radius[j] = which.size() > 1 ? sphere_radius(distance2[k], scale, largest) : largest;
+      lights.radius[j] =
+          found[k].count > 0 ? sphere_radius(found[k].distance_squared, scale, largest) : largest;
       if (lights.ng[j] == Vec3f{}) continue;  // a fibre has no tangent plane
       Rng rng(0, Stage::spheres, j);
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);

@@ -10,7 +10,8 @@
 namespace lumirank::transport {
 
 struct SphereSettings {
-  // Times the distance to the 10th nearest light (Hašan et al. 2009, section 3.3, which found 4 to 12); 0:
+  // Times the distance to the 10th nearest light of other particles (Hašan et al. 2009, section 3.3, which
+  // found 4 to 12); 0:
   // automatic_radius_scale().
   float radius_scale = 0;
 };

@@ -47,10 +47,14 @@ struct LightSettings {
   // Surface lights send on by the diffuse lobes of their surface alone (Hašan et al. 2009, section 2): the
   // traditional approximation. Lights of surfaces without such a lobe are left out.
   bool diffuse_only = false;
-  // If given, particles are aimed so that their light reaches these receivers (an interior behind windows):
-  // more of the lights are then of use to the image. The result is unbiased for every receiver either way.
+  // If given, particles are aimed so that their light reaches these receivers (an interior behind windows),
+  // and lights are kept or left out at random so that all are of about equal use to them: see light_plan.h.
+  // The result is unbiased for every receiver either way.
   // Read during the call only.
   const Receivers* receivers = nullptr;
+  // Lobes of receivers with a roughness below this get their direct light elsewhere: emitters then get fewer
+  // of the lights (if receivers are given; above 1: all lobes).
+  float traced_direct_below = 0;
 };
 
 // Sorted by kind (in the order of LightKind), lambertian surface lights before others, then along a Morton
@@ -69,6 +73,9 @@ struct VirtualLights {
   std::vector<float> radius, hidden;
   std::vector<std::uint16_t> emitter;  // first emitter of the path
   std::vector<std::uint16_t> depth;    // path segments from the emitter to here (0: on the emitter)
+  // Surface lights: the particle that left them (lights of one are not independent of each other); else
+  // kNoPath.
+  std::vector<std::uint32_t> path;
   std::vector<std::uint8_t> half;      // 1 or 2: the independent half that it belongs to; 0: exact (halves.h)
   std::vector<std::uint32_t> closure;  // surface lights that are not lambertian: index into closures; spot:
                                        // into spots; else kLambertian
@@ -79,7 +86,7 @@ struct VirtualLights {
   // The closure of any surface light, lambertian or not. Evaluate it with wo = incoming.
   scatter::Closure closure_at(std::size_t j) const;
 
-  static constexpr std::uint32_t kLambertian = 0xffffffffu;
+  static constexpr std::uint32_t kLambertian = 0xffffffffu, kNoPath = 0xffffffffu;
 
   std::size_t paths = 0;         // particles emitted: powers are divided by it
   std::size_t direct_count = 0;  // columns that stand for emitters

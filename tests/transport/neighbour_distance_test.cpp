@@ -9,15 +9,22 @@
 namespace lumirank::transport {
 namespace {
 
-std::vector<float> brute_force(const std::vector<Vec3f>& points, int k) {
+std::vector<float> brute_force(const std::vector<Vec3f>& points, const std::vector<std::uint32_t>& group,
+                               int k) {
   std::vector<float> result;
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::vector<float> d2;
     for (std::size_t j = 0; j < points.size(); ++j)
-      if (j != i) d2.push_back(length_squared(points[j] - points[i]));
+      if (group.empty() ? j != i : group[j] != group[i]) d2.push_back(length_squared(points[j] - points[i]));
     std::nth_element(d2.begin(), d2.begin() + (k - 1), d2.end());
     result.push_back(d2[static_cast<std::size_t>(k - 1)]);
   }
+  return result;
+}
+
+std::vector<float> distances(const std::vector<Neighbour>& found) {
+  std::vector<float> result;
+  for (const Neighbour& n : found) result.push_back(n.distance_squared);
   return result;
 }
 
@@ -32,20 +39,42 @@ TEST(NeighbourDistance, IsThatOfBruteForce) {
       if (i % 7 == 0 && i > 0) p = points[i / 2];  // some twice
       points.push_back(p);
     }
-    EXPECT_EQ(neighbour_distance_squared(points, 10), brute_force(points, 10)) << n << " points";
+    EXPECT_EQ(distances(neighbours(points, {}, 10)), brute_force(points, {}, 10)) << n << " points";
   }
+}
+
+// Points come in groups of up to 40: more than ten of its own lie around each.
+TEST(NeighbourDistance, LeavesOutTheOwnGroup) {
+  Rng rng(1, Stage::test);
+  std::vector<Vec3f> points;
+  std::vector<std::uint32_t> group;
+  for (std::uint32_t g = 0; g < 60; ++g) {
+    const Vec3f middle{rng.next_float(), rng.next_float(), rng.next_float()};
+    for (std::uint32_t k = 0; k <= g % 40; ++k) {
+      points.push_back(middle + Vec3f{rng.next_float(), rng.next_float(), rng.next_float()} * 0.01f);
+      group.push_back(g);
+    }
+  }
+  const auto found = neighbours(points, group, 10);
+  EXPECT_EQ(distances(found), brute_force(points, group, 10));
+  for (const Neighbour& n : found) EXPECT_EQ(n.count, 10);
 }
 
 TEST(NeighbourDistance, FewPoints) {
   const std::vector<Vec3f> three{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
-  EXPECT_EQ(neighbour_distance_squared(three, 10), (std::vector<float>{9, 4, 9}));
-  EXPECT_EQ(neighbour_distance_squared(std::vector<Vec3f>{{1, 2, 3}}, 10), std::vector<float>{0});
-  EXPECT_TRUE(neighbour_distance_squared({}, 10).empty());
+  const auto found = neighbours(three, {}, 10);
+  EXPECT_EQ(distances(found), (std::vector<float>{9, 4, 9}));
+  EXPECT_EQ(found[0].count, 2);
+  const std::vector<std::uint32_t> two_groups{5, 5, 7}, one_group{5, 5, 5};
+  EXPECT_EQ(distances(neighbours(three, two_groups, 10)), (std::vector<float>{9, 4, 9}));
+  for (const Neighbour& n : neighbours(three, one_group, 10)) EXPECT_EQ(n.count, 0);
+  EXPECT_EQ(neighbours(std::vector<Vec3f>{{1, 2, 3}}, {}, 10).at(0).count, 0);
+  EXPECT_TRUE(neighbours({}, {}, 10).empty());
 }
 
 TEST(NeighbourDistance, ManyEqualPoints) {
   const std::vector<Vec3f> same(500, Vec3f{1, 1, 1});
-  EXPECT_EQ(neighbour_distance_squared(same, 10), std::vector<float>(500, 0.0f));
+  EXPECT_EQ(distances(neighbours(same, {}, 10)), std::vector<float>(500, 0.0f));
 }
 
 }  // namespace
