@@ -240,6 +240,7 @@ RowsForError::RowsForError(const matrix::LightingMatrix& matrix, const RunOption
     if (enough) break;
     known_.read(rows[k], values);
   }
+  if (known_.size() > 0) row_seconds_ = (clock.seconds() - begin) / static_cast<double>(known_.size());
   if (choices_of(options))
     choices_of(options)->record("known_rows", static_cast<std::int64_t>(known_.size()));
 }

@@ -111,10 +111,12 @@ class RowsForError {
     state(sums, columns_spent, Share{}, trace);
   }
   std::size_t size() const { return known_.size(); }
+  double row_seconds() const { return row_seconds_; }  // of one, where they were read first; else 0
 
  private:
   const matrix::LightingMatrix& matrix_;
   const RunOptions& options_;
+  double row_seconds_ = 0;
   KnownRows known_;
 };
 

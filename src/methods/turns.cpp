@@ -12,13 +12,15 @@ using matrix::Index;
 namespace {
 
 constexpr double kSteps = 64;  // of quality: what a choice counts in
-// Of the time that is left: what the first turn plans with, the same where later ones replace it and seldom
-// come to all units, and the later ones, which know better; what all
-// trials may take, and below what nothing more is begun.
-constexpr double kFirstTurn = 0.7, kOnlyTurn = 0.85, kLaterTurn = 0.95, kTrials = 0.06, kNothingLeft = 0.02;
+// Of the time that is left: what the first turn plans with, so that all units have it though trials are few;
+// the later ones, which know better; what a trial may take; and below what nothing more is begun.
+constexpr double kFirstTurn = 0.5, kLaterTurn = 0.95, kTrials = 0.06, kNothingLeft = 0.02;
+constexpr std::size_t kTriedByThread = 4;
 // Columns drawn by power tell a row less than as many that are chosen for it; and beside a turn that is many
 // times better the coarse picture is left out.
 constexpr double kCoarseWorth = 1.0 / 8, kCoarseCounts = 1.0 / 16;
+// Seconds grow as a power of quality between these, as trials tell: parts of a unit's costs are fixed.
+constexpr double kLeastPower = 0.4;
 constexpr double kTrialStep = 4, kTrialSafety = 1.5;
 // A first guess of what an entry costs a method, in entries of the coarse picture.
 constexpr double kDearer = 3;
@@ -45,18 +47,25 @@ double Turns::first_quality(const UnitRows& units, const TurnMethod& method, con
                             std::span<Rgb> out) {
   const double deadline = deadline_of(options_);
   const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
-  const std::size_t tried = std::min(units.size(), static_cast<std::size_t>(current_threads()));
-  const auto some = std::span(order).first(tried);
-  std::size_t rows = 0;
-  for (const std::uint32_t u : some) rows += units[u].size();
   double quality = std::clamp(std::ceil(method.least * kSteps), 1.0, kSteps) / kSteps;
   const double least = quality;
-  double guess =
-      kDearer * quality * method.entries_per_row * static_cast<double>(rows) * coarse_.entry_seconds;
-  const double turns = std::ceil(static_cast<double>(units.size()) / static_cast<double>(tried));
   const double left_at_first = deadline - clock_.seconds();
+  // Some units for each thread, since they differ; one if that is dear.
+  const auto threads = static_cast<std::size_t>(current_threads());
+  std::size_t tried = 0;
+  double guess = 0;
+  for (const std::size_t each : {kTriedByThread, std::size_t{1}}) {
+    tried = std::min(units.size(), each * threads);
+    std::size_t rows = 0;
+    for (std::size_t k = 0; k < tried; ++k) rows += units[order[k]].size();
+    guess = kDearer * quality * method.entries_per_row * static_cast<double>(rows) * coarse_.entry_seconds;
+    if (guess < kTrials * left_at_first) break;
+  }
+  const auto some = std::span(order).first(tried);
+  const double turns = static_cast<double>(units.size()) / static_cast<double>(tried);
+  const double side_by_side = static_cast<double>(std::min(tried, threads)) / static_cast<double>(tried);
   if (guess > left_at_first || left_at_first <= 0) {
-    unit_seconds_ = guess;
+    unit_seconds_ = guess * side_by_side;
     last_quality_ = quality, last_seconds_ = guess * turns;
     return 0;
   }
@@ -67,9 +76,13 @@ double Turns::first_quality(const UnitRows& units, const TurnMethod& method, con
     const double before = clock_.seconds();
     trial(some, turn, out);
     const double took = std::max(clock_.seconds() - before, 1e-12), left = deadline - clock_.seconds();
-    unit_seconds_ = took;
+    if (last_quality_ > 0)
+      power_ = std::clamp(std::log(took * turns / last_seconds_) / std::log(quality / last_quality_),
+                          kLeastPower, 1.0);
+    unit_seconds_ = took * side_by_side;
     last_quality_ = quality, last_seconds_ = took * turns;
-    fitting = quality * (method.averaged ? kFirstTurn : kOnlyTurn) * left / last_seconds_;
+    // Not far beyond what was tried.
+    fitting = std::min(fitting_in(kFirstTurn * left), 2 * kTrialStep * quality);
     const double next = std::min(quality * kTrialStep, 1.0);
     if (quality >= 1 || fitting < next || took * kTrialSafety * next / quality > kTrials * left) break;
     quality = next;
@@ -78,13 +91,17 @@ double Turns::first_quality(const UnitRows& units, const TurnMethod& method, con
   return std::max(fitting, least);
 }
 
+double Turns::fitting_in(double seconds) const {
+  return last_quality_ * std::pow(std::max(seconds, 0.0) / std::max(last_seconds_, 1e-12), 1 / power_);
+}
+
 // As much as the time that is left allows for all units, by what the last turn took; or for some of them.
 double Turns::next_quality(const TurnMethod& method) const {
   const double left = deadline_of(options_) - clock_.seconds();
   if (left < kNothingLeft * options_.time_seconds) return 0;
-  const double fitting = last_quality_ * kLaterTurn * left / std::max(last_seconds_, 1e-12);
-  const double next = method.averaged ? std::max(fitting, std::min(last_quality_, 1 / 8.0))
-                                      : std::max(fitting, 2 * last_quality_);
+  const double fitting = fitting_in(kLaterTurn * left);
+  const double next =
+      method.averaged ? std::max(fitting, last_quality_ / 2) : std::max(fitting, 2 * last_quality_);
   return std::max(next, std::max(1 / kSteps, std::ceil(method.least * kSteps) / kSteps));
 }
 
@@ -102,9 +119,11 @@ UnitResult Turns::run_turn(const UnitRows& units, const TurnMethod& method, cons
                           : coarse_quality_ < kCoarseCounts * turn.quality ? 0
                                                                            : coarse_quality_;
     const auto share =
-        static_cast<float>(replaces || before == 0 ? 1.0 : turn.quality / (before + turn.quality));
+        static_cast<float>(replaces || before == 0 ? 1.0
+                                                   : turn.quality * turn.quality /
+                                                         (before * before + turn.quality * turn.quality));
     for (const Index i : units[unit]) sums[i] = share >= 1 ? fresh_[i] : lerp(sums[i], fresh_[i], share);
-    have = replaces ? turn.quality : have + turn.quality;
+    have = replaces ? turn.quality : std::hypot(have, turn.quality);
   };
   const double before = clock_.seconds();
   const UnitResult result = pass(control, turn, fresh_);
@@ -163,7 +182,8 @@ UnitResult Turns::run(const UnitRows& units, const TurnMethod& method, std::span
   const double whole_quality = kNearlyWhole / method.of_own;
   const bool exact = method.exact_from > 0 && least_quality_ >= method.exact_from;
   if (least_quality_ < whole_quality && !exact && !result.cancelled && last_quality_ > 0)
-    seconds_wanted_ = (begin_ + last_seconds_ / last_quality_ / kFirstTurn) / method.of_own * kReserve;
+    seconds_wanted_ = (begin_ + last_seconds_ * std::pow(1 / last_quality_, power_) / kFirstTurn) /
+                      method.of_own * kReserve;
   // Told by the qualities; it is the rule that the last turn ends early.
   result.out_of_time = least_quality_ < whole_quality && !exact && !result.cancelled;
   return result;

@@ -3,11 +3,11 @@
 //
 // First every row gets a coarse estimate (coarse_picture.h). A few units at low quality tell what quality
 // fits the time for all of them; with it goes the first turn. Later turns take what time is left, and each
-// unit's estimates are averaged by quality, or the finer one replaces the coarser. Where the last turn ends
-// early, units that it did not reach keep what they have.
+// unit's estimates are averaged by the square of quality (errors fall about as it grows), or the finer one
+// replaces the coarser. Where the last turn ends early, units that it did not reach keep what they have.
 //
 // Quality is a multiple of what the method does without a budget (in sixty-fourths: clusters, nodes, columns,
-// 1/bound), about proportional to time. A budget that allows more than that is used, up to kMostQuality.
+// 1/bound); time grows as a power of it. A budget that allows more than that is used, up to kMostQuality.
 #pragma once
 
 #include <cstdint>
@@ -67,6 +67,8 @@ class Turns {
  private:
   double first_quality(const UnitRows& units, const TurnMethod& method, const Trial& trial,
                        std::span<Rgb> out);
+  // The quality whose turn takes so long, by the last one.
+  double fitting_in(double seconds) const;
   double next_quality(const TurnMethod& method) const;
   UnitResult run_turn(const UnitRows& units, const TurnMethod& method, const Turn& turn, std::span<Rgb> sums,
                       const Pass& pass);
@@ -81,6 +83,7 @@ class Turns {
   double begin_ = 0;             // of the first turn's trials
   double last_quality_ = 0;      // of a turn, and what it took for all units
   double last_seconds_ = 0, unit_seconds_ = 0;
+  double power_ = 1;  // of quality, that seconds are in proportion to
   std::size_t turns_ = 0;
   double coarse_share_ = 1, least_quality_ = 0, mean_quality_ = 0, seconds_wanted_ = 0;
 };

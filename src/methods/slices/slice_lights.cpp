@@ -76,9 +76,10 @@ const Fields<SliceLightSettings>& slice_light_fields() {
 }
 
 SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options,
-                         const RunClock& clock, const SliceLightSettings& settings, std::span<Rgb> row_sum)
+                         const RunClock& clock, double row_seconds, const SliceLightSettings& settings,
+                         std::span<Rgb> row_sum)
     : matrix_(matrix),
-      settings_(with_slice_rows(settings, matrix, options, clock)),
+      settings_(with_slice_rows(settings, matrix, options, clock, row_seconds)),
       seed_(options.seed),
       turn_seed_(options.seed),
       slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),

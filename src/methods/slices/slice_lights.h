@@ -53,12 +53,13 @@ Fields<S> with_slice_light_fields(Fields<S> others) {
 
 class SliceLights {
  public:
+  // row_seconds: what a row takes, where that is known; else 0.
   // Reads the rows and clusters by all of them. `row_sum`: filled for every row of the matrix with the exact
   // sum at its slice's row. Where cancelled in between, or out of time (the timed
   // choice "slice_rows"), ready() is false. Under --time there are as many slices, rows and clusters as a few
   // rows show to fit (the timed choice "slices").
   SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options, const RunClock& clock,
-              const SliceLightSettings& settings, std::span<Rgb> row_sum);
+              double row_seconds, const SliceLightSettings& settings, std::span<Rgb> row_sum);
 
   bool ready() const { return ready_; }
   // Columns of a slice, and the least that the clusters of all slices allow.

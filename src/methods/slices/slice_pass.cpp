@@ -23,7 +23,7 @@ SlicePass::SlicePass(const matrix::LightingMatrix& matrix, const RunOptions& opt
       turns_(matrix, options, clock_, estimate_.sums),
       rows_(matrix, options, clock_),
       row_sums_(options.time_seconds > 0 ? matrix.rows() : 0),
-      lights_(matrix, options, clock_, settings,
+      lights_(matrix, options, clock_, rows_.row_seconds(), settings,
               options.time_seconds > 0 ? std::span<Rgb>(row_sums_) : std::span<Rgb>(estimate_.sums)),
       given_columns_(std::min(settings.columns, std::max<std::size_t>(matrix.columns(), 1))) {
   result_.cancelled = options.sinks.cancelled();
