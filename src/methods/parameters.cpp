@@ -40,7 +40,10 @@ void throw_unknown_key(const std::string& method, const std::string& key,
 
 void throw_wrong_value(const std::string& method, const Parameter& parameter, const std::string& value) {
   throw InputError(method + ": '" + value + "' is not a value of '" + parameter.key + "'",
-                   "give " + std::string(parameter.type == "choice" ? "one of " : "a ") +
+                   "give " +
+                       std::string(parameter.type == "choice"    ? "one of "
+                                   : parameter.type == "integer" ? "an "
+                                                                 : "a ") +
                        (parameter.type == "choice" ? "" : parameter.type + " in ") + parameter.range);
 }
 
