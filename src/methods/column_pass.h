@@ -5,15 +5,15 @@
 #include <functional>
 #include <span>
 
-#include "base/timer.h"
 #include "methods/method.h"
+#include "methods/run_clock.h"
 
 namespace lumirank::methods {
 
 struct PassControl {
   const RunOptions& options;
-  const Timer& timer;   // since the method was called
-  double deadline = 0;  // seconds of `timer` after which no block is begun; 0: none
+  const RunClock& timer;  // since the method was called
+  double deadline = 0;    // seconds of `timer` after which no block is begun; 0: none
   // Called between blocks, at first often, then after each quarter more. May be empty.
   std::function<void(std::span<const Rgb> sums, std::size_t done)> on_block;
 };

@@ -4,16 +4,24 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "methods/row_column/row_sampler.h"
+#include "methods/timed_choices.h"
+#include "methods/unit_pass.h"
 
 namespace lumirank::methods {
 
 namespace {
 
 constexpr std::size_t kGroups = 16;
-constexpr double kStudent = 2.131;  // 97.5 % of Student's t with 15 degrees of freedom
-constexpr std::size_t kRowsAsked = 64, kFewestRows = 16;
-constexpr double kShareOfCost = 0.01;
+// 97.5 % of Student's t with so many degrees of freedom, and one less than groups of 16 leave.
+constexpr double kStudent[kGroups] = {0,     12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365,
+                                      2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131};
+constexpr std::size_t kRowsAsked = 64, kFewestUnderBudget = 8;
+constexpr double kShareOfTime = 1.0 / 16;
+// Of the interval for heavy tails: groups of rows, resamples of them, and which of their t values it takes.
+constexpr std::size_t kResampled = 64, kResamples = 499;
+constexpr double kLowT = 0.025, kHighT = 0.99;
 constexpr double kLeastShare = 0.25;
 
 struct Triple {
@@ -28,6 +36,53 @@ struct RowSums {
   RowSums operator+(const RowSums& o) const { return {all + o.all, difference + o.difference}; }
 };
 
+// What rows err by and how much light they have, by group; `t` of a resample of them.
+struct ErrorSums {
+  std::vector<double> off, size;
+  struct Ratio {
+    double value, deviation;
+  };
+  // Of the groups that pick(k) names.
+  template <typename Pick>
+  Ratio ratio(Pick&& pick) const {
+    const std::size_t n = off.size();
+    double e = 0, s = 0, squares = 0;
+    for (std::size_t k = 0; k < n; ++k) e += off[pick(k)], s += size[pick(k)];
+    if (!(s > 0)) return {0, 0};
+    for (std::size_t k = 0; k < n; ++k) {
+      const double d = off[pick(k)] - e / s * size[pick(k)];
+      squares += d * d;
+    }
+    const double count = static_cast<double>(n);
+    return {e / s, std::sqrt(squares * count / std::max(count - 1, 1.0)) / s};
+  }
+};
+
+// See ErrorPart. Its random numbers are the same for all data, so the interval is a function of these alone.
+void write_interval(const ErrorSums& sums, ErrorPart& part) {
+  part.low = part.high = part.value;
+  const std::size_t n = sums.off.size();
+  const auto own = sums.ratio([](std::size_t k) { return k; });
+  if (n < 2 || !(own.deviation > 0)) return;
+  std::vector<double> t;
+  t.reserve(kResamples);
+  std::vector<std::size_t> picks(n);
+  for (std::size_t b = 0; b < kResamples; ++b) {
+    Rng rng(1, Stage::rows, 0x7453, b);
+    for (std::size_t& pick : picks) pick = rng.next_below(n);
+    const auto r = sums.ratio([&](std::size_t k) { return picks[k]; });
+    // All picks alike: no deviation, and nothing to learn.
+    if (r.deviation > 1e-3 * own.deviation) t.push_back((r.value - own.value) / r.deviation);
+  }
+  if (t.empty()) return;
+  std::sort(t.begin(), t.end());
+  const auto quantile = [&](double q) {
+    return t[std::min(t.size() - 1, static_cast<std::size_t>(q * static_cast<double>(t.size())))];
+  };
+  part.low = std::max(0.0, std::min(part.value, own.value - quantile(1 - kLowT) * own.deviation));
+  part.high = std::max(part.value, own.value - quantile(1 - kHighT) * own.deviation);
+}
+
 double brightness(Rgb v) {
   return static_cast<double>(v.r) + static_cast<double>(v.g) + static_cast<double>(v.b);
 }
@@ -37,8 +92,20 @@ double brightness(Rgb v) {
 ErrorPart ErrorParts::total() const {
   const double noise = std::hypot(sampling.value, lights.value);
   const auto part = [&](const ErrorPart& p) { return noise > 0 ? p.value / noise * p.half_width : 0.0; };
-  return {noise + clamping.value, std::sqrt(part(sampling) * part(sampling) + part(lights) * part(lights) +
-                                            clamping.half_width * clamping.half_width)};
+  ErrorPart sum{noise + clamping.value,
+                std::sqrt(part(sampling) * part(sampling) + part(lights) * part(lights) +
+                          clamping.half_width * clamping.half_width)};
+  // Each part's distance to the end of its interval, added as half widths are.
+  const auto reach = [&](double ErrorPart::*end) {
+    const auto of = [&](const ErrorPart& p) {
+      return noise > 0 ? p.value / noise * (p.*end - p.value) : p.*end - p.value;
+    };
+    const double c = clamping.*end - clamping.value;
+    return std::sqrt(of(sampling) * of(sampling) + of(lights) * of(lights) + c * c);
+  };
+  sum.low = std::max(0.0, sum.value - reach(&ErrorPart::low));
+  sum.high = sum.value + reach(&ErrorPart::high);
+  return sum;
 }
 
 const KnownRow& KnownRows::read(const SampledRow& row, std::span<Rgb> values) {
@@ -69,26 +136,35 @@ void KnownRows::append(const KnownRows& others) {
   rows_.insert(rows_.end(), others.rows_.begin(), others.rows_.end());
 }
 
+bool KnownRows::lit() const {
+  return std::ranges::any_of(rows_, [](const KnownRow& r) { return brightness(r.sum) + r.clamped > 0; });
+}
+
 template <typename Error>
 ErrorPart KnownRows::relative(Error&& error) const {
   // Interleaved groups: each is spread over the whole image.
   double over = 0, under = 0, group_over[kGroups] = {}, group_under[kGroups] = {};
+  const std::size_t groups = std::min(kGroups, rows_.size()), resampled = std::min(kResampled, rows_.size());
+  ErrorSums sums{std::vector<double>(resampled, 0.0), std::vector<double>(resampled, 0.0)};
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const KnownRow& row = rows_[k];
     const double e = row.share * error(row), size = row.share * (brightness(row.sum) + row.clamped);
     over += e, group_over[k % kGroups] += e;
     under += size, group_under[k % kGroups] += size;
+    sums.off[k % resampled] += e, sums.size[k % resampled] += size;
   }
   if (!(under > 0)) return {};
   ErrorPart part;
   part.value = over / under;
   double squares = 0;
-  for (std::size_t g = 0; g < kGroups; ++g) {
+  for (std::size_t g = 0; g < groups; ++g) {
     const double rest = under - group_under[g];
     const double without = rest > 0 ? (over - group_over[g]) / rest : part.value;
     squares += (without - part.value) * (without - part.value);
   }
-  part.half_width = kStudent * std::sqrt(squares * (kGroups - 1.0) / kGroups);
+  const double count = static_cast<double>(groups);
+  part.half_width = kStudent[groups - 1] * std::sqrt(squares * (count - 1) / count);
+  write_interval(sums, part);
   return part;
 }
 
@@ -115,6 +191,9 @@ void write_error(const ErrorParts& parts, Trace& trace) {
   numbers["error.sampling_half_width"] = parts.sampling.half_width;
   numbers["error.estimate"] = parts.total().value;
   numbers["error.estimate_half_width"] = parts.total().half_width;
+  numbers["error.estimate.low"] = parts.total().low;
+  numbers["error.estimate.high"] = parts.total().high;
+  numbers["error.estimate.confidence"] = kErrorConfidence;
   write_error_of_lights(parts, trace);
 }
 
@@ -140,16 +219,47 @@ KnownRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std
   return known;
 }
 
-void look_at_rows(const matrix::LightingMatrix& matrix, const RunOptions& options, std::span<const Rgb> sums,
-                  double columns_spent, Trace& trace) {
-  const auto rows = static_cast<double>(matrix.rows()), columns = static_cast<double>(matrix.columns());
-  if (rows == 0 || columns == 0 || options.sinks.cancelled()) return;
-  const double affordable = std::floor(kShareOfCost * columns_spent * rows / columns);
-  const bool asked = options.target_error > 0;
-  if (!asked && affordable < static_cast<double>(kFewestRows)) return;
-  const double count = asked ? static_cast<double>(kRowsAsked) : std::min<double>(kRowsAsked, affordable);
-  const KnownRows known = read_rows(matrix, static_cast<std::size_t>(count), options.seed);
-  write_error({known.sampling(sums), known.lights(), known.clamping()}, trace);
+RowsForError::RowsForError(const matrix::LightingMatrix& matrix, const RunOptions& options,
+                           const RunClock& clock)
+    : matrix_(matrix), options_(options), known_(matrix) {
+  if (options.time_seconds <= 0 || matrix.rows() == 0 || matrix.columns() == 0) return;
+  const auto rows = RowSampler(matrix, options.seed).stratified(kRowsAsked, 1);
+  const auto earlier =
+      choices_of(options) ? choices_of(options)->earlier("known_rows", static_cast<std::int64_t>(rows.size()))
+                          : std::nullopt;
+  std::vector<Rgb> values(matrix.columns());
+  const double begin = clock.seconds(), end = begin + kShareOfTime * options.time_seconds;
+  // A beginning of them is spread over the picture as all are.
+  for (const std::uint32_t k : coarse_to_fine(rows.size())) {
+    const std::size_t read = known_.size();
+    if (options.sinks.cancelled()) break;
+    const double now = clock.seconds();
+    const double row = read > 0 ? (now - begin) / static_cast<double>(read) : 0;
+    const bool enough = earlier ? read >= static_cast<std::size_t>(*earlier)
+                                : now + row > end || row * kFewestUnderBudget > end - begin;
+    if (enough) break;
+    known_.read(rows[k], values);
+  }
+  if (known_.size() > 0) row_seconds_ = (clock.seconds() - begin) / static_cast<double>(known_.size());
+  if (choices_of(options))
+    choices_of(options)->record("known_rows", static_cast<std::int64_t>(known_.size()));
+}
+
+void RowsForError::state(std::span<const Rgb> sums, double columns_spent, const Share& share, Trace& trace) {
+  const auto rows = static_cast<double>(matrix_.rows()), columns = static_cast<double>(matrix_.columns());
+  if (rows == 0 || columns == 0 || options_.sinks.cancelled()) return;
+  if (options_.time_seconds <= 0) {
+    const double affordable = std::floor(share.of_cost * columns_spent * rows / columns);
+    const bool asked = options_.target_error > 0;
+    if (!asked && affordable < static_cast<double>(share.fewest)) return;
+    const double count = asked ? static_cast<double>(kRowsAsked) : std::min<double>(kRowsAsked, affordable);
+    known_ = read_rows(matrix_, static_cast<std::size_t>(count), options_.seed);
+  } else if (known_.size() < std::min(kFewestUnderBudget, matrix_.rows())) {
+    return;
+  }
+  if (!known_.lit()) return;
+  trace.numbers["error.rows"] = static_cast<double>(known_.size());
+  write_error({known_.sampling(sums), known_.lights(), known_.clamping()}, trace);
 }
 
 }  // namespace lumirank::methods

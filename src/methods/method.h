@@ -39,6 +39,8 @@ struct RunOptions {
   double time_seconds = 0;          // > 0: stop when this much time has passed since the call
   double target_error = 0;          // > 0: stop when the whole error (known_rows.h) falls below
   TimedChoices* choices = nullptr;  // with a budget: where the clock's choices are kept, see timed_choices.h
+  // Seconds since any moment, for time_seconds; empty: the wall clock. Tests let time pass by the entry.
+  std::function<double()> clock;
   Sinks sinks;
   // Called with a complete estimate of all row sums whenever a better one exists (progressive display). May
   // be empty.

@@ -7,10 +7,10 @@
 
 namespace lumirank::methods {
 
-bool parse_count(const std::string& text, std::size_t lowest, std::size_t& value) {
+bool parse_count(const std::string& text, std::size_t lowest, std::size_t highest, std::size_t& value) {
   std::size_t v = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-  if (error != std::errc() || end != text.data() + text.size() || v < lowest) return false;
+  if (error != std::errc() || end != text.data() + text.size() || v < lowest || v > highest) return false;
   value = v;
   return true;
 }

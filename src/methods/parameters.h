@@ -28,15 +28,19 @@ struct FieldText {
 };
 
 // Text → number, whole text or nothing.
-bool parse_count(const std::string& text, std::size_t lowest, std::size_t& value);
+bool parse_count(const std::string& text, std::size_t lowest, std::size_t highest, std::size_t& value);
 bool parse_number(const std::string& text, double lowest, double highest, double& value);
 std::string number_text(double value);
 
+// Highest counts of columns and of receivers: more than any scene has, and memory for them can be had. Where
+// a number of something is kept for each of these, its highest is much lower.
+inline constexpr std::size_t kMostColumns = 10'000'000, kMostRows = 1'000'000;
+
 template <typename S>
-Field<S> count_field(FieldText text, std::size_t S::*member, std::size_t lowest) {
-  return {
-      {text.key, "integer", std::to_string(S{}.*member), std::to_string(lowest) + " …", text.unit, text.help},
-      [=](S& s, const std::string& v) { return parse_count(v, lowest, s.*member); }};
+Field<S> count_field(FieldText text, std::size_t S::*member, std::size_t lowest, std::size_t highest) {
+  return {{text.key, "integer", std::to_string(S{}.*member),
+           std::to_string(lowest) + " … " + std::to_string(highest), text.unit, text.help},
+          [=](S& s, const std::string& v) { return parse_count(v, lowest, highest, s.*member); }};
 }
 
 template <typename S>

@@ -80,14 +80,20 @@ constexpr double kPreviews[] = {1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};
 class Dispenser {
  public:
   Dispenser(std::span<const std::uint32_t> order, const UnitControl& control)
-      : order_(order), control_(control), start_(control.timer.seconds()) {
+      : order_(order), control_(control), start_(control.timer.seconds()), unit_(control.unit_seconds) {
     if (TimedChoices* choices = choices_of(control.options))
       earlier_ = choices->earlier("units", static_cast<std::int64_t>(order.size()));
   }
 
   void open_until(std::size_t end) { end_ = end; }
-  std::optional<std::size_t> next() {
+  // began: when this worker's last unit was taken; < 0 before the first.
+  std::optional<std::size_t> next(double& began) {
     const std::lock_guard lock(mutex_);
+    if (control_.deadline > 0) {
+      const double now = control_.timer.seconds();
+      if (began >= 0) unit_.add(now - began);
+      began = now;
+    }
     if (stopped() || taken_ >= end_) return std::nullopt;
     if (control_.options.sinks.progress && taken_ >= reported_) {
       control_.options.sinks.report(control_.phase,
@@ -107,11 +113,8 @@ class Dispenser {
     cancelled_ = cancelled_ || control_.options.sinks.cancelled();
     if (earlier_) {
       out_of_time_ = taken_ >= static_cast<std::size_t>(*earlier_);
-    } else if (control_.deadline > 0 && taken_ > 0 && !out_of_time_) {
-      // A unit takes as long as those before it, with all threads at work.
-      const double now = control_.timer.seconds(), threads = static_cast<double>(current_threads());
-      const double per_unit = (now - start_) * threads / std::max(static_cast<double>(taken_), threads);
-      out_of_time_ = now + (static_cast<double>(taken_) < threads ? 0.0 : per_unit) > control_.deadline;
+    } else if (control_.deadline > 0 && (taken_ > 0 || control_.covered) && !out_of_time_) {
+      out_of_time_ = control_.timer.seconds() + unit_.next() > control_.deadline;
     }
     return cancelled_ || out_of_time_;
   }
@@ -120,6 +123,7 @@ class Dispenser {
   std::span<const std::uint32_t> order_;
   const UnitControl& control_;
   double start_;
+  UnitSeconds unit_;
   std::optional<std::int64_t> earlier_;
   std::mutex mutex_;
   std::size_t taken_ = 0, end_ = 0, reported_ = 0;
@@ -177,7 +181,8 @@ UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::s
     dispenser.open_until(end);
     parallel_for(static_cast<std::size_t>(current_threads()), 1, [&](std::size_t, std::size_t) {
       try {
-        worker([&] { return dispenser.next(); });
+        double began = -1;
+        worker([&] { return dispenser.next(began); });
       } catch (...) {
         dispenser.close();
         throw;
@@ -193,7 +198,7 @@ UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::s
       run_until(end);
       if (dispenser.stopped()) break;
       if (dispenser.result().done == 0) continue;
-      fill_in(state, sums);
+      if (!control.covered) fill_in(state, sums);
       control.options.on_estimate(sums);
     }
   if (!dispenser.stopped()) run_until(order.size());
@@ -202,7 +207,7 @@ UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::s
   result.out_of_time = result.out_of_time && result.done < order.size();
   if (TimedChoices* choices = choices_of(control.options))
     choices->record("units", static_cast<std::int64_t>(result.done));
-  if (result.done < order.size()) fill_in(state, sums);
+  if (result.done < order.size() && !control.covered) fill_in(state, sums);
   control.options.sinks.report(
       control.phase,
       order.empty() ? 1.0 : static_cast<double>(result.done) / static_cast<double>(order.size()));

@@ -3,6 +3,7 @@
 // and cancellation.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/timer.h"
 #include "methods/method.h"
+#include "methods/run_clock.h"
 
 namespace lumirank::methods {
 
@@ -90,9 +91,13 @@ class WorkspacePool {
 
 struct UnitControl {
   const RunOptions& options;
-  const Timer& timer;            // since the method was called
+  const RunClock& timer;         // since the method was called
   double deadline = 0;           // seconds of `timer` after which no unit is begun; 0: none
   const char* phase = "pixels";  // what progress is called
+  // All rows have an estimate, which those of units that are not reached keep: none need be reached.
+  bool covered = false;
+  double unit_seconds = 0;  // what a unit is expected to take, until the first ones are done; 0: unknown
+  std::function<void(std::size_t unit)> on_unit{};  // for the callers of turns.h: a unit is done
 };
 
 struct UnitResult {
@@ -102,12 +107,31 @@ struct UnitResult {
   double seconds = 0;
 };
 
+// What units like those before may take, all threads at work: against a deadline.
+class UnitSeconds {
+ public:
+  explicit UnitSeconds(double expected) : expected_(expected) {}
+  void add(double seconds) {
+    sum_ += seconds, ++count_;
+    longest_ = std::max(longest_, seconds);
+  }
+  // Half way from the mean to the longest: a unit like the longest is met once in a while.
+  double next() const {
+    return count_ > 0 ? 0.5 * (sum_ / static_cast<double>(count_) + longest_) : expected_;
+  }
+
+ private:
+  double expected_, sum_ = 0, longest_ = 0;
+  std::size_t count_ = 0;
+};
+
 // Whose turn it is; nothing once the pass is over.
 using NextUnit = std::function<std::optional<std::size_t>()>;
 // Calls worker(next) on all threads; each asks for units until there are none. What a worker has taken it
-// finishes, and then has written (not added to) sums[i] of all rows i of the unit. Where the pass ends early,
-// rows of other units take the sum of the nearest row that is finished (by number: rows are kept in an order
-// in which neighbours lie close), and so do previews. Rows of no unit are left alone.
+// finishes, and then has written (not added to) sums[i] of all rows i of the unit. Where the pass ends early
+// and rows are not covered, rows of other units take the sum of the nearest row that is finished (by number:
+// rows are kept in an order in which neighbours lie close), and so do previews. Rows of no unit are left
+// alone.
 UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::span<Rgb> sums,
                        const std::function<void(const NextUnit&)>& worker);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "matrix/synthetic.h"
+#include "methods/column_pass.h"
 #include "methods/timed_choices.h"
 
 namespace lumirank::methods {
@@ -24,28 +25,42 @@ class TimedSlices : public testing::TestWithParam<const char*> {
 
 // Repeated choices ask no clock.
 TEST_P(TimedSlices, RowsAndColumnsFollowTheChoices) {
-  TimedChoices choices({{"slices", {4}}, {"slice_columns", {30}}, {"units", {4}}});
+  TimedChoices choices({{"coarse_columns", {2}},
+                        {"known_rows", {0}},
+                        {"slices", {4}},
+                        {"slice_rows", {4}},
+                        {"turn_quality", {64, 0}},
+                        {"units", {4, 4}}});
   const auto numbers = run(1e-6, &choices).trace.numbers;
   choices.expect_end();
   EXPECT_EQ(numbers.at("slices"), 4);
   EXPECT_EQ(numbers.at("rows"), 4);
-  EXPECT_EQ(numbers.at("columns"), 30);
+  EXPECT_EQ(numbers.at("columns"), 30);  // as many of 60 as slices of 8
+  EXPECT_EQ(numbers.at("turns"), 1);
 }
 
 // Clusters of all slices, and one more for what is split further.
 TEST_P(TimedSlices, FewestColumnsAreTheClustersOfAllSlices) {
-  TimedChoices choices({{"slices", {4}}, {"slice_columns", {0}}, {"units", {4}}});
+  TimedChoices choices({{"coarse_columns", {2}},
+                        {"known_rows", {0}},
+                        {"slices", {4}},
+                        {"slice_rows", {4}},
+                        {"turn_quality", {1, 0}},
+                        {"units", {4, 4}}});
   EXPECT_EQ(run(1e-6, &choices).trace.numbers.at("columns"), 21);
 }
 
-TEST_P(TimedSlices, NoTimeIsOneSlice) {
+TEST_P(TimedSlices, NoTimeIsTheCoarsePicture) {
   TimedChoices choices;
   const Estimate e = run(1e-9, &choices);
-  EXPECT_EQ(e.trace.numbers.at("rows"), 1);
-  for (const Rgb v : e.sums) EXPECT_TRUE(is_finite(v));
+  EXPECT_EQ(e.trace.numbers.at("budget.coarse_share"), 1);
+  for (const Rgb v : e.sums) EXPECT_TRUE(is_finite(v) && !is_black(v));
 }
 
-TEST_P(TimedSlices, EnoughTimeChangesNothing) { EXPECT_TRUE(run(1e6).sums == run(0).sums); }
+// More columns than there are lights: exact, up to sums of 900 floats in another order.
+TEST_P(TimedSlices, MuchTimeIsExact) {
+  EXPECT_LT(relative_difference(run(1e6).sums, matrix_.exact_sums()), 900 * 0x1p-24);
+}
 
 INSTANTIATE_TEST_SUITE_P(All, TimedSlices, testing::Values("lightslice", "visibility-completion"),
                          [](const auto& p) {

@@ -40,7 +40,7 @@ class RowSums {
         }) {}
 
   UnitResult run(const RunOptions& options, std::vector<Rgb>& sums, double deadline = 0) {
-    const Timer timer;
+    const RunClock timer(options);
     sums.assign(matrix_.rows(), Rgb(0));
     return run_units(units_, {options, timer, deadline, "rows"}, sums, pool_,
                      [&](std::size_t unit, Workspace& w) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/timer.h"
 #include "methods/column_pass.h"
 #include "methods/known_rows.h"
 #include "methods/parameters.h"
@@ -36,12 +35,12 @@ std::vector<matrix::ScaledColumn> strided(std::size_t n) {
 }  // namespace
 
 Estimate sum_all_columns(const matrix::LightingMatrix& matrix, const RunOptions& options) {
-  const Timer timer;
+  const RunClock timer(options);
   const std::size_t n = matrix.columns();
   const auto columns = strided(n);
   Estimate estimate;
   estimate.sums.assign(matrix.rows(), Rgb(0));
-  PassControl control{options, timer, options.time_seconds, {}};
+  PassControl control{options, timer, deadline_of(options), {}};
   if (options.on_estimate)
     control.on_block = [&](std::span<const Rgb> sums, std::size_t done) {
       options.on_estimate(scaled_sums(sums, static_cast<float>(n) / static_cast<float>(done)));
@@ -53,6 +52,12 @@ Estimate sum_all_columns(const matrix::LightingMatrix& matrix, const RunOptions&
     gain = static_cast<float>(scale);
     estimate.sums = scaled_sums(estimate.sums, gain);
     estimate.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
+  }
+  if (options.time_seconds > 0) {
+    estimate.trace.numbers["budget.coarse_share"] = 0;  // every row has all columns that were rendered
+    if (pass.out_of_time && pass.done > 0)
+      estimate.trace.numbers["budget.seconds_wanted"] =
+          1.1 * pass.seconds * static_cast<double>(n) / static_cast<double>(pass.done);
   }
   mix_in(estimate.combination, std::span(columns).first(pass.done), gain, 1);
   estimate.interrupted = pass.cancelled;
@@ -66,8 +71,12 @@ Estimate sum_all_columns(const matrix::LightingMatrix& matrix, const RunOptions&
 }
 
 Estimate sum_all_columns_and_look(const matrix::LightingMatrix& matrix, const RunOptions& options) {
-  Estimate estimate = sum_all_columns(matrix, options);
-  look_at_rows(matrix, options, estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
+  const RunClock clock(options);
+  RowsForError rows(matrix, options, clock);
+  RunOptions rest = options;
+  if (options.time_seconds > 0) rest.time_seconds = std::max(options.time_seconds - clock.seconds(), 1e-9);
+  Estimate estimate = sum_all_columns(matrix, rest);
+  if (!estimate.interrupted) rows.state(estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
   return estimate;
 }
 

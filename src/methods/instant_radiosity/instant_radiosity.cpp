@@ -13,7 +13,7 @@ struct InstantRadiositySettings {
 
 const Fields<InstantRadiositySettings> kFields{count_field<InstantRadiositySettings>(
     {"lights", "columns", "Virtual lights to generate; every one is rendered, so time is in proportion."},
-    &InstantRadiositySettings::lights, 1)};
+    &InstantRadiositySettings::lights, 1, kMostColumns)};
 
 // The matrix already has only the lights that lights_wanted asked for.
 class InstantRadiosity final : public Method {

@@ -34,6 +34,7 @@ class Cut {
  public:
   Cut(const LightTree& tree, const CutLimits& limits) : tree_(tree), limits_(limits) {}
 
+  void use(const CutLimits& limits) { limits_ = limits; }
   // Begins anew, with the tree's roots. `bounds` holds this row and must live until the cut is finished.
   void begin(matrix::Index row, const matrix::RowBounds& bounds);
   // Appends the columns whose entries in the row are needed next; false: none are, the cut is finished.

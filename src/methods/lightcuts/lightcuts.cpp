@@ -16,7 +16,7 @@
 #include "methods/light_tree/light_tree.h"
 #include "methods/lightcuts/block_painter.h"
 #include "methods/parameters.h"
-#include "methods/unit_pass.h"
+#include "methods/turns.h"
 
 namespace lumirank::methods {
 
@@ -40,7 +40,7 @@ const Fields<LightcutsSettings> kFields{
                                      "receiver's total. 0 with no limit of nodes is brute force."},
                                     &LightcutsSettings::error_bound, 0, 1),
     count_field<LightcutsSettings>({"most-nodes", "nodes", "Of a receiver's cut; time is in proportion."},
-                                   &LightcutsSettings::most_nodes, 1),
+                                   &LightcutsSettings::most_nodes, 1, kMostColumns),
     choice_field<LightcutsSettings>(
         {"reconstruction", "",
          "on: few receivers have a cut of their own; what cuts in the neighbourhood agree in is "
@@ -55,6 +55,9 @@ const Fields<LightcutsSettings> kFields{
                                      "nothing in between, make an angle of at least this cosine. Nearer to 1 "
                                      "gives more receivers cuts of their own."},
                                     &LightcutsSettings::likeness, 0, 1)};
+
+// Of a first guess: cuts are found, not set.
+constexpr double kEntriesPerRow = 300;
 
 struct Workspace {
   Workspace(const matrix::LightingMatrix& matrix, const LightTree& tree, const LightcutsSettings& settings)
@@ -100,39 +103,54 @@ class Lightcuts final : public Method {
   explicit Lightcuts(const LightcutsSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    const Timer timer;
-    const LightTree tree(matrix, options.seed);
+    const RunClock timer(options);
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
-    estimate.trace.numbers["seconds.tree"] = timer.seconds();
+    Turns turns(matrix, options, timer, estimate.sums);
+    RowsForError rows(matrix, options, timer);
+    const double before_tree = timer.seconds();
+    const LightTree tree(matrix, options.seed);
+    estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
     {
       Pool pool([&] { return std::make_unique<Workspace>(matrix, tree, settings_); });
-      const UnitControl control{options, timer, options.time_seconds, "columns"};
-      const UnitResult pass = run_pass(matrix, control, pool, estimate.sums);
+      const UnitControl control{options, timer, 0, "columns"};
+      const UnitResult pass = run_pass(matrix, control, turns, pool, estimate.sums);
+      turns.write(estimate.trace);
       note_stop(pass, estimate);
       estimate.trace.numbers["seconds.columns"] = pass.seconds;
       write_costs(pool, matrix, estimate.trace);
     }
     if (!estimate.interrupted)
-      look_at_rows(matrix, options, estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
+      rows.state(estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
     if (options.on_estimate) options.on_estimate(estimate.sums);
     return estimate;
   }
 
  private:
-  UnitResult run_pass(const matrix::LightingMatrix& matrix, const UnitControl& control, Pool& pool,
-                      std::span<Rgb> sums) const {
+  // A coarser or a finer cut is no other draw of the same, so turns replace each other.
+  UnitResult run_pass(const matrix::LightingMatrix& matrix, const UnitControl& control, Turns& turns,
+                      Pool& pool, std::span<Rgb> all_sums) const {
+    const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
+    const auto limits = [this](const Turn& turn) {
+      return CutLimits{std::min(1.0, settings_.error_bound / turn.quality),
+                       turn.scaled(settings_.most_nodes)};
+    };
     const bool image = matrix.rows() > 0 && !matrix.row_features().pixel.empty();
     if (settings_.reconstruction == Reconstruction::on && image) {
       const ImageBlocks blocks(matrix);
-      return run_units(blocks.units(), control, sums, pool, [&](std::size_t unit, Workspace& w) {
-        w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
-      });
+      return run_in_turns(turns, blocks.units(), control, method, all_sums, pool,
+                          [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
+                            w.cuts.limit(limits(turn));
+                            w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
+                          });
     }
     const UnitRows units = stretches(matrix.rows());
-    return run_units(units, control, sums, pool, [&](std::size_t unit, Workspace& w) {
-      w.cuts.cut(units[unit], *w.reader, [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
-    });
+    return run_in_turns(turns, units, control, method, all_sums, pool,
+                        [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
+                          w.cuts.limit(limits(turn));
+                          w.cuts.cut(units[unit], *w.reader,
+                                     [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
+                        });
   }
 
   LightcutsSettings settings_;

@@ -24,6 +24,9 @@ class ReceiverCuts {
     }
   }
 
+  void limit(const CutLimits& limits) {
+    for (Cut& cut : cuts_) cut.use(limits);
+  }
   // Calls use(k, cut) for the cut of rows[k], in order.
   template <typename Use>
   void cut(std::span<const matrix::Index> rows, matrix::EntryReader& reader, Use&& use) {

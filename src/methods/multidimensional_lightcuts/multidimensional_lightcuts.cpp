@@ -15,7 +15,7 @@
 #include "methods/light_tree/cut_costs.h"
 #include "methods/multidimensional_lightcuts/pair_cut.h"
 #include "methods/parameters.h"
-#include "methods/unit_pass.h"
+#include "methods/turns.h"
 
 namespace lumirank::methods {
 
@@ -34,10 +34,12 @@ const Fields<MultidimensionalSettings> kFields{
                                             "pixel's sum. 0 with no limit of pairs is brute force."},
                                            &MultidimensionalSettings::error_bound, 0, 1),
     count_field<MultidimensionalSettings>({"most-pairs", "pairs", "Of a pixel's cut; time is in proportion."},
-                                          &MultidimensionalSettings::most_pairs, 1)};
+                                          &MultidimensionalSettings::most_pairs, 1, kMostColumns)};
 
 // Pixels whose cuts are refined side by side: neighbours, which ask for like entries.
 constexpr std::size_t kTogether = 8;
+// Of a first guess: cuts are found, not set.
+constexpr double kEntriesPerRow = 300;
 
 // Half the diagonal of the places of all lights.
 float extent_scale(const LightTree& lights) {
@@ -59,6 +61,9 @@ class Workspace {
       cuts_.emplace_back(lights, GatherTree(matrix, seed, scale), limits);
   }
 
+  void limit(const PairLimits& limits) {
+    for (PairCut& cut : cuts_) cut.use(limits);
+  }
   // At most kTogether pixels.
   void run(const UnitRows& pixels, std::size_t first, std::size_t count, std::span<Rgb> sums) {
     const Timer timer;
@@ -142,29 +147,36 @@ class MultidimensionalLightcuts final : public Method {
   explicit MultidimensionalLightcuts(const MultidimensionalSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    const Timer timer;
-    const LightTree lights(matrix, options.seed);
+    const RunClock timer(options);
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
-    estimate.trace.numbers["seconds.tree"] = timer.seconds();
+    Turns turns(matrix, options, timer, estimate.sums);
+    RowsForError rows(matrix, options, timer);
+    const double before_tree = timer.seconds();
+    const LightTree lights(matrix, options.seed);
+    estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
     const UnitRows pixels = UnitRows::pixels(matrix);
     {
       Pool pool([&] {
         return std::make_unique<Workspace>(matrix, lights, options.seed,
                                            PairLimits{settings_.error_bound, settings_.most_pairs});
       });
-      const UnitResult pass =
-          run_units(together(pixels), {options, timer, options.time_seconds, "columns"}, estimate.sums, pool,
-                    [&](std::size_t unit, Workspace& w) {
-                      const std::size_t first = unit * kTogether;
-                      w.run(pixels, first, std::min(kTogether, pixels.size() - first), estimate.sums);
-                    });
+      // A coarser or a finer cut is no other draw of the same, so turns replace each other.
+      const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
+      const UnitResult pass = run_in_turns(
+          turns, together(pixels), {options, timer, 0, "columns"}, method, estimate.sums, pool,
+          [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
+            const std::size_t first = unit * kTogether;
+            w.limit({std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.most_pairs)});
+            w.run(pixels, first, std::min(kTogether, pixels.size() - first), sums);
+          });
+      turns.write(estimate.trace);
       note_stop(pass, estimate);
       estimate.trace.numbers["seconds.columns"] = pass.seconds;
       write_costs(pool, matrix, estimate.trace);
     }
     if (!estimate.interrupted)
-      look_at_rows(matrix, options, estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
+      rows.state(estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
     if (options.on_estimate) options.on_estimate(estimate.sums);
     return estimate;
   }

@@ -24,6 +24,7 @@ class PairCut {
   PairCut(const LightTree& lights, GatherTree gather, const PairLimits& limits)
       : lights_(lights), gather_(std::move(gather)), limits_(limits) {}
 
+  void use(const PairLimits& limits) { limits_ = limits; }
   // Begins anew.
   void begin(std::span<const matrix::Index> rows);
   // The pixel's rows in the order of its places.

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "base/parallel.h"
-#include "base/timer.h"
 #include "methods/column_pass.h"
 #include "methods/known_rows.h"
 #include "methods/parameters.h"
@@ -19,6 +18,12 @@ namespace {
 
 enum class Drawing { stratified, independent };
 
+// Rounds end when they have rendered as many columns as the matrix has: that costs what the exact sum does.
+// A time that was given is used somewhat longer.
+constexpr double kMostOfColumns = 1, kMostOfColumnsInTime = 4;
+constexpr std::size_t kMostDraws = std::size_t{1} << 24;  // of an open-ended round
+constexpr std::size_t kMostDrawsOfColumn = 64;            // in the mean: draws of one column are merged
+
 struct PowerSamplingSettings {
   std::size_t columns = 1000;
   Drawing drawing = Drawing::stratified;
@@ -29,7 +34,7 @@ const Fields<PowerSamplingSettings> kFields{
                                         "Draws with replacement; time is in proportion. With a time or error "
                                         "target it is not used: rounds are added until "
                                         "the target is met."},
-                                       &PowerSamplingSettings::columns, 1),
+                                       &PowerSamplingSettings::columns, 1, kMostColumns),
     choice_field<PowerSamplingSettings>(
         {"drawing", "",
          "stratified: one draw in each equal part of the running sum of powers; independent: plain draws."},
@@ -41,7 +46,8 @@ class PowerSampling final : public Method {
   explicit PowerSampling(const PowerSamplingSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    const Timer timer;
+    const RunClock timer(options);
+    RowsForError rows_for_error(matrix, options, timer);
     const bool open_ended = options.time_seconds > 0 || options.target_error > 0;
     std::vector<matrix::Index> all(matrix.columns());
     std::iota(all.begin(), all.end(), 0u);
@@ -49,8 +55,9 @@ class PowerSampling final : public Method {
 
     // Rows tell when to stop: draws know nothing of them.
     constexpr std::size_t kRows = 64;
-    const KnownRows known =
-        options.target_error > 0 ? read_rows(matrix, kRows, options.seed) : KnownRows(matrix);
+    const KnownRows known = options.target_error > 0 && options.time_seconds <= 0
+                                ? read_rows(matrix, kRows, options.seed)
+                                : KnownRows(matrix);
     const double aim =
         target_for_sampling(options.target_error, known.lights().value, known.clamping().value);
 
@@ -60,21 +67,26 @@ class PowerSampling final : public Method {
     std::set<matrix::Index> distinct;
     std::size_t draws = 0, rendered = 0;
     double seconds = 0;
+    // Without this an error that cannot be had would be pursued for ever.
+    const auto most = static_cast<std::size_t>(
+        (options.time_seconds > 0 ? kMostOfColumnsInTime : kMostOfColumns) * static_cast<double>(all.size()));
     for (std::size_t round = 0;; ++round) {
       std::size_t count = !open_ended ? settings_.columns : std::max<std::size_t>(draws, 32);
       if (options.time_seconds > 0 && draws > 0) {
         const auto affordable = timed_choice(options, "affordable_draws", INT64_MAX, [&] {
-          const double left = options.time_seconds - timer.seconds();
-          return static_cast<std::size_t>(std::max(0.0, left * static_cast<double>(rendered) / seconds));
+          const double left = deadline_of(options) - timer.seconds();
+          const double fit = left * static_cast<double>(rendered) / std::max(seconds, 1e-12);
+          return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMostDraws)));
         });
         if (affordable == 0) break;
         // A last round that would be cut short is better made to fit.
         if (affordable < 2 * count || options.target_error <= 0) count = affordable;
       }
+      if (open_ended) count = std::min({count, kMostDraws, kMostDrawsOfColumn * all.size()});
       const auto drawn = draw_columns(
           all, power, {count, settings_.drawing == Drawing::stratified, options.seed, Stage::method, round});
       std::vector<Rgb> sums(matrix.rows(), Rgb(0));
-      PassControl control{options, timer, options.time_seconds, {}};
+      PassControl control{options, timer, deadline_of(options), {}};
       if (options.on_estimate && draws == 0)
         control.on_block = [&](std::span<const Rgb> part, std::size_t done) {
           options.on_estimate(scaled_sums(part, static_cast<float>(drawn.size()) / static_cast<float>(done)));
@@ -99,16 +111,26 @@ class PowerSampling final : public Method {
       draws += count;
       if (options.on_estimate) options.on_estimate(estimate.sums);
       if (estimate.interrupted || pass.out_of_time || !open_ended) break;
+      if (rendered >= most) {
+        if (options.target_error > 0) estimate.trace.notes["target"] = "not reached";
+        break;
+      }
       const auto predicted = numbers.find("predicted_error");
       if (options.target_error > 0 && predicted != numbers.end() && predicted->second < aim &&
-          known.sampling(estimate.sums).value < aim)
+          (options.time_seconds > 0 || known.sampling(estimate.sums).value < aim))
         break;
     }
     if (!estimate.interrupted) {
-      if (known.size() > 0)
+      if (known.lit())
         write_error({known.sampling(estimate.sums), known.lights(), known.clamping()}, estimate.trace);
       else
-        look_at_rows(matrix, options, estimate.sums, static_cast<double>(rendered), estimate.trace);
+        rows_for_error.state(estimate.sums, static_cast<double>(rendered), estimate.trace);
+    }
+    if (options.time_seconds > 0) {
+      numbers["budget.coarse_share"] = 0;  // every row has all columns that were rendered
+      if (draws < settings_.columns && rendered < most && draws > 0)
+        numbers["budget.seconds_wanted"] =
+            1.1 * timer.seconds() * static_cast<double>(settings_.columns) / static_cast<double>(draws);
     }
     numbers["seconds.columns"] = seconds;
     numbers["rows"] = static_cast<double>(known.size());

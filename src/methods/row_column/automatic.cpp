@@ -10,14 +10,11 @@ namespace lumirank::methods {
 namespace {
 
 constexpr std::size_t kFirstRows = 100;
-constexpr std::size_t kMostRows = 4096;
+constexpr std::size_t kMostRowsRead = 4096;
 constexpr std::size_t kHoldOut = 5;  // one row in so many
 constexpr std::size_t kPilotColumns = 48;
 constexpr std::size_t kMostPasses = 5;
-// Without a target or a time the run is for a picture in seconds: it ends at an error that is hard to see, or
-// at as many columns as a patient person's picture takes. A target, if given, is pursued to the end.
-// 3.5 % relative L1 is about as far as 5 % relative L2.
-constexpr double kDefaultTarget = 0.035;
+// Without a target or a time: see kUnaskedTarget.
 constexpr std::size_t kMostColumnsUnasked = 3000;
 // A target for the whole error is held against what was measured at held-out rows, one draw of a random
 // error: aimed a little lower, it is met more often than not.
@@ -75,7 +72,7 @@ ErrorCurve RowColumnRun::error_curve(ColumnsKnown& known, double until_error) {
 
 void RowColumnRun::more_rows_while_they_pay(double needed) {
   double columns_before = 0;
-  while (!stopped() && settings_.rows == 0 && rows_read() < std::min(kMostRows, rows_ / 4)) {
+  while (!stopped() && settings_.rows == 0 && rows_read() < std::min(kMostRowsRead, rows_ / 4)) {
     const double start = timer_.seconds();
     ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
     const ErrorCurve curve = error_curve(known, needed);
@@ -147,7 +144,7 @@ void RowColumnRun::pilot() {
 }
 
 Estimate RowColumnRun::automatic() {
-  if (target_ <= 0 && options_.time_seconds <= 0) target_ = kDefaultTarget;
+  if (target_ <= 0 && options_.time_seconds <= 0) target_ = kUnaskedTarget;
   // So few columns that looking for fewer costs more than rendering them.
   if (columns_ <= 2 * kPilotColumns) {
     pass_over_all_columns();

@@ -22,6 +22,7 @@ RowColumnRun::RowColumnRun(const matrix::LightingMatrix& matrix, const RunOption
     : matrix_(matrix),
       options_(options),
       settings_(settings),
+      timer_(options),
       target_(options.target_error),
       rows_(matrix.rows()),
       columns_(matrix.columns()),
@@ -46,6 +47,9 @@ Estimate RowColumnRun::fixed() {
 void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold_out, double until) {
   // Enough held-out rows for the error to expect; they are kept as they are, so their number is bounded.
   constexpr std::size_t kMostHeldOut = 64;
+  // Fewer are a poor choice of columns, and still a picture.
+  constexpr std::size_t kFewestRows = 8;
+  constexpr double kMuchLater = 1.5;
   const double start = timer_.seconds();
   TimedChoices* choices = choices_of(options_);
   const auto earlier =
@@ -54,7 +58,8 @@ void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold
   for (; k < rows.size(); ++k) {
     cancelled_ = cancelled_ || options_.sinks.cancelled();
     const bool enough = earlier ? static_cast<std::int64_t>(k) >= *earlier
-                                : until > 0 && timer_.seconds() > until && rows_read() >= 8;
+                                : until > 0 && ((timer_.seconds() > until && rows_read() >= kFewestRows) ||
+                                                (timer_.seconds() > kMuchLater * until && rows_read() >= 2));
     if (cancelled_ || enough) break;
     const bool apart = hold_out > 0 && k % hold_out == hold_out / 2 && unseen_.rows() < kMostHeldOut;
     if (apart)
@@ -88,7 +93,7 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
     return blend_.with(scaled_sums(sums, gain_of(done)), error_of(done));
   };
   std::vector<Rgb> sums(rows_, Rgb(0));
-  PassControl control{options_, timer_, options_.time_seconds, {}};
+  PassControl control{options_, timer_, deadline_of(options_), {}};
   if (options_.on_estimate)
     control.on_block = [&](std::span<const Rgb> part, std::size_t done) {
       options_.on_estimate(so_far(part, done));
@@ -121,7 +126,7 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
 
 void RowColumnRun::pass_over_all_columns() {
   RunOptions rest = options_;
-  if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-3);
+  if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-9);
   Estimate all = sum_all_columns(matrix_, rest);
   const auto done = static_cast<std::size_t>(all.trace.numbers.at("columns"));
   const bool whole = done == columns_;
@@ -162,17 +167,21 @@ ErrorParts RowColumnRun::errors() const {
 
 void RowColumnRun::report_errors() {
   if (rows_read() == 0) {  // all columns were summed without a look at rows
-    look_at_rows(matrix_, options_, blend_.sums(), static_cast<double>(rendered_count_), trace_);
+    if (options_.time_seconds <= 0)
+      RowsForError(matrix_, options_, timer_)
+          .state(blend_.sums(), static_cast<double>(rendered_count_), trace_);
     return;
   }
   // With given rows none are held out; a stated error is worth some more.
   constexpr std::size_t kRowsAfterwards = 64;
-  if (unseen_.rows() == 0 && options_.target_error > 0 && !stopped())
+  if (unseen_.rows() == 0 && options_.target_error > 0 && options_.time_seconds <= 0 && !stopped())
     afterwards_ = read_rows(matrix_, kRowsAfterwards, options_.seed);
   const ErrorParts parts = errors();
   trace_.numbers["sampled_rows_error"] = seen_.known().sampling(blend_.sums()).value;
   if (unseen_.rows() > 0) trace_.numbers["heldout_error"] = unseen_.known().sampling(blend_.sums()).value;
-  if (unseen_.rows() + afterwards_.size() > 0)
+  if (!seen_.known().lit()) return;
+  trace_.numbers["error.rows"] = static_cast<double>(unseen_.rows() + afterwards_.size());
+  if (unseen_.known().lit() || afterwards_.lit())
     write_error(parts, trace_);
   else
     write_error_of_lights(parts, trace_);
@@ -192,6 +201,14 @@ Estimate RowColumnRun::finish() {
   numbers["sampling_rate"] =
       static_cast<double>(rows_read()) / static_cast<double>(std::max<std::size_t>(rows_, 1)) +
       static_cast<double>(rendered_count_) / static_cast<double>(std::max<std::size_t>(columns_, 1));
+  if (options_.time_seconds > 0) {
+    numbers["budget.coarse_share"] = 0;  // every row has all columns that were rendered
+    const double normal = options_.target_error > 0 ? options_.target_error : kUnaskedTarget;
+    if (settings_.columns == 0 && blend_.expected_error() > normal)
+      numbers["budget.seconds_wanted"] =
+          timer_.seconds() *
+          std::min(blend_.expected_error() / normal * blend_.expected_error() / normal, 1e4);
+  }
   if (cancelled_) trace_.notes["stopped"] = "cancelled";
   if (out_of_time_ && !cancelled_) trace_.notes["stopped"] = "time budget";
   estimate.sums = blend_.sums().empty() ? std::vector<Rgb>(rows_, Rgb(0)) : std::move(blend_.sums());

@@ -8,17 +8,17 @@ const Fields<RowColumnSettings>& row_column_fields() {
       count_field<S>(
           {"rows", "rows",
            "Receivers whose whole row is evaluated; 0: as many as pay. Costs one entry per column each."},
-          &S::rows, 0),
+          &S::rows, 0, kMostRows),
       count_field<S>({"columns", "columns",
                       "Clusters, each rendered by one representative; 0: as many as the target needs. Costs "
                       "one entry per "
                       "receiver each; as many as there are columns: all are rendered, which is exact."},
-                     &S::columns, 0),
+                     &S::columns, 0, kMostColumns),
       count_field<S>({"projection", "dimensions",
                       "Dimensions to which reduced columns are projected for clustering; 0: none. Time and "
                       "memory of the "
                       "clustering are in proportion."},
-                     &S::projection, 0),
+                     &S::projection, 0, 1000),
       choice_field<S>({"clustering", "",
                        "combined: some by sampling (two thirds; two fifths of many), the rest by splitting; "
                        "or one of them alone."},

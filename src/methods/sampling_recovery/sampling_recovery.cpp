@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "base/timer.h"
 #include "methods/known_rows.h"
 #include "methods/sampling_recovery/automatic.h"
 #include "methods/sampling_recovery/settings.h"
@@ -12,6 +11,7 @@
 #include "methods/slices/slice_lights.h"
 #include "methods/slices/slice_pass.h"
 #include "methods/slices/slices.h"
+#include "methods/turns.h"
 #include "methods/unit_pass.h"
 
 namespace lumirank::methods {
@@ -19,6 +19,10 @@ namespace lumirank::methods {
 namespace {
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+constexpr std::uint64_t kKey = 0x5245434f;  // of random numbers
+// A slice's row costs as much as 1/slices of its columns, so even small pictures afford some.
+constexpr RowsForError::Share kErrorOfSlices{0.08, 8};
 
 // traced: nothing was predicted, separated or corrected.
 void write_tally(const RecoveryTally& t, bool traced, Trace& trace) {
@@ -102,7 +106,7 @@ class SamplingRecovery : public Method {
         run_slices(matrix, options, lights, pool,
                    [&](const SliceLights& slices, std::size_t s, Workspace& w, std::span<Rgb> sums) {
                      w.recovery.run(slices.slices().slice(s), w.lights.chosen,
-                                    hash_ids(options.seed, Stage::method, 0x5245434f, s), sums);
+                                    hash_ids(options.seed, Stage::method, kKey, s), sums);
                    });
     RecoveryTally tally;
     pool.for_each([&](const Workspace& w) { tally += w.recovery.tally(); });
@@ -111,18 +115,22 @@ class SamplingRecovery : public Method {
   }
 
   Estimate by_bounds(const matrix::LightingMatrix& matrix, const RunOptions& options, bool search) const {
-    const Timer timer;
+    const RunClock timer(options);
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
+    Turns turns(matrix, options, timer, estimate.sums);
+    RowsForError rows(matrix, options, timer);
+    const double before_tree = timer.seconds();
     auto& numbers = estimate.trace.numbers;
     const LightTree tree(matrix, options.seed);
-    numbers["seconds.tree"] = timer.seconds();
+    numbers["seconds.tree"] = timer.seconds() - before_tree;
     const Slices slices = make_slices(matrix.row_features(), matrix.rows(), most_receivers(matrix));
-    numbers["seconds.slices"] = timer.seconds() - numbers["seconds.tree"];
+    numbers["seconds.slices"] = timer.seconds() - before_tree - numbers["seconds.tree"];
     numbers["slices"] = static_cast<double>(slices.count());
-    numbers["rows"] = 0;
+    numbers["rows"] = static_cast<double>(rows.size());
     RecoverySettings settings = settings_;
-    if (search) {
+    // With a time, the time decides.
+    if (search && options.time_seconds <= 0) {
       const double before = timer.seconds();
       const AutomaticChoice choice = choose_parameters(settings_, tree, matrix, slices, options);
       settings = choice.settings;
@@ -133,22 +141,27 @@ class SamplingRecovery : public Method {
 
     WorkspacePool<SliceRecovery> pool(
         [&] { return std::make_unique<SliceRecovery>(settings, &tree, matrix); });
-    UnitResult result;
     const UnitRows units(slices.rows, slices.first);
-    result = run_units(units, {options, timer, options.time_seconds, "slices"}, estimate.sums, pool,
-                       [&](std::size_t s, SliceRecovery& slice) {
-                         slice.run(slices.slice(s), hash_ids(options.seed, Stage::method, 0x5245434f, s),
-                                   estimate.sums);
-                       });
+    TurnMethod method{.phase = "slices", .entries_per_row = static_cast<double>(settings.initial_columns)};
+    method.exact_from =
+        traced() ? ratio(static_cast<double>(matrix.columns()),
+                         static_cast<double>(std::min(settings.initial_columns, settings.most_columns)))
+                 : 0;
+    const UnitResult result = run_in_turns(
+        turns, units, {options, timer, 0, method.phase}, method, estimate.sums, pool,
+        [&](std::size_t s, SliceRecovery& slice, const Turn& turn, std::span<Rgb> sums) {
+          slice.use(settings.at(turn));
+          slice.run(slices.slice(s), hash_ids(options.seed, Stage::method, kKey + turn.number, s), sums);
+        });
+    turns.write(estimate.trace);
     RecoveryTally tally;
     pool.for_each([&](const SliceRecovery& slice) { tally += slice.tally(); });
     numbers["seconds.columns"] = result.seconds;
     write_tally(tally, traced(), estimate.trace);
     note_stop(result, estimate);
     if (!estimate.interrupted) {
-      look_at_rows(matrix, options, estimate.sums,
-                   ratio(static_cast<double>(tally.shades), static_cast<double>(matrix.rows())),
-                   estimate.trace);
+      rows.state(estimate.sums, ratio(static_cast<double>(tally.shades), static_cast<double>(matrix.rows())),
+                 kErrorOfSlices, estimate.trace);
       if (options.on_estimate) options.on_estimate(estimate.sums);
     }
     return estimate;

@@ -4,6 +4,15 @@
 
 namespace lumirank::methods {
 
+RecoverySettings RecoverySettings::at(const Turn& turn) const {
+  RecoverySettings s = *this;
+  s.redraws = turn.number;
+  s.initial_columns = turn.scaled(initial_columns);
+  s.most_columns = turn.scaled(most_columns);
+  s.alpha = std::min(1.0, alpha / turn.quality);
+  return s;
+}
+
 const Fields<RecoverySettings>& recovery_fields() {
   using S = RecoverySettings;
   const std::vector<std::string> off_on{"off", "on"};
@@ -18,20 +27,22 @@ const Fields<RecoverySettings>& recovery_fields() {
           {"slice-rows", "pixels",
            "Most pixels of a slice, whose columns are chosen and recovered together. Larger slices "
            "share their columns' choice among more pixels, and have a higher rank."},
-          &S::slice_rows, 1),
+          &S::slice_rows, 1, kMostRows),
       choice_field<S>(
           {"clusters", "",
            "How a slice's lights are clustered. bounds: by bounds and sampled contributions, over "
            "the light tree, as in the paper; rows: by one whole row of each slice, as LightSlice "
            "does."},
           &S::clusters, {"bounds", "rows"}),
-      count_field<S>({"columns", "columns", "Clusters of a slice where they are by rows."}, &S::columns, 1),
+      count_field<S>({"columns", "columns", "Clusters of a slice where they are by rows."}, &S::columns, 1,
+                     kMostColumns),
       count_field<S>({"neighbours", "slices", "Slices by whose rows one clusters, itself among them."},
-                     &S::neighbours, 1),
+                     &S::neighbours, 1, 1000),
       count_field<S>({"initial-columns", "columns",
                       "Clusters of lights that a slice begins with, by bounds without visibility."},
-                     &S::initial_columns, 1),
-      count_field<S>({"most-columns", "columns", "Where splitting ends at the latest."}, &S::most_columns, 1),
+                     &S::initial_columns, 1, kMostColumns),
+      count_field<S>({"most-columns", "columns", "Where splitting ends at the latest."}, &S::most_columns, 1,
+                     kMostColumns),
       choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
                       &S::splitting, off_on),
       number_field<S>({"alpha", "of all clusters' greatest contributions",
@@ -44,7 +55,7 @@ const Fields<RecoverySettings>& recovery_fields() {
           {"scouts", "pixels",
            "Of a slice, evenly spread, by which its clusters are chosen; 0: all of them, as in the "
            "paper. Without redraw always all."},
-          &S::scouts, 0),
+          &S::scouts, 0, kMostRows),
       choice_field<S>(
           {"redraw", "",
            "Whether clusters, once they are chosen, get other representatives than those by "
@@ -77,7 +88,7 @@ const Fields<RecoverySettings>& recovery_fields() {
                        "Whether columns brighter than the mean may be wrong so much less often; off: all as "
                        "often, as in the paper."},
                       &S::weighted, off_on),
-      count_field<S>({"rounds", "rounds", "Of sampling and validation, at most."}, &S::rounds, 1),
+      count_field<S>({"rounds", "rounds", "Of sampling and validation, at most."}, &S::rounds, 1, 10'000),
       number_field<S>(
           {"uncertain", "of a pixel's light",
            "Entries whose prediction is expected to be wrong by more than this are sampled as well; "
@@ -103,8 +114,8 @@ const Fields<RecoverySettings>& recovery_fields() {
                        "all: predictions count, and may be sparsely wrong; exact: the sampled entries alone, "
                        "as the paper prints it."},
                       &S::fit, {"all", "exact"}),
-      count_field<S>({"rank", "", "Of the recovered matrix, at most (and at most 24)."}, &S::rank, 1),
-      count_field<S>({"iterations", "", "Of the separation, at most."}, &S::iterations, 1),
+      count_field<S>({"rank", "", "Of the recovered matrix, at most (and at most 24)."}, &S::rank, 1, 1000),
+      count_field<S>({"iterations", "", "Of the separation, at most."}, &S::iterations, 1, 10'000),
       choice_field<S>(
           {"correction", "", "Whether entries are sampled where the separation's errors are dense."},
           &S::correction, off_on),

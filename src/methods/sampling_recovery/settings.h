@@ -7,6 +7,7 @@
 
 #include "linalg/separation.h"
 #include "methods/parameters.h"
+#include "methods/turns.h"
 
 namespace lumirank::methods {
 
@@ -38,6 +39,10 @@ struct RecoverySettings {
   std::size_t rank = 16, iterations = 4;
   bool correction = true;
   double density = 0.4;
+  std::uint64_t redraws = 0;  // a turn's number: each has other representatives
+
+  // So much finer, or coarser: see turns.h.
+  RecoverySettings at(const Turn& turn) const;
 };
 
 const Fields<RecoverySettings>& recovery_fields();

@@ -202,7 +202,7 @@ void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
       contributions(settings, entries);
     }
   }
-  if (settings.splitting && settings.redraw) redraw(tree_.seed() + 1);
+  if (settings.splitting && settings.redraw) redraw(tree_.seed() + 1 + settings.redraws);
 }
 
 }  // namespace lumirank::methods

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/timer.h"
 #include "methods/timed_choices.h"
 
 namespace lumirank::methods {
@@ -11,22 +10,24 @@ namespace {
 
 using matrix::Index;
 
-constexpr std::size_t kLeastRows = 128, kMostRows = 4096;  // of a slice, where their number is found
+constexpr std::size_t kLeastRows = 128, kMostRowsFound = 4096;  // of a slice, where their number is found
+
+constexpr double kPlanned = 0.6;  // of the time: the rest is for what clusters cost beyond a guess
 
 // Reading a row costs an entry per column, rendering a slice's columns `columns` per row.
 std::size_t slice_rows(const SliceLightSettings& settings, std::size_t columns) {
   if (settings.slice_rows > 0) return settings.slice_rows;
-  return std::clamp(columns / std::max<std::size_t>(settings.columns, 1), kLeastRows, kMostRows);
+  return std::clamp(columns / std::max<std::size_t>(settings.columns, 1), kLeastRows, kMostRowsFound);
 }
 
 // Seconds of a row: the fastest of three spread over the matrix, since the first warms caches.
-double seconds_of_row(const matrix::LightingMatrix& matrix) {
+double seconds_of_row(const matrix::LightingMatrix& matrix, const RunClock& clock) {
   std::vector<Rgb> values(matrix.columns());
   double fastest = 1e9;
   for (const std::size_t sixths : {1u, 3u, 5u}) {
-    const Timer timer;
+    const double before = clock.seconds();
     matrix.row(static_cast<Index>(matrix.rows() * sixths / 6), values);
-    fastest = std::min(fastest, timer.seconds());
+    fastest = std::min(fastest, clock.seconds() - before);
   }
   return fastest;
 }
@@ -34,19 +35,18 @@ double seconds_of_row(const matrix::LightingMatrix& matrix) {
 }  // namespace
 
 SliceLightSettings with_slice_rows(SliceLightSettings settings, const matrix::LightingMatrix& matrix,
-                                   const RunOptions& options) {
+                                   const RunOptions& options, const RunClock& clock, double row_seconds) {
   settings.slice_rows = slice_rows(settings, matrix.columns());
   if (options.time_seconds <= 0 || matrix.rows() == 0 || matrix.columns() == 0) return settings;
-  const Timer timer;
   const std::size_t columns = std::min(settings.columns, matrix.columns()),
                     slices = (matrix.rows() + settings.slice_rows - 1) / settings.slice_rows;
   const std::size_t fitting =
       timed_choice(options, "slices", static_cast<std::int64_t>(slices), [&]() -> std::size_t {
-        const double row = seconds_of_row(matrix);
+        const double row = row_seconds > 0 ? row_seconds : seconds_of_row(matrix, clock);
         const double all = row * (2 * static_cast<double>(slices) +
                                   static_cast<double>(matrix.rows()) * static_cast<double>(columns) /
                                       static_cast<double>(matrix.columns()));
-        const double left = std::max(options.time_seconds - timer.seconds(), 0.0);
+        const double left = kPlanned * std::max(deadline_of(options) - clock.seconds(), 0.0);
         return all <= left ? slices : static_cast<std::size_t>(static_cast<double>(slices) * left / all);
       });
   if (fitting >= slices) return settings;

@@ -2,14 +2,16 @@
 #pragma once
 
 #include "methods/method.h"
+#include "methods/run_clock.h"
 #include "methods/slices/slice_lights.h"
 
 namespace lumirank::methods {
 
-// The settings with `slice_rows` fixed. Under --time as many slices (the timed choice "slices"), and as many
-// of the columns, as should fit by the time of three trial rows: a slice costs its row and about as much
-// again for its clusters, and columns cost what their entries would in a row.
+// The settings with `slice_rows` fixed. Under --time, by the clock of the run, as many slices (the timed
+// choice "slices"), and as many of the columns, as should fit by the time of `row_seconds`, or where that is
+// 0 of three trial rows: a slice costs its row and about as much again for its clusters, and columns cost
+// what their entries would in a row.
 SliceLightSettings with_slice_rows(SliceLightSettings settings, const matrix::LightingMatrix& matrix,
-                                   const RunOptions& options);
+                                   const RunOptions& options, const RunClock& clock, double row_seconds);
 
 }  // namespace lumirank::methods

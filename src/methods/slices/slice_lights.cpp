@@ -5,10 +5,10 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "base/timer.h"
 #include "methods/power_draws.h"
 #include "methods/row_column/columns_known.h"
 #include "methods/slices/slice_budget.h"
+#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 
@@ -35,22 +35,22 @@ const Fields<SliceLightSettings>& slice_light_fields() {
       count_field<S>({"columns", "columns",
                       "Columns of a slice: clusters, each with one that stands for it. Costs one entry per "
                       "receiver each; as many as there are columns is exact."},
-                     &S::columns, 1),
+                     &S::columns, 1, kMostColumns),
       count_field<S>({"slice-rows", "rows",
                       "Receivers of a slice, at most; 0: as many as cost a slice's columns as much as its "
                       "row, one entry per column."},
-                     &S::slice_rows, 0),
+                     &S::slice_rows, 0, kMostRows),
       count_field<S>({"initial-clusters", "clusters",
                       "Of all columns by the rows of all slices, before slices split them further; 0: three "
                       "tenths of `columns`."},
-                     &S::initial_clusters, 0),
+                     &S::initial_clusters, 0, kMostColumns),
       count_field<S>({"neighbours", "slices",
                       "Slices by whose rows one splits its clusters: the nearest, itself among them. Time of "
                       "the clustering is in proportion."},
-                     &S::neighbours, 1),
+                     &S::neighbours, 1, 1000),
       count_field<S>({"projection", "dimensions",
                       "Dimensions to which columns are projected for the clusters of all slices; 0: none."},
-                     &S::projection, 0),
+                     &S::projection, 0, 1000),
       choice_field<S>({"colour", "",
                        "averaged: who stands for a cluster gets its total colour; scalar: one factor for all "
                        "channels (unbiased)."},
@@ -76,32 +76,40 @@ const Fields<SliceLightSettings>& slice_light_fields() {
 }
 
 SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options,
-                         const SliceLightSettings& settings, std::span<Rgb> row_sum)
+                         const RunClock& clock, double row_seconds, const SliceLightSettings& settings,
+                         std::span<Rgb> row_sum)
     : matrix_(matrix),
-      settings_(with_slice_rows(settings, matrix, options)),
-      most_columns_(settings.columns),
+      settings_(with_slice_rows(settings, matrix, options, clock, row_seconds)),
       seed_(options.seed),
+      turn_seed_(options.seed),
       slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),
       exploration_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection),
                    options.seed),
       rows_(slices_.count(), matrix.columns()) {
-  Timer timer;
-  read_rows(options, row_sum);
-  seconds_rows_ = timer.seconds();
-  if (options.sinks.cancelled()) return;
+  const double begin = clock.seconds();
+  const bool all = read_rows(options, clock, row_sum);
+  seconds_rows_ = clock.seconds() - begin;
+  if (!all) return;
   find_neighbours();
   cluster();
-  seconds_clustering_ = timer.seconds() - seconds_rows_;
+  seconds_clustering_ = clock.seconds() - begin - seconds_rows_;
   ready_ = true;
 }
 
-void SliceLights::read_rows(const RunOptions& options, std::span<Rgb> row_sum) {
+bool SliceLights::read_rows(const RunOptions& options, const RunClock& clock, std::span<Rgb> row_sum) {
   std::vector<Rgb> values(matrix_.columns());
   std::vector<float> scalars(matrix_.columns());
   Rgb last(0);
+  TimedChoices* choices = choices_of(options);
+  const auto earlier =
+      choices ? choices->earlier("slice_rows", static_cast<std::int64_t>(slices_.count())) : std::nullopt;
+  std::size_t read = 0;
   for (std::size_t s = 0; s < slices_.count(); ++s) {
     const auto slice = slices_.slice(s);
-    if (!options.sinks.cancelled()) {
+    const bool late = earlier ? read >= static_cast<std::size_t>(*earlier)
+                              : options.time_seconds > 0 && clock.seconds() > deadline_of(options);
+    if (!late && !options.sinks.cancelled()) {
+      ++read;
       Rng rng(seed_, Stage::method, 1, s);
       const double share = static_cast<double>(slice.size()) * static_cast<double>(slices_.count()) /
                            static_cast<double>(matrix_.rows());
@@ -115,6 +123,8 @@ void SliceLights::read_rows(const RunOptions& options, std::span<Rgb> row_sum) {
     }
     for (const Index i : slice) row_sum[i] = last;
   }
+  if (choices) choices->record("slice_rows", static_cast<std::int64_t>(read));
+  return read == slices_.count() && !options.sinks.cancelled();
 }
 
 // Slices are few thousands: all pairs.
@@ -218,7 +228,7 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
     energy += static_cast<double>(norms[k]);
     for (std::size_t c = 0; c < 3; ++c) channels[c] += static_cast<double>(norms[k] * n.channel[c]);
   }
-  Rng rng(seed_, Stage::representatives, slice, cluster);
+  Rng rng(turn_seed_, Stage::representatives, slice, cluster);
   const double target = rng.next_double() * s;
   double running = 0;
   std::size_t chosen = members.size() - 1;
@@ -241,8 +251,9 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
   return column;
 }
 
-void SliceLights::set_columns(std::size_t columns) {
-  settings_.columns = std::min(std::max(columns, initial_.clusters() + 1), most_columns_);
+void SliceLights::set_turn(std::size_t columns, std::uint64_t turn) {
+  settings_.columns = std::max(columns, least_columns());
+  turn_seed_ = turn == 0 ? seed_ : hash_ids(seed_, Stage::representatives, turn);
 }
 
 void SliceLights::choose(std::size_t slice, Workspace& w) const {
@@ -272,7 +283,7 @@ void SliceLights::choose(std::size_t slice, Workspace& w) const {
     w.chosen.push_back(draw(slice, k, local, global, w));
   if (draws > 0) {
     const auto zero = draw_columns(w.zero, matrix_.column_features().power,
-                                   {draws, true, seed_, Stage::zero_columns, slice});
+                                   {draws, true, turn_seed_, Stage::zero_columns, slice});
     w.chosen.insert(w.chosen.end(), zero.begin(), zero.end());
   }
 }

@@ -53,16 +53,20 @@ Fields<S> with_slice_light_fields(Fields<S> others) {
 
 class SliceLights {
  public:
+  // row_seconds: what a row takes, where that is known; else 0.
   // Reads the rows and clusters by all of them. `row_sum`: filled for every row of the matrix with the exact
-  // sum at its slice's row. Where cancelled in between, ready() is false. Under --time there are as many
-  // slices, rows and clusters as a few rows show to fit (the timed choice "slices").
-  SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options,
-              const SliceLightSettings& settings, std::span<Rgb> row_sum);
+  // sum at its slice's row. Where cancelled in between, or out of time (the timed
+  // choice "slice_rows"), ready() is false. Under --time there are as many slices, rows and clusters as a few
+  // rows show to fit (the timed choice "slices").
+  SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options, const RunClock& clock,
+              double row_seconds, const SliceLightSettings& settings, std::span<Rgb> row_sum);
 
   bool ready() const { return ready_; }
-  // Columns of a slice from now on, as far as the clusters of all slices and the settings allow.
-  void set_columns(std::size_t columns);
-  std::size_t most_columns() const { return most_columns_; }
+  // Columns of a slice, and the least that the clusters of all slices allow.
+  std::size_t columns() const { return settings_.columns; }
+  std::size_t least_columns() const { return initial_.clusters() + 1; }
+  // From now on, but no fewer than those; and what is drawn is another turn's (0 at first).
+  void set_turn(std::size_t columns, std::uint64_t turn);
   const Slices& slices() const { return slices_; }
   const KnownRows& known() const { return exploration_.known(); }
   // Bytes that stay: the rows that were read, at two bytes an entry, and four norms per column.
@@ -90,7 +94,7 @@ class SliceLights {
   void choose(std::size_t slice, Workspace& workspace) const;
 
  private:
-  void read_rows(const RunOptions& options, std::span<Rgb> row_sum);
+  bool read_rows(const RunOptions& options, const RunClock& clock, std::span<Rgb> row_sum);
   void find_neighbours();
   void cluster();
   void gather(std::size_t slice, Workspace& workspace) const;
@@ -99,8 +103,7 @@ class SliceLights {
 
   const matrix::LightingMatrix& matrix_;
   SliceLightSettings settings_;
-  std::size_t most_columns_;
-  std::uint64_t seed_;
+  std::uint64_t seed_, turn_seed_;
   Slices slices_;
   Exploration exploration_;
   linalg::ShortRows rows_;  // one per slice, columns in the order of initial_

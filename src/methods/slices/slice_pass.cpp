@@ -18,24 +18,18 @@ SlicePass::SlicePass(const matrix::LightingMatrix& matrix, const RunOptions& opt
                      const SliceLightSettings& settings)
     : matrix_(matrix),
       options_(options),
+      clock_(options),
       estimate_(dark(matrix.rows())),
-      lights_(matrix, options, settings, estimate_.sums) {
-  result_.cancelled = !lights_.ready();
-  if (lights_.ready() && options.on_estimate) options.on_estimate(estimate_.sums);
-}
-
-// Slices take turns of as many as there are threads. A tenth is kept back for turns that take longer.
-std::size_t SlicePass::columns_that_fit(std::size_t slices, std::size_t tried,
-                                        const SliceCosts& trial) const {
-  constexpr double kShare = 0.9, kLeastSeconds = 1e-12;
-  if (tried == 0) return 0;
-  const auto threads = static_cast<std::size_t>(current_threads());
-  const double turns = static_cast<double>((slices + threads - 1) / threads), n = static_cast<double>(tried);
-  const double turn = kShare * (options_.time_seconds - timer_.seconds()) / turns;
-  const double column =
-      trial.seconds_columns / n / static_cast<double>(std::max<std::uint64_t>(trial.most_columns, 1));
-  const double fitting = (turn - trial.seconds_clustering / n) / std::max(column, kLeastSeconds);
-  return static_cast<std::size_t>(std::clamp(fitting, 0.0, static_cast<double>(lights_.most_columns())));
+      turns_(matrix, options, clock_, estimate_.sums),
+      rows_(matrix, options, clock_),
+      row_sums_(options.time_seconds > 0 ? matrix.rows() : 0),
+      lights_(matrix, options, clock_, rows_.row_seconds(), settings,
+              options.time_seconds > 0 ? std::span<Rgb>(row_sums_) : std::span<Rgb>(estimate_.sums)),
+      given_columns_(std::min(settings.columns, std::max<std::size_t>(matrix.columns(), 1))) {
+  result_.cancelled = options.sinks.cancelled();
+  result_.out_of_time = !lights_.ready() && !result_.cancelled;
+  if (lights_.ready() && options.on_estimate && options.time_seconds <= 0)
+    options.on_estimate(estimate_.sums);
 }
 
 Estimate SlicePass::finish() {
@@ -54,11 +48,12 @@ Estimate SlicePass::finish() {
   numbers["columns_max"] = static_cast<double>(costs_.most_columns);
   numbers["memory.reduced_bytes"] = static_cast<double>(lights_.memory_bytes());
   numbers["sampling_rate"] = rows * columns > 0 ? (entries + read * columns) / (rows * columns) : 1.0;
+  turns_.write(estimate_.trace);
   note_stop(result_, estimate_);
-  if (lights_.ready())
+  if (lights_.ready() && lights_.known().lit())
     write_error_of_lights({{}, lights_.known().lights(), lights_.known().clamping()}, estimate_.trace);
   if (!estimate_.interrupted) {
-    look_at_rows(matrix_, options_, estimate_.sums, numbers["columns"] + read, estimate_.trace);
+    rows_.state(estimate_.sums, numbers["columns"] + read, {0.08, 8}, estimate_.trace);
     if (options_.on_estimate) options_.on_estimate(estimate_.sums);
   }
   return std::move(estimate_);

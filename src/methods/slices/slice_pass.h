@@ -8,8 +8,9 @@
 
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "methods/known_rows.h"
 #include "methods/slices/slice_lights.h"
-#include "methods/timed_choices.h"
+#include "methods/turns.h"
 #include "methods/unit_pass.h"
 
 namespace lumirank::methods {
@@ -32,45 +33,35 @@ class SlicePass {
   void run(WorkspacePool<Workspace>& pool, Body&& body) {
     if (!lights_.ready()) return;
     const UnitRows units(lights_.slices().rows, lights_.slices().first);
-    const auto render = [&](std::size_t s, Workspace& w) {
+    const auto render = [&](std::size_t s, Workspace& w, const Turn&, std::span<Rgb> sums) {
       const Timer timer;
       lights_.choose(s, w.lights);
       const double chosen = timer.seconds();
-      body(lights_, s, w, std::span<Rgb>(estimate_.sums));
+      body(lights_, s, w, sums);
       const std::size_t columns = w.lights.chosen.size();
       w.costs.entries += columns * lights_.slices().slice(s).size();
       w.costs.most_columns = std::max<std::uint64_t>(w.costs.most_columns, columns);
       w.costs.seconds_clustering += chosen;
       w.costs.seconds_columns += timer.seconds() - chosen;
     };
-    if (options_.time_seconds > 0) find_columns(units.size(), pool, render);
+    const std::size_t columns = std::min(lights_.columns(), matrix_.columns());
+    const auto own = static_cast<double>(std::max<std::size_t>(columns, 1));
+    TurnMethod method{.entries_per_row = own};
+    if (options_.time_seconds > 0) {
+      method.least = std::min(1.0, static_cast<double>(lights_.least_columns()) / own);
+      method.exact_from = static_cast<double>(matrix_.columns()) / own;
+      method.of_own = own / static_cast<double>(std::max<std::size_t>(given_columns_, 1));
+      method.prepare = [&, columns](const Turn& turn) {
+        lights_.set_turn(turn.scaled(columns), turn.number);
+      };
+    }
     result_ =
-        run_units(units, {options_, timer_, options_.time_seconds, "columns"}, estimate_.sums, pool, render);
+        run_in_turns(turns_, units, {options_, clock_, 0, "columns"}, method, estimate_.sums, pool, render);
     costs_ = costs_of(pool);
   }
   Estimate finish();
 
  private:
-  // Under --time: as many columns as leave every slice its turn, by what the first slices take with the
-  // fewest. They are rendered again with the others.
-  template <typename Workspace, typename Render>
-  void find_columns(std::size_t slices, WorkspacePool<Workspace>& pool, Render&& render) {
-    lights_.set_columns(0);
-    const auto measure = [&]() -> std::size_t {
-      const std::vector<std::uint32_t> order = coarse_to_fine(slices);
-      const std::size_t tried = std::min(slices, static_cast<std::size_t>(current_threads()));
-      parallel_for(tried, 1, [&](std::size_t begin, std::size_t end) {
-        typename WorkspacePool<Workspace>::Lease workspace(pool);
-        for (std::size_t k = begin; k < end; ++k) render(order[k], *workspace);
-      });
-      const SliceCosts trial = costs_of(pool);
-      pool.for_each([](Workspace& w) { w.costs = {}; });
-      return columns_that_fit(slices, tried, trial);
-    };
-    const auto most = static_cast<std::int64_t>(lights_.most_columns());
-    lights_.set_columns(timed_choice(options_, "slice_columns", most, measure));
-  }
-  std::size_t columns_that_fit(std::size_t slices, std::size_t tried, const SliceCosts& trial) const;
   template <typename Workspace>
   static SliceCosts costs_of(const WorkspacePool<Workspace>& pool) {
     SliceCosts all;
@@ -83,11 +74,15 @@ class SlicePass {
     return all;
   }
 
-  Timer timer_;
   const matrix::LightingMatrix& matrix_;
   const RunOptions& options_;
+  RunClock clock_;
   Estimate estimate_;
+  Turns turns_;
+  RowsForError rows_;
+  std::vector<Rgb> row_sums_;  // of slices, where rows have an estimate already
   SliceLights lights_;
+  std::size_t given_columns_;
   UnitResult result_;
   SliceCosts costs_;
 };

@@ -16,7 +16,7 @@
 #include "methods/known_rows.h"
 #include "methods/parameters.h"
 #include "methods/stochastic_lightcuts/light_walk.h"
-#include "methods/unit_pass.h"
+#include "methods/turns.h"
 
 namespace lumirank::methods {
 
@@ -33,7 +33,7 @@ struct StochasticSettings {
 const Fields<StochasticSettings> kFields{
     count_field<StochasticSettings>(
         {"nodes", "nodes", "Of a receiver's cut at most, and columns drawn; time is in proportion."},
-        &StochasticSettings::nodes, 1),
+        &StochasticSettings::nodes, 1, kMostColumns),
     number_field<StochasticSettings>(
         {"error-bound", "",
          "A node is split while its bound exceeds this share of the receiver's total. 0: until the cut is "
@@ -41,7 +41,7 @@ const Fields<StochasticSettings> kFields{
         &StochasticSettings::error_bound, 0, 1),
     count_field<StochasticSettings>(
         {"pilot", "columns", "By which the total is estimated beforehand, where an error bound needs it."},
-        &StochasticSettings::pilot, 1)};
+        &StochasticSettings::pilot, 1, kMostColumns)};
 
 // Receivers whose entries are asked for together: neighbours.
 constexpr std::size_t kTogether = 16;
@@ -66,25 +66,33 @@ class StochasticLightcuts final : public Method {
   explicit StochasticLightcuts(const StochasticSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    const Timer timer;
-    const LightTree tree(matrix, options.seed);
-    const double seconds_tree = timer.seconds();
+    const RunClock timer(options);
     Estimate estimate;
     estimate.sums.assign(matrix.rows(), Rgb(0));
+    Turns turns(matrix, options, timer, estimate.sums);
+    RowsForError rows(matrix, options, timer);
+    const double before_tree = timer.seconds();
+    const LightTree tree(matrix, options.seed);
+    const double seconds_tree = timer.seconds() - before_tree;
     auto& numbers = estimate.trace.numbers;
     {
       WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(matrix, tree); });
       const UnitRows units = stretches(matrix.rows());
-      const UnitResult pass = run_units(
-          units, {options, timer, options.time_seconds, "columns"}, estimate.sums, pool,
-          [&](std::size_t unit, Workspace& w) { sum_rows(units[unit], options.seed, w, estimate.sums); });
+      TurnMethod method{.entries_per_row = static_cast<double>(settings_.nodes)};
+      if (settings_.error_bound == 0)
+        method.exact_from = static_cast<double>(tree.leaves()) / static_cast<double>(settings_.nodes);
+      const UnitResult pass =
+          run_in_turns(turns, units, {options, timer, 0, "columns"}, method, estimate.sums, pool,
+                       [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
+                         sum_rows(units[unit], options.seed, turn, w, sums);
+                       });
+      turns.write(estimate.trace);
       note_stop(pass, estimate);
       numbers["seconds.columns"] = pass.seconds;
       write_costs(pool, matrix, numbers);
     }
     numbers["seconds.tree"] = seconds_tree;
-    if (!estimate.interrupted)
-      look_at_rows(matrix, options, estimate.sums, numbers["columns"], estimate.trace);
+    if (!estimate.interrupted) rows.state(estimate.sums, numbers["columns"], estimate.trace);
     if (options.on_estimate) options.on_estimate(estimate.sums);
     return estimate;
   }
@@ -99,16 +107,18 @@ class StochasticLightcuts final : public Method {
     return {std::move(all), std::move(first)};
   }
 
-  void sum_rows(std::span<const Index> rows, std::uint64_t seed, Workspace& w, std::span<Rgb> sums) const {
+  void sum_rows(std::span<const Index> rows, std::uint64_t seed, const Turn& turn, Workspace& w,
+                std::span<Rgb> sums) const {
+    const std::uint64_t stream = 2 * turn.number;
     w.limits.assign(rows.size(), 0.0f);
     if (settings_.error_bound > 0) {
-      draw(rows, seed, 1, settings_.pilot, w);
+      draw(rows, seed, stream + 1, settings_.pilot, w);
       std::size_t k = 0;
       for (std::size_t r = 0; r < rows.size(); ++r)
-        w.limits[r] =
-            static_cast<float>(settings_.error_bound) * std::max(0.0f, luminance(take_sum(w, w.ends[r], k)));
+        w.limits[r] = static_cast<float>(settings_.error_bound / turn.quality) *
+                      std::max(0.0f, luminance(take_sum(w, w.ends[r], k)));
     }
-    draw(rows, seed, 0, settings_.nodes, w);
+    draw(rows, seed, stream, turn.scaled(settings_.nodes), w);
     std::size_t k = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) sums[rows[r]] = take_sum(w, w.ends[r], k);
   }
@@ -126,7 +136,7 @@ class StochasticLightcuts final : public Method {
       w.walk.draw([&] { return unit_double(rng.next_bits()); }, w.drawn);
       w.ends.push_back(w.drawn.size());
       w.rows.resize(w.drawn.size(), rows[r]);
-      if (stream == 0) {
+      if (stream % 2 == 0) {
         w.nodes += w.walk.size();
         w.most_nodes = std::max<std::uint64_t>(w.most_nodes, w.walk.size());
       }

@@ -30,7 +30,7 @@ const Fields<Settings>& fields() {
        count_field<Settings>(
            {"spacing", "receivers",
             "refined: one of so many receivers of a slice is looked at from all its columns."},
-           &Settings::spacing, 1),
+           &Settings::spacing, 1, kMostRows),
        number_field<Settings>(
            {"checks", "",
             "refined: share of the entries on which neighbours agree that gets a shadow ray all the same; "
