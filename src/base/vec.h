@@ -8,6 +8,7 @@
 namespace lumirank {
 
 inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr double kPiD = 3.14159265358979323846;
 inline constexpr float kInvPi = 0.31830988618379067154f;
 inline constexpr float kInfinity = __builtin_huge_valf();
 

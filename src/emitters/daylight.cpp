@@ -9,8 +9,6 @@ namespace lumirank::emitters {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
 Rgb from_xyz(double X, double Y, double Z) {
   const Rgb c(static_cast<float>(3.2404542 * X - 1.5371385 * Y - 0.4985314 * Z),
               static_cast<float>(-0.9692660 * X + 1.8760108 * Y + 0.0415560 * Z),

@@ -7,7 +7,6 @@ namespace lumirank::emitters {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 // Added to an angle that was found by rounded arithmetic.
 constexpr double kAngleSlack = 1e-4;
 

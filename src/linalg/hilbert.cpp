@@ -10,7 +10,7 @@ namespace {
 
 using Few = SampledNeighbours::Few;
 constexpr std::size_t kCount = SampledNeighbours::kCount;
-constexpr std::size_t kStretch = 16;
+constexpr std::size_t kSortStretch = 16;
 
 // Inserts a candidate among the nearest unless it is there already.
 void offer(std::uint32_t candidate, float distance, Few& nearest, std::array<float, kCount>& distances) {
@@ -124,12 +124,12 @@ void SampledNeighbours::extend(const SampledNeighbours& before, const HilbertCur
       to_[i] = x * x + y * y;
     }
     // Few points have a new neighbour: sixteen at a time are looked over for one.
-    for (std::size_t begin = 0; begin < n; begin += kStretch) {
-      const std::size_t end = std::min(n, begin + kStretch);
+    for (std::size_t begin = 0; begin < n; begin += kSortStretch) {
+      const std::size_t end = std::min(n, begin + kSortStretch);
       const float *const to = &to_[begin], *const farthest = &farthest_[begin];
       int nearer = 0;
-      if (end - begin == kStretch) {
-        for (std::size_t k = 0; k < kStretch; ++k) nearer |= to[k] < farthest[k] ? 1 : 0;
+      if (end - begin == kSortStretch) {
+        for (std::size_t k = 0; k < kSortStretch; ++k) nearer |= to[k] < farthest[k] ? 1 : 0;
       } else {
         nearer = 1;
       }

@@ -14,7 +14,7 @@ constexpr double kZeroCost = 1e-6;
 constexpr double kParallel = 1e-12;
 
 template <std::size_t Lanes>
-float dot(const float* a, const float* b, std::size_t n) {
+float short_dot(const float* a, const float* b, std::size_t n) {
   float parts[Lanes] = {};
   for (std::size_t d = 0; d < n; d += Lanes)
     for (std::size_t k = 0; k < Lanes; ++k) parts[k] += a[d + k] * b[d + k];
@@ -31,7 +31,7 @@ void add_to(double* sum, const float* x, float norm, std::size_t n) {
   sum[n] += static_cast<double>(norm);
 }
 
-double cost_of(const double* sum, std::size_t n) {
+double short_cost(const double* sum, std::size_t n) {
   double squares = 0;
   for (std::size_t d = 0; d < n; ++d) squares += sum[d] * sum[d];
   return std::max(0.0, sum[n] * sum[n] - squares);
@@ -68,12 +68,12 @@ void LocalSplitter::add(std::uint32_t id, const float* x) {
   std::copy(x, x + dimension_, to);
   std::fill(to + dimension_, to + padded_, 0.0f);
   ids_.push_back(id);
-  norms_.push_back(std::sqrt(dot<kLanes>(to, to, padded_)));
+  norms_.push_back(std::sqrt(short_dot<kLanes>(to, to, padded_)));
 }
 
 LocalSplitter::Node LocalSplitter::node_of(std::uint32_t begin, std::uint32_t end, const double* sum) const {
   Node node{begin, end, 0, sum[padded_]};
-  if (end - begin > 1) node.cost = cost_of(sum, padded_);
+  if (end - begin > 1) node.cost = short_cost(sum, padded_);
   if (node.cost <= kZeroCost * node.weight * node.weight) node.cost = 0;
   return node;
 }
@@ -94,7 +94,7 @@ void LocalSplitter::choose_line(const Node& node) {
   std::size_t farthest = node.begin;
   float most = -1;
   for (std::size_t k = node.begin; k < node.end; ++k) {
-    const float cost = norms_[heaviest] * norms_[k] - dot<kLanes>(a, point(k), padded_);
+    const float cost = norms_[heaviest] * norms_[k] - short_dot<kLanes>(a, point(k), padded_);
     if (cost > most && k != heaviest) most = cost, farthest = k;
   }
   const float *b = point(farthest), na = 1 / norms_[heaviest], nb = 1 / norms_[farthest];
@@ -115,7 +115,7 @@ std::uint32_t LocalSplitter::cut(const Node& node) {
   keys_.resize(ids_.size());
   float low = std::numeric_limits<float>::infinity(), high = -low;
   for (std::size_t k = node.begin; k < node.end; ++k) {
-    keys_[k] = dot<kLanes>(line_.data(), point(k), padded_) / norms_[k];
+    keys_[k] = short_dot<kLanes>(line_.data(), point(k), padded_) / norms_[k];
     low = std::min(low, keys_[k]), high = std::max(high, keys_[k]);
   }
   const std::size_t stride = padded_ + 1;
@@ -144,7 +144,7 @@ std::uint32_t LocalSplitter::cut(const Node& node) {
   for (std::size_t b = 0; b + 1 < kBins; ++b) {
     add_bins(b, b + 1, left);
     for (std::size_t d = 0; d < stride; ++d) right[d] -= bins_[b * stride + d];
-    const double cost = cost_of(left, padded_) + cost_of(right, padded_);
+    const double cost = short_cost(left, padded_) + short_cost(right, padded_);
     if (cost < least) least = cost, bins_left = b + 1;
   }
   // Afresh, so that no difference of large numbers is carried on.

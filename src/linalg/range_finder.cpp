@@ -17,7 +17,7 @@ namespace lumirank::linalg {
 
 namespace {
 
-constexpr std::size_t kBlock = 16;
+constexpr std::size_t kVectorBlock = 16;
 constexpr std::size_t kMost = 24;
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMost>;
 using Vector = Eigen::Map<Eigen::VectorXf>;
@@ -66,8 +66,8 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
   float* const gathered = space.gathered.data();
   float* const y = space.y.data();
   std::fill_n(gathered, s * m, 0.0f);
-  for (std::size_t begin = 0; begin < columns; begin += kBlock) {
-    const std::size_t n = std::min(kBlock, columns - begin);
+  for (std::size_t begin = 0; begin < columns; begin += kVectorBlock) {
+    const std::size_t n = std::min(kVectorBlock, columns - begin);
     gemm({n, s, m, false, true}, &d[begin * m], m, x, m, y, s);
     gemm({s, m, n, true, false, 1.0f}, y, s, &d[begin * m], m, gathered, m);
     for (std::size_t j = 0; j < n; ++j)

@@ -12,7 +12,7 @@ namespace lumirank::linalg {
 
 namespace {
 
-constexpr std::size_t kBlock = 16;  // columns; a block of 1024 rows stays in a core's cache
+constexpr std::size_t kColumnBlock = 16;  // columns; a block of 1024 rows stays in a core's cache
 
 // How far Z may keep off D − XY at an entry: not at all where D says nothing, without end where it is exact.
 struct Thresholds {
@@ -75,9 +75,9 @@ void Separation::start(const CorruptedMatrix& matrix, const SeparationSettings& 
   low_rank_.resize(size);
   residuals_.clear();
   residuals_.reserve(settings.iterations);
-  block_.resize(kBlock * matrix.rows);
-  product_.resize(kBlock * matrix.rows);
-  y_.resize(kBlock * kMostRank);
+  block_.resize(kColumnBlock * matrix.rows);
+  product_.resize(kColumnBlock * matrix.rows);
+  y_.resize(kColumnBlock * kMostRank);
   scratch_.resize(2 * matrix.rows);
   gathered_.resize(kMostRank * matrix.rows);
   x_.resize(kMostRank * matrix.rows);
@@ -103,8 +103,8 @@ double Separation::iterate(const CorruptedMatrix& matrix, const SeparationSettin
   std::fill_n(gathered_.begin(), k * m, 0.0f);
   double residual = 0, sphere = 0, support = 0;
   float *const h = scratch_.data(), *const on = h + m;
-  for (std::size_t begin = 0; begin < matrix.columns; begin += kBlock) {
-    const std::size_t n = std::min(kBlock, matrix.columns - begin), at = begin * m;
+  for (std::size_t begin = 0; begin < matrix.columns; begin += kColumnBlock) {
+    const std::size_t n = std::min(kColumnBlock, matrix.columns - begin), at = begin * m;
     project(matrix, at, n);
     for (std::size_t j = 0; j < n; ++j) {
       const std::size_t c = at + j * m, b = j * m;
@@ -137,8 +137,8 @@ void Separation::project(const CorruptedMatrix& matrix, std::size_t at, std::siz
 }
 
 void Separation::finish(const CorruptedMatrix& matrix) {
-  for (std::size_t begin = 0; begin < matrix.columns; begin += kBlock) {
-    const std::size_t n = std::min(kBlock, matrix.columns - begin), at = begin * matrix.rows;
+  for (std::size_t begin = 0; begin < matrix.columns; begin += kColumnBlock) {
+    const std::size_t n = std::min(kColumnBlock, matrix.columns - begin), at = begin * matrix.rows;
     project(matrix, at, n);
     std::copy_n(product_.begin(), n * matrix.rows, &low_rank_[at]);
   }

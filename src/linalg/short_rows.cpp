@@ -9,7 +9,7 @@
 namespace lumirank::linalg {
 
 namespace {
-constexpr std::size_t kStretch = 16384;
+constexpr std::size_t kRowStretch = 16384;
 }
 
 void ShortRows::set(std::size_t row, std::span<const float> values) {
@@ -17,7 +17,7 @@ void ShortRows::set(std::size_t row, std::span<const float> values) {
   const float scale = scale_for(largest_of(values)), inverse = 1 / scale;
   scale_[row] = scale;
   std::uint16_t* out = entries_.data() + row * columns_;
-  parallel_for(columns_, kStretch, [&](std::size_t begin, std::size_t end) {
+  parallel_for(columns_, kRowStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) out[j] = shorten(values[j] * inverse);
   });
 }
@@ -30,7 +30,7 @@ void ShortRows::permute(std::span<const std::uint32_t> order) {
     const std::uint16_t* from = entries_.data() + r * columns_;
     std::copy(from, from + columns_, old.begin());
     std::uint16_t* to = entries_.data() + r * order.size();
-    parallel_for(order.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+    parallel_for(order.size(), kRowStretch, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) to[k] = old[order[k]];
     });
   }

@@ -13,9 +13,10 @@ namespace lumirank::linalg {
 namespace {
 
 // Members that one task sweeps over.
-constexpr std::size_t kStretch = 8192;
+constexpr std::size_t kSplitStretch = 8192;
 
-PointSum sum_of(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members) {
+PointSum sum_in_order(const Points& points, std::span<const double> norms,
+                      std::span<const std::uint32_t> members) {
   PointReader reader(points);
   PointSum sum(points.dimension);
   for (std::uint32_t j : members) sum.add(reader[j], norms[j]);
@@ -57,18 +58,18 @@ Best sweep(const Points& points, std::span<const double> norms, std::span<const 
 }  // namespace
 
 Cut best_cut(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> sorted) {
-  const std::size_t stretches = (sorted.size() + kStretch - 1) / kStretch;
+  const std::size_t stretches = (sorted.size() + kSplitStretch - 1) / kSplitStretch;
   const auto stretch = [&](std::size_t s) {
-    return sorted.subspan(s * kStretch, std::min(kStretch, sorted.size() - s * kStretch));
+    return sorted.subspan(s * kSplitStretch, std::min(kSplitStretch, sorted.size() - s * kSplitStretch));
   };
   std::vector<PointSum> sums(stretches, PointSum(points.dimension));
   parallel_for(stretches, 1,
-               [&](std::size_t s, std::size_t) { sums[s] = sum_of(points, norms, stretch(s)); });
+               [&](std::size_t s, std::size_t) { sums[s] = sum_in_order(points, norms, stretch(s)); });
   std::vector<PointSum> before(1, PointSum(points.dimension));
   for (const PointSum& s : sums) before.push_back(before.back() + s);
 
   const Best best = parallel_sum(stretches, 1, Best{}, [&](std::size_t s, std::size_t) {
-    const std::size_t first = s * kStretch;
+    const std::size_t first = s * kSplitStretch;
     Best here = sweep(points, norms, stretch(s), before[s], before.back(), sorted.size() - 1 - first);
     here.left += first;
     return here;
@@ -77,11 +78,11 @@ Cut best_cut(const Points& points, std::span<const double> norms, std::span<cons
   // on.
   Cut cut;
   cut.left = best.left;
-  const std::size_t s = best.left / kStretch, within = best.left % kStretch;
+  const std::size_t s = best.left / kSplitStretch, within = best.left % kSplitStretch;
   PointSum left = before[s], right(points.dimension);
   if (s < stretches) {
-    left = left + sum_of(points, norms, stretch(s).first(within));
-    right = sum_of(points, norms, stretch(s).subspan(within));
+    left = left + sum_in_order(points, norms, stretch(s).first(within));
+    right = sum_in_order(points, norms, stretch(s).subspan(within));
   }
   for (std::size_t t = s + 1; t < stretches; ++t) right = right + sums[t];
   cut.left_cost = cost_of(left);

@@ -19,10 +19,10 @@ std::size_t timed_block(std::size_t done, std::size_t size) {
 }
 // A single-precision sum of very many small terms stops growing; long lists are summed in two levels.
 constexpr std::size_t kTwoLevels = 8192, kLevel = 1024;
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kSumGrain = 16384;
 
 void add_and_clear(std::span<Rgb> sums, std::span<Rgb> part) {
-  parallel_for(sums.size(), kGrain, [&](std::size_t b, std::size_t e) {
+  parallel_for(sums.size(), kSumGrain, [&](std::size_t b, std::size_t e) {
     for (std::size_t i = b; i < e; ++i) {
       sums[i] += part[i];
       part[i] = Rgb(0);
@@ -84,7 +84,7 @@ void mix_in(std::vector<matrix::ScaledColumn>& combination, std::span<const matr
 
 std::vector<Rgb> scaled_sums(std::span<const Rgb> sums, float a) {
   std::vector<Rgb> out(sums.size());
-  parallel_for(sums.size(), kGrain, [&](std::size_t b, std::size_t e) {
+  parallel_for(sums.size(), kSumGrain, [&](std::size_t b, std::size_t e) {
     for (std::size_t i = b; i < e; ++i) out[i] = sums[i] * a;
   });
   return out;
@@ -100,7 +100,7 @@ struct DifferenceAndSize {
 // Sums of measure(a − b) and measure(b) over rows and channels.
 template <typename Measure>
 DifferenceAndSize measured(std::span<const Rgb> a, std::span<const Rgb> b, Measure&& measure) {
-  return parallel_sum(a.size(), kGrain, DifferenceAndSize{}, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(a.size(), kSumGrain, DifferenceAndSize{}, [&](std::size_t begin, std::size_t end) {
     DifferenceAndSize s;
     for (std::size_t i = begin; i < end; ++i)
       for (int c = 0; c < 3; ++c) {

@@ -9,10 +9,9 @@
 #include "render/sample_stream.h"
 
 namespace lumirank::rendering {
-namespace {
-
+// Members of PathFilm::Impl, so they have names of their own instead of an anonymous namespace.
 // Sums over the samples of one half, in double precision so that long runs lose nothing.
-struct Half {
+struct PathFilmHalf {
   struct Sum {
     double r = 0, g = 0, b = 0;
     void add(Rgb c) { r += c.r, g += c.g, b += c.b; }
@@ -22,8 +21,14 @@ struct Half {
   };
   std::vector<Sum> emission, direct, indirect;
   int count = 0;
-  explicit Half(std::size_t pixels) : emission(pixels), direct(pixels), indirect(pixels) {}
+  explicit PathFilmHalf(std::size_t pixels) : emission(pixels), direct(pixels), indirect(pixels) {}
 };
+
+struct PathFilmParts {
+  bool emission, direct, indirect;
+};
+
+namespace {
 
 Paths parse_paths(const std::string& text) {
   if (text == "all") return Paths::all;
@@ -32,17 +37,13 @@ Paths parse_paths(const std::string& text) {
   throw InputError("'" + text + "' is not a value of 'paths'", "choose one of all|columns|rest");
 }
 
-struct Wanted {
-  bool emission, direct, indirect;
-};
-
-film::Image mean_image(const View& view, std::span<const Half* const> halves, Wanted wanted) {
+film::Image mean_image(const View& view, std::span<const PathFilmHalf* const> halves, PathFilmParts wanted) {
   film::Image image(view.width, view.height);
   int count = 0;
-  for (const Half* h : halves) count += h->count;
+  for (const PathFilmHalf* h : halves) count += h->count;
   const double scale = 1.0 / std::max(1, count);
   for (std::size_t p = 0; p < image.pixels.size(); ++p)
-    for (const Half* h : halves) {
+    for (const PathFilmHalf* h : halves) {
       if (wanted.emission) image.pixels[p] += h->emission[p].scaled(scale);
       if (wanted.direct) image.pixels[p] += h->direct[p].scaled(scale);
       if (wanted.indirect) image.pixels[p] += h->indirect[p].scaled(scale);
@@ -52,10 +53,10 @@ film::Image mean_image(const View& view, std::span<const Half* const> halves, Wa
 
 // Relative L1 of the mean of both halves. For the mean of two independent estimates E|mean - truth| is E|A -
 // B|/2.
-double stated_error(const View& view, const Half& a, const Half& b, Wanted wanted) {
+double stated_error(const View& view, const PathFilmHalf& a, const PathFilmHalf& b, PathFilmParts wanted) {
   if (a.count == 0 || b.count == 0) return std::numeric_limits<double>::infinity();
-  const Half* pa[] = {&a};
-  const Half* pb[] = {&b};
+  const PathFilmHalf* pa[] = {&a};
+  const PathFilmHalf* pb[] = {&b};
   const film::Image ia = mean_image(view, pa, wanted), ib = mean_image(view, pb, wanted);
   double difference = 0, total = 0;
   for (std::size_t p = 0; p < ia.pixels.size(); ++p)
@@ -75,8 +76,8 @@ struct PathFilm::Impl {
   world::Camera camera;
   FilterSampler filter;
   std::size_t pixels;
-  Wanted wanted;
-  Half halves[2];
+  PathFilmParts wanted;
+  PathFilmHalf halves[2];
   ReferenceResult result;
 
   Impl(const world::World& world, const View& v, const RenderSettings& settings, const std::string& paths,
@@ -89,7 +90,7 @@ struct PathFilm::Impl {
         pixels(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height)),
         // `--only` is that part alone: emission seen directly belongs to neither.
         wanted{settings.only == "all", settings.only != "indirect", settings.only != "direct"},
-        halves{Half(pixels), Half(pixels)} {}
+        halves{PathFilmHalf(pixels), PathFilmHalf(pixels)} {}
 
   void trace_pixel(std::size_t p, int begin, int end) {
     const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
@@ -107,7 +108,7 @@ struct PathFilm::Impl {
       if (!is_finite(radiance.total()))
         throw InternalError("the reference met a value that is not finite; replay pixel " +
                             std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
-      Half& half = halves[s & 1];
+      PathFilmHalf& half = halves[s & 1];
       half.emission[p].add(radiance.emission * at.weight);
       half.direct[p].add(radiance.direct * at.weight);
       half.indirect[p].add(radiance.indirect * at.weight);
@@ -137,7 +138,7 @@ bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(doubl
     return false;
   }
   for (int s = begin_path; s < end_path; ++s) ++m.halves[s & 1].count;
-  const Half* both[] = {&m.halves[0], &m.halves[1]};
+  const PathFilmHalf* both[] = {&m.halves[0], &m.halves[1]};
   m.result.emission = mean_image(m.view, both, {true, false, false});
   m.result.direct = mean_image(m.view, both, {false, true, false});
   m.result.indirect = mean_image(m.view, both, {false, false, true});

@@ -12,7 +12,7 @@
 namespace lumirank::rendering {
 namespace {
 
-struct Moments {
+struct PathMoments {
   Rgb mean{0};
   float variance = 0;  // of one path's luminance
 };
@@ -31,7 +31,7 @@ class Tracing {
   }
 
   // Paths with an even number belong to the picture, odd ones to the pilot: two sets of numbers.
-  Moments at(std::size_t i, int paths, bool pilot) const {
+  PathMoments at(std::size_t i, int paths, bool pilot) const {
     scatter::Closure closure = receivers_.closure_at(i);
     if (!settings_.near) closure = scatter::sharp_part(closure, settings_.below);
     const Vec3f position = receivers_.position[i], wo = receivers_.wo[i];

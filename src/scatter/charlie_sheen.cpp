@@ -8,16 +8,16 @@
 namespace lumirank::scatter {
 namespace {
 
-constexpr int kRoughnesses = 25, kCosines = 33;
+constexpr int kRoughnesses = 25, kSheenCosines = 33;
 constexpr int kSteps = 48;  // of the integrals, in either dimension
 // The cosine's grid is finer towards grazing: its square root is spaced evenly, from 0.0001 on.
-constexpr float kFirstRoot = 0.01f;
+constexpr float kFirstSheenRoot = 0.01f;
 
 float grid_roughness(int r) {
   return kMinSheenRoughness + (1 - kMinSheenRoughness) * static_cast<float>(r) / (kRoughnesses - 1);
 }
 float grid_cosine(int c) {
-  const float root = kFirstRoot + (1 - kFirstRoot) * static_cast<float>(c) / (kCosines - 1);
+  const float root = kFirstSheenRoot + (1 - kFirstSheenRoot) * static_cast<float>(c) / (kSheenCosines - 1);
   return root * root;
 }
 
@@ -43,9 +43,10 @@ using Table = std::vector<float>;
 
 float look_up(const Table& table, float roughness, float cosine) {
   const Cell r = cell_of((roughness - kMinSheenRoughness) / (1 - kMinSheenRoughness), kRoughnesses);
-  const Cell c = cell_of((std::sqrt(std::max(cosine, 0.0f)) - kFirstRoot) / (1 - kFirstRoot), kCosines);
-  const float* row = &table[static_cast<std::size_t>(r.index * kCosines + c.index)];
-  return lerp(lerp(row[0], row[1], c.fraction), lerp(row[kCosines], row[kCosines + 1], c.fraction),
+  const Cell c =
+      cell_of((std::sqrt(std::max(cosine, 0.0f)) - kFirstSheenRoot) / (1 - kFirstSheenRoot), kSheenCosines);
+  const float* row = &table[static_cast<std::size_t>(r.index * kSheenCosines + c.index)];
+  return lerp(lerp(row[0], row[1], c.fraction), lerp(row[kSheenCosines], row[kSheenCosines + 1], c.fraction),
               r.fraction);
 }
 
@@ -55,7 +56,7 @@ Table integrate(const Norm& norm) {
   Table out;
   for (int r = 0; r < kRoughnesses; ++r) {
     const float roughness = grid_roughness(r), alpha = roughness * roughness;
-    for (int c = 0; c < kCosines; ++c) {
+    for (int c = 0; c < kSheenCosines; ++c) {
       const float cos_o = grid_cosine(c);
       const Vec3f wo{std::sqrt(std::max(0.0f, 1 - cos_o * cos_o)), 0, cos_o};
       double sum = 0;

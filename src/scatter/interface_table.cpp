@@ -10,23 +10,23 @@ namespace lumirank::scatter {
 namespace {
 
 constexpr int kTerms = 6;
-constexpr int kCosines = 24;
+constexpr int kRuleCosines = 24;
 
 // Gauss-Legendre nodes and weights on [0, 1].
 struct Rule {
-  std::array<double, kCosines> x, w;
+  std::array<double, kRuleCosines> x, w;
 };
 Rule gauss_legendre() {
   Rule rule;
-  for (int i = 0; i < kCosines; ++i) {
-    double z = std::cos(3.14159265358979324 * (i + 0.75) / (kCosines + 0.5)), slope = 1;
+  for (int i = 0; i < kRuleCosines; ++i) {
+    double z = std::cos(3.14159265358979324 * (i + 0.75) / (kRuleCosines + 0.5)), slope = 1;
     for (int step = 0; step < 50; ++step) {
       double p = 1, before = 0;
-      for (int k = 1; k <= kCosines; ++k) {
+      for (int k = 1; k <= kRuleCosines; ++k) {
         const double next = ((2 * k - 1) * z * p - (k - 1) * before) / k;
         before = std::exchange(p, next);
       }
-      slope = kCosines * (z * p - before) / (z * z - 1);
+      slope = kRuleCosines * (z * p - before) / (z * z - 1);
       z -= p / slope;
     }
     rule.x[i] = 0.5 * (1 - z);
@@ -87,9 +87,9 @@ std::array<double, kTerms> solve(Matrix m) {
 }
 
 // Fits T at the rule's cosines by the terms of interface_transmittance(), starting from the smooth interface.
-void fit(const Rule& rule, float eta, const std::array<double, kCosines>& t, float out[kTerms]) {
+void fit(const Rule& rule, float eta, const std::array<double, kRuleCosines>& t, float out[kTerms]) {
   Matrix m{};
-  for (int k = 0; k < kCosines; ++k) {
+  for (int k = 0; k < kRuleCosines; ++k) {
     const double s = 1 - fresnel_dielectric(static_cast<float>(rule.x[k]), eta);
     const std::array<double, kTerms> power{1, s, s * s, s * s * s, rule.x[k], rule.x[k] * rule.x[k]};
     for (int i = 0; i < kTerms; ++i) {
@@ -105,15 +105,16 @@ void fit(const Rule& rule, float eta, const std::array<double, kCosines>& t, flo
 
 // Transmittance from inside at the angle refracted from `mu` outside. Interpolated between the rule's cosines
 // is the difference from the smooth interface, which is small where that one changes fast.
-double out_again(const Rule& rule, float eta, double mu, const std::array<InterfaceMeans, kCosines>& inside) {
+double out_again(const Rule& rule, float eta, double mu,
+                 const std::array<InterfaceMeans, kRuleCosines>& inside) {
   const double sin2 = (1 - mu * mu) / (eta * eta);
   if (sin2 >= 1) return 0;
   const auto smooth = [&](double c) { return 1.0 - fresnel_dielectric(static_cast<float>(c), 1 / eta); };
   const auto difference = [&](std::size_t k) { return inside[k].transmittance - smooth(rule.x[k]); };
   const double c = std::sqrt(1 - sin2);
   // The rule's cosines fall or rise; either way a neighbour pair encloses c, or c lies beyond the last.
-  double found = difference(rule.x[0] > rule.x[kCosines - 1] ? 0 : kCosines - 1);
-  for (std::size_t k = 0; k + 1 < kCosines; ++k) {
+  double found = difference(rule.x[0] > rule.x[kRuleCosines - 1] ? 0 : kRuleCosines - 1);
+  for (std::size_t k = 0; k + 1 < kRuleCosines; ++k) {
     const double f = (c - rule.x[k]) / (rule.x[k + 1] - rule.x[k]);
     if (f >= 0 && f <= 1) found = difference(k) + f * (difference(k + 1) - difference(k));
   }
@@ -134,8 +135,8 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
   for (int a = 0; a < kAlphas; ++a) {
     const float root = static_cast<float>(a) / (kAlphas - 1);
     const float alpha = std::max(root * root, kMinAlpha);
-    std::array<std::array<InterfaceMeans, kCosines>, kEtas> means;
-    for (int k = 0; k < kCosines; ++k) {
+    std::array<std::array<InterfaceMeans, kRuleCosines>, kEtas> means;
+    for (int k = 0; k < kRuleCosines; ++k) {
       const Vec3f w = direction(static_cast<float>(rule.x[k]));
       const std::vector<Vec3f> normals = visible_normals(distribution, alpha, w, side);
       for (int e = 0; e < kEtas; ++e) {
@@ -145,21 +146,21 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
     }
     for (int e = 0; e < kEtas; ++e) {
       const auto eta = static_cast<float>(std::exp(kLogRange * (2.0 * e / (kEtas - 1) - 1)));
-      std::array<double, kCosines> t;
-      for (int k = 0; k < kCosines; ++k) t[k] = means[e][k].transmittance;
+      std::array<double, kRuleCosines> t;
+      for (int k = 0; k < kRuleCosines; ++k) t[k] = means[e][k].transmittance;
       InterfaceCoefficients cell;
       fit(rule, eta, t, cell.c);
-      std::array<double, kCosines> twice;
-      for (int k = 0; k < kCosines; ++k)
+      std::array<double, kRuleCosines> twice;
+      for (int k = 0; k < kRuleCosines; ++k)
         twice[k] = std::sqrt(t[k] * out_again(rule, eta, rule.x[k], means[kEtas - 1 - e]));
       fit(rule, eta, twice, cell.twice);
       // From inside, the relative index is the inverse one, whose means stand in the mirrored column.
       // Reflectance jumps at the critical angle, which the rule cannot integrate; what is lost does not.
-      std::array<double, kCosines> left;
-      for (int k = 0; k < kCosines; ++k) left[k] = 1 - means[e][k].reflectance;
+      std::array<double, kRuleCosines> left;
+      for (int k = 0; k < kRuleCosines; ++k) left[k] = 1 - means[e][k].reflectance;
       fit(rule, eta, left, cell.left);
       double outside = 0, all_left = 0, lost_inside = 0;
-      for (int k = 0; k < kCosines; ++k) {
+      for (int k = 0; k < kRuleCosines; ++k) {
         const InterfaceMeans& inside = means[kEtas - 1 - e][k];
         outside += 2 * rule.w[k] * rule.x[k] * t[k];
         all_left += 2 * rule.w[k] * rule.x[k] * left[k];

@@ -13,7 +13,7 @@
 namespace lumirank::scatter {
 namespace {
 
-constexpr float kGrazing = 1e-6f;  // as in eval_f()
+constexpr float kGrazingBound = 1e-6f;  // as in eval_f()
 // Evaluation in floats, and in lanes with their own exponentials.
 constexpr float kRounding = 1.0005f;
 
@@ -125,7 +125,7 @@ ClosureBound::ClosureBound(std::span<const Lobe> lobes, std::span<const Rgb> col
     if (dot(n_, wo) < 0) n_ = -n_;
     cos_o_ = dot(n_, wo);
   }
-  if (!(cos_o_ > kGrazing)) return;
+  if (!(cos_o_ > kGrazingBound)) return;
   for (std::size_t k = 0; k < lobes.size(); ++k)
     if (!is_delta(lobes[k].kind)) add(lobes[k], colors.empty() ? lobes[k].color : colors[k], adjoint);
 }

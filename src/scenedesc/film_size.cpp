@@ -6,8 +6,6 @@
 namespace lumirank::scenedesc {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
 // What the axis measures of a film.
 double measure(FieldAxis axis, double width, double height) {
   switch (axis) {

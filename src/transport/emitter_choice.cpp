@@ -6,7 +6,7 @@
 namespace lumirank::transport {
 namespace {
 
-constexpr double kGroupFloor = 0.25, kEvenPart = 0.1;
+constexpr double kGroupFloor = 0.25, kEvenShare = 0.1;
 
 bool is_far(const emitters::Emitter& e) {
   return std::holds_alternative<emitters::DirectionalEmitter>(e.kind) ||
@@ -35,10 +35,10 @@ EmitterChoice::EmitterChoice(const world::World& world) {
     share[0] = 1 - share[1];
   }
   cdf_.push_back(0);
-  const double even = kEvenPart / static_cast<double>(weights.size());
+  const double even = kEvenShare / static_cast<double>(weights.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const int group = far[k] ? 1 : 0;
-    cdf_.push_back(cdf_.back() + (1 - kEvenPart) * share[group] * weights[k] / total[group] + even);
+    cdf_.push_back(cdf_.back() + (1 - kEvenShare) * share[group] * weights[k] / total[group] + even);
   }
   for (double& c : cdf_) c /= cdf_.back();
 }

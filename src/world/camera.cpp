@@ -10,7 +10,6 @@
 namespace lumirank::world {
 
 namespace {
-constexpr double kPiD = 3.14159265358979323846;
 
 void check(const scenedesc::SensorDesc& s) {
   const auto bad = [&](const std::string& message, const std::string& remedy) {

@@ -10,7 +10,6 @@ namespace lumirank::world {
 
 namespace {
 constexpr int kParts = 6;  // each texel is the mean over kParts² of its points
-constexpr double kPiD = 3.14159265358979323846;
 }  // namespace
 
 Vec2f sphere_to_square(Vec3f d) {

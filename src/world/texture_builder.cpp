@@ -11,7 +11,7 @@ namespace lumirank::world {
 
 namespace {
 
-constexpr int kNotBuilt = -1, kInProgress = -2;
+constexpr int kTextureNotBuilt = -1, kTextureInProgress = -2;
 
 scatter::TexWrap convert(scenedesc::WrapMode mode) {
   switch (mode) {
@@ -85,7 +85,7 @@ InputError broken_picture(const scenedesc::TextureDesc& texture, const scenedesc
 }  // namespace
 
 TextureBuilder::TextureBuilder(const scenedesc::SceneDesc& desc)
-    : desc_(desc), index_(desc.textures.size(), kNotBuilt), missing_(desc.textures.size()) {}
+    : desc_(desc), index_(desc.textures.size(), kTextureNotBuilt), missing_(desc.textures.size()) {}
 
 int TextureBuilder::add(scatter::Texture texture) {
   set_.textures.push_back(std::move(texture));
@@ -103,10 +103,10 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
   const auto slot = static_cast<std::size_t>(texture);
   const auto& t = desc_.textures[slot];
   if (index_[slot] >= 0) return index_[slot];
-  if (index_[slot] == kInProgress)
+  if (index_[slot] == kTextureInProgress)
     throw InputError(t.where, "the texture '" + t.id + "' is, through others, its own input",
                      "break the cycle");
-  index_[slot] = kInProgress;
+  index_[slot] = kTextureInProgress;
   int built = 0;
   if (const auto* bitmap = std::get_if<scenedesc::BitmapTextureDesc>(&t.kind)) {
     check_uv(bitmap->to_uv, t.where);

@@ -13,8 +13,6 @@ using test::chi_square_limit;
 using test::expect_mean;
 using test::Mean;
 
-constexpr double kPiD = 3.14159265358979323846;
-
 Frame turned() {
   const Transform t = Transform::rotate(1, 2, -1, 50) * Transform::scale(-1, 1, 1);  // a mirroring too
   return {normalize(t.vector({1, 0, 0})), normalize(t.vector({0, 1, 0})), normalize(t.vector({0, 0, 1}))};

@@ -17,8 +17,6 @@ using test::chi_square_limit;
 using test::expect_mean;
 using test::Mean;
 
-constexpr double kPiD = 3.14159265358979323846;
-
 Vec3f direction(double theta, double phi) {
   return {static_cast<float>(std::sin(theta) * std::cos(phi)),
           static_cast<float>(std::sin(theta) * std::sin(phi)), static_cast<float>(std::cos(theta))};

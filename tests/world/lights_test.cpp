@@ -15,8 +15,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kPiD = 3.14159265358979323846;
-
 // Unoccluded irradiance at a point.
 Mean irradiance(const World& w, int emitter, Vec3f point, Vec3f normal, std::uint64_t seed, int n = 40000) {
   Mean mean;

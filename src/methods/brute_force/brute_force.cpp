@@ -11,7 +11,7 @@ namespace lumirank::methods {
 namespace {
 
 struct NoSettings {};
-const Fields<NoSettings> kFields{};
+const Fields<NoSettings> kBruteForceFields{};
 
 class BruteForce final : public Method {
  public:
@@ -84,9 +84,9 @@ MethodInfo brute_force_info() {
   return {"brute-force",
           "Renders every column: exact for the given lights, and slow.",
           "",
-          parameters_of(kFields),
+          parameters_of(kBruteForceFields),
           [](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            read_settings("brute-force", kFields, settings);
+            read_settings("brute-force", kBruteForceFields, settings);
             return std::make_unique<BruteForce>();
           },
           [](const SettingsMap&) -> std::size_t { return 0; },

@@ -11,7 +11,7 @@ struct InstantRadiositySettings {
   std::size_t lights = 1000;
 };
 
-const Fields<InstantRadiositySettings> kFields{count_field<InstantRadiositySettings>(
+const Fields<InstantRadiositySettings> kInstantRadiosityFields{count_field<InstantRadiositySettings>(
     {"lights", "columns", "Virtual lights to generate; every one is rendered, so time is in proportion."},
     &InstantRadiositySettings::lights, 1, kMostColumns)};
 
@@ -30,12 +30,14 @@ MethodInfo instant_radiosity_info() {
   return {name,
           "Generates few virtual lights and renders all of them.",
           "Keller 1997, Instant Radiosity",
-          parameters_of(kFields),
+          parameters_of(kInstantRadiosityFields),
           [=](const SettingsMap& settings) -> std::unique_ptr<Method> {
-            read_settings(name, kFields, settings);
+            read_settings(name, kInstantRadiosityFields, settings);
             return std::make_unique<InstantRadiosity>();
           },
-          [=](const SettingsMap& settings) { return read_settings(name, kFields, settings).lights; },
+          [=](const SettingsMap& settings) {
+            return read_settings(name, kInstantRadiosityFields, settings).lights;
+          },
           "",
           true};
 }

@@ -12,7 +12,7 @@ namespace {
 // Bounds below this part of the threshold are not kept in order.
 constexpr float kAsleep = 0.5f;
 // Where nothing is known (infinite bounds), more power goes first; far above any finite bound of use.
-constexpr float kUnknown = 1e30f;
+constexpr float kUnboundedNode = 1e30f;
 }  // namespace
 
 void Cut::begin(Index row, const matrix::RowBounds& bounds) {
@@ -90,7 +90,7 @@ void Cut::wait(std::uint32_t place) {
   if (tree_.is_leaf(node)) return;
   const float most = luminance(bounds_->bound(tree_.set(node)));
   ++bounds_computed_;
-  const float bound = most < kUnknown ? most : kUnknown * (1 + tree_.power(node));
+  const float bound = most < kUnboundedNode ? most : kUnboundedNode * (1 + tree_.power(node));
   if (!(bound > 0)) return;
   if (bound > kAsleep * threshold()) {
     heap_.push_back({bound, place});

@@ -11,7 +11,7 @@ using matrix::Index;
 
 namespace {
 
-constexpr Index kNone = 0xffffffffu;
+constexpr Index kNoBlock = 0xffffffffu;
 constexpr int kSmallestUnit = 16, kLargestUnit = 32;  // pixels
 constexpr int kEnoughUnits = 256;
 constexpr float kCosine30 = 0.8660254f;
@@ -44,7 +44,7 @@ UnitRows ImageBlocks::group(const matrix::LightingMatrix& matrix) {
   }
   width_ = right - left + 1, height_ = bottom - top + 1;
   const int side = unit_side(width_, height_);
-  pixel_row_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), kNone);
+  pixel_row_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), kNoBlock);
   std::vector<Placed> placed(film.size());
   for (std::size_t i = film.size(); i-- > 0;) {
     const int x = floor_of(film[i].x) - left, y = floor_of(film[i].y) - top;
@@ -91,7 +91,7 @@ ImageBlocks::Block ImageBlocks::block(std::size_t unit, std::size_t which) const
       const Index row = pixel_row_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                                    static_cast<std::size_t>(x)];
       const auto known = block.corners.begin() + block.corner_count;
-      if (row != kNone && std::find(block.corners.begin(), known, row) == known)
+      if (row != kNoBlock && std::find(block.corners.begin(), known, row) == known)
         block.corners[static_cast<std::size_t>(block.corner_count++)] = row;
     }
   return block;

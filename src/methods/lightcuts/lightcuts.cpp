@@ -34,7 +34,7 @@ struct LightcutsSettings {
   double likeness = 0.95;
 };
 
-const Fields<LightcutsSettings> kFields{
+const Fields<LightcutsSettings> kLightcutsFields{
     number_field<LightcutsSettings>({"error-bound", "",
                                      "A node is refined while its bound exceeds this share of the "
                                      "receiver's total. 0 with no limit of nodes is brute force."},
@@ -59,8 +59,9 @@ const Fields<LightcutsSettings> kFields{
 // Of a first guess: cuts are found, not set.
 constexpr double kEntriesPerRow = 300;
 
-struct Workspace {
-  Workspace(const matrix::LightingMatrix& matrix, const LightTree& tree, const LightcutsSettings& settings)
+struct LightcutsWorkspace {
+  LightcutsWorkspace(const matrix::LightingMatrix& matrix, const LightTree& tree,
+                     const LightcutsSettings& settings)
       : reader(matrix.reader()),
         cuts(matrix, tree, {settings.error_bound, settings.most_nodes}),
         painter(matrix, tree, settings.agreement, settings.likeness) {}
@@ -68,7 +69,7 @@ struct Workspace {
   ReceiverCuts cuts;
   BlockPainter painter;
 };
-using Pool = WorkspacePool<Workspace>;
+using LightcutsPool = WorkspacePool<LightcutsWorkspace>;
 
 // Stretches of rows, which are kept in an order in which neighbours lie close.
 UnitRows stretches(std::size_t rows) {
@@ -81,11 +82,11 @@ UnitRows stretches(std::size_t rows) {
   return {std::move(all), std::move(first)};
 }
 
-void write_costs(const Pool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
+void write_costs(const LightcutsPool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
   CutCosts costs;
   double interpolated = 0;
   auto& numbers = trace.numbers;
-  pool.for_each([&](const Workspace& w) {
+  pool.for_each([&](const LightcutsWorkspace& w) {
     costs.add({static_cast<double>(w.cuts.cuts_made()), static_cast<double>(w.cuts.nodes()),
                static_cast<double>(w.cuts.most_nodes()), static_cast<double>(w.cuts.bounds_computed()),
                static_cast<double>(w.cuts.rounds().entries() + w.painter.shaded())});
@@ -112,7 +113,7 @@ class Lightcuts final : public Method {
     const LightTree tree(matrix, options.seed);
     estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
     {
-      Pool pool([&] { return std::make_unique<Workspace>(matrix, tree, settings_); });
+      LightcutsPool pool([&] { return std::make_unique<LightcutsWorkspace>(matrix, tree, settings_); });
       const UnitControl control{options, timer, 0, "columns"};
       const UnitResult pass = run_pass(matrix, control, turns, pool, estimate.sums);
       turns.write(estimate.trace);
@@ -129,7 +130,7 @@ class Lightcuts final : public Method {
  private:
   // A coarser or a finer cut is no other draw of the same, so turns replace each other.
   UnitResult run_pass(const matrix::LightingMatrix& matrix, const UnitControl& control, Turns& turns,
-                      Pool& pool, std::span<Rgb> all_sums) const {
+                      LightcutsPool& pool, std::span<Rgb> all_sums) const {
     const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
     const auto limits = [this](const Turn& turn) {
       return CutLimits{std::min(1.0, settings_.error_bound / turn.quality),
@@ -138,15 +139,16 @@ class Lightcuts final : public Method {
     const bool image = matrix.rows() > 0 && !matrix.row_features().pixel.empty();
     if (settings_.reconstruction == Reconstruction::on && image) {
       const ImageBlocks blocks(matrix);
-      return run_in_turns(turns, blocks.units(), control, method, all_sums, pool,
-                          [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
-                            w.cuts.limit(limits(turn));
-                            w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
-                          });
+      return run_in_turns(
+          turns, blocks.units(), control, method, all_sums, pool,
+          [&](std::size_t unit, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+            w.cuts.limit(limits(turn));
+            w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
+          });
     }
     const UnitRows units = stretches(matrix.rows());
     return run_in_turns(turns, units, control, method, all_sums, pool,
-                        [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
+                        [&](std::size_t unit, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
                           w.cuts.limit(limits(turn));
                           w.cuts.cut(units[unit], *w.reader,
                                      [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
@@ -164,7 +166,7 @@ MethodInfo lightcuts_info() {
        "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
        "illumination, SIGGRAPH 2005",
        "error-bound or most-nodes"},
-      kFields);
+      kLightcutsFields);
 }
 
 }  // namespace lumirank::methods

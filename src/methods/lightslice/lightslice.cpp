@@ -7,8 +7,8 @@ namespace lumirank::methods {
 
 namespace {
 
-struct Workspace {
-  explicit Workspace(const matrix::LightingMatrix& matrix) : reader(matrix.reader()) {}
+struct LightSliceWorkspace {
+  explicit LightSliceWorkspace(const matrix::LightingMatrix& matrix) : reader(matrix.reader()) {}
   std::unique_ptr<matrix::EntryReader> reader;
   SliceLights::Workspace lights;
   SliceCosts costs;
@@ -20,12 +20,12 @@ class LightSlice final : public Method {
   explicit LightSlice(const SliceLightSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(matrix); });
+    WorkspacePool<LightSliceWorkspace> pool([&] { return std::make_unique<LightSliceWorkspace>(matrix); });
     return run_slices(matrix, options, settings_, pool, render);
   }
 
  private:
-  static void render(const SliceLights& lights, std::size_t s, Workspace& w, std::span<Rgb> sums) {
+  static void render(const SliceLights& lights, std::size_t s, LightSliceWorkspace& w, std::span<Rgb> sums) {
     const auto rows = lights.slices().slice(s);
     w.entries.resize(rows.size());
     w.reader->set_rows(rows);

@@ -28,7 +28,7 @@ struct MultidimensionalSettings {
   std::size_t most_pairs = 2000;
 };
 
-const Fields<MultidimensionalSettings> kFields{
+const Fields<MultidimensionalSettings> kMultidimensionalFields{
     number_field<MultidimensionalSettings>({"error-bound", "",
                                             "A pair is refined while its bound exceeds this share of the "
                                             "pixel's sum. 0 with no limit of pairs is brute force."},
@@ -37,9 +37,9 @@ const Fields<MultidimensionalSettings> kFields{
                                           &MultidimensionalSettings::most_pairs, 1, kMostColumns)};
 
 // Pixels whose cuts are refined side by side: neighbours, which ask for like entries.
-constexpr std::size_t kTogether = 8;
+constexpr std::size_t kPixelsTogether = 8;
 // Of a first guess: cuts are found, not set.
-constexpr double kEntriesPerRow = 300;
+constexpr double kPairEntriesPerRow = 300;
 
 // Half the diagonal of the places of all lights.
 float extent_scale(const LightTree& lights) {
@@ -51,20 +51,20 @@ float extent_scale(const LightTree& lights) {
   return all.radius();
 }
 
-class Workspace {
+class PixelWorkspace {
  public:
-  Workspace(const matrix::LightingMatrix& matrix, const LightTree& lights, std::uint64_t seed,
-            const PairLimits& limits)
+  PixelWorkspace(const matrix::LightingMatrix& matrix, const LightTree& lights, std::uint64_t seed,
+                 const PairLimits& limits)
       : reader_(matrix.reader()) {
     const float scale = extent_scale(lights);
-    for (std::size_t k = 0; k < kTogether; ++k)
+    for (std::size_t k = 0; k < kPixelsTogether; ++k)
       cuts_.emplace_back(lights, GatherTree(matrix, seed, scale), limits);
   }
 
   void limit(const PairLimits& limits) {
     for (PairCut& cut : cuts_) cut.use(limits);
   }
-  // At most kTogether pixels.
+  // At most kPixelsTogether pixels.
   void run(const UnitRows& pixels, std::size_t first, std::size_t count, std::span<Rgb> sums) {
     const Timer timer;
     double last = 0;
@@ -116,25 +116,25 @@ class Workspace {
   std::vector<std::uint32_t> first_place_, places_, ends_;
   std::vector<Rgb> values_;
 };
-using Pool = WorkspacePool<Workspace>;
+using PixelPool = WorkspacePool<PixelWorkspace>;
 
-// kTogether pixels to a unit.
+// kPixelsTogether pixels to a unit.
 UnitRows together(const UnitRows& pixels) {
   std::vector<Index> rows;
   std::vector<std::uint32_t> first;
   for (std::size_t p = 0; p < pixels.size(); ++p) {
-    if (p % kTogether == 0) first.push_back(static_cast<std::uint32_t>(rows.size()));
+    if (p % kPixelsTogether == 0) first.push_back(static_cast<std::uint32_t>(rows.size()));
     rows.insert(rows.end(), pixels[p].begin(), pixels[p].end());
   }
   first.push_back(static_cast<std::uint32_t>(rows.size()));
   return {std::move(rows), std::move(first)};
 }
 
-void write_costs(const Pool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
+void write_pair_costs(const PixelPool& pool, const matrix::LightingMatrix& matrix, Trace& trace) {
   CutCosts costs;
   auto& numbers = trace.numbers;
   numbers["cpu_seconds.bounds"] = numbers["cpu_seconds.entries"] = 0;
-  pool.for_each([&](const Workspace& w) {
+  pool.for_each([&](const PixelWorkspace& w) {
     costs.add(w.costs);
     numbers["cpu_seconds.bounds"] += w.seconds_cuts;
     numbers["cpu_seconds.entries"] += w.seconds_entries;
@@ -157,23 +157,23 @@ class MultidimensionalLightcuts final : public Method {
     estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
     const UnitRows pixels = UnitRows::pixels(matrix);
     {
-      Pool pool([&] {
-        return std::make_unique<Workspace>(matrix, lights, options.seed,
-                                           PairLimits{settings_.error_bound, settings_.most_pairs});
+      PixelPool pool([&] {
+        return std::make_unique<PixelWorkspace>(matrix, lights, options.seed,
+                                                PairLimits{settings_.error_bound, settings_.most_pairs});
       });
       // A coarser or a finer cut is no other draw of the same, so turns replace each other.
-      const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
+      const TurnMethod method{.averaged = false, .entries_per_row = kPairEntriesPerRow};
       const UnitResult pass = run_in_turns(
           turns, together(pixels), {options, timer, 0, "columns"}, method, estimate.sums, pool,
-          [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
-            const std::size_t first = unit * kTogether;
+          [&](std::size_t unit, PixelWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+            const std::size_t first = unit * kPixelsTogether;
             w.limit({std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.most_pairs)});
-            w.run(pixels, first, std::min(kTogether, pixels.size() - first), sums);
+            w.run(pixels, first, std::min(kPixelsTogether, pixels.size() - first), sums);
           });
       turns.write(estimate.trace);
       note_stop(pass, estimate);
       estimate.trace.numbers["seconds.columns"] = pass.seconds;
-      write_costs(pool, matrix, estimate.trace);
+      write_pair_costs(pool, matrix, estimate.trace);
     }
     if (!estimate.interrupted)
       rows.state(estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
@@ -193,7 +193,7 @@ MethodInfo multidimensional_lightcuts_info() {
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
        "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
        "error-bound or most-pairs"},
-      kFields);
+      kMultidimensionalFields);
 }
 
 }  // namespace lumirank::methods

@@ -8,7 +8,7 @@ using matrix::Index;
 
 namespace {
 // Where nothing is known (infinite bounds), more power goes first; far above any finite bound of use.
-constexpr float kUnknown = 1e30f;
+constexpr float kUnboundedPair = 1e30f;
 // Extents are squares: a pixel's receivers count as if they lay twice as far apart. Its representative's
 // shadows are those of the whole pixel, and no bound knows of shadows.
 constexpr float kPixelsFirst = 4;
@@ -89,7 +89,7 @@ void PairCut::wait(std::uint32_t place) {
   if (!(weight > 0)) return;
   const float most = weight * luminance(gather_.bounds(p.gather).bound(lights_.set(p.light)));
   ++bounds_computed_;
-  const float bound = most < kUnknown ? most : kUnknown * (1 + weight * lights_.power(p.light));
+  const float bound = most < kUnboundedPair ? most : kUnboundedPair * (1 + weight * lights_.power(p.light));
   if (!(bound > 0)) return;
   heap_.push_back({bound, place});
   std::push_heap(heap_.begin(), heap_.end(), later);

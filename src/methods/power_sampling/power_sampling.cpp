@@ -21,15 +21,15 @@ enum class Drawing { stratified, independent };
 // Rounds end when they have rendered as many columns as the matrix has: that costs what the exact sum does.
 // A time that was given is used somewhat longer.
 constexpr double kMostOfColumns = 1, kMostOfColumnsInTime = 4;
-constexpr std::size_t kMostDraws = std::size_t{1} << 24;  // of an open-ended round
-constexpr std::size_t kMostDrawsOfColumn = 64;            // in the mean: draws of one column are merged
+constexpr std::size_t kMostPowerDraws = std::size_t{1} << 24;  // of an open-ended round
+constexpr std::size_t kMostDrawsOfColumn = 64;                 // in the mean: draws of one column are merged
 
 struct PowerSamplingSettings {
   std::size_t columns = 1000;
   Drawing drawing = Drawing::stratified;
 };
 
-const Fields<PowerSamplingSettings> kFields{
+const Fields<PowerSamplingSettings> kPowerSamplingFields{
     count_field<PowerSamplingSettings>({"columns", "columns",
                                         "Draws with replacement; time is in proportion. With a time or error "
                                         "target it is not used: rounds are added until "
@@ -76,13 +76,13 @@ class PowerSampling final : public Method {
         const auto affordable = timed_choice(options, "affordable_draws", INT64_MAX, [&] {
           const double left = deadline_of(options) - timer.seconds();
           const double fit = left * static_cast<double>(rendered) / std::max(seconds, 1e-12);
-          return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMostDraws)));
+          return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMostPowerDraws)));
         });
         if (affordable == 0) break;
         // A last round that would be cut short is better made to fit.
         if (affordable < 2 * count || options.target_error <= 0) count = affordable;
       }
-      if (open_ended) count = std::min({count, kMostDraws, kMostDrawsOfColumn * all.size()});
+      if (open_ended) count = std::min({count, kMostPowerDraws, kMostDrawsOfColumn * all.size()});
       const auto drawn = draw_columns(
           all, power, {count, settings_.drawing == Drawing::stratified, options.seed, Stage::method, round});
       std::vector<Rgb> sums(matrix.rows(), Rgb(0));
@@ -160,7 +160,8 @@ class PowerSampling final : public Method {
 
 MethodInfo power_sampling_info() {
   return method_info<PowerSampling>(
-      {"power-sampling", "Draws columns in proportion to their lights' power.", "", "", true}, kFields);
+      {"power-sampling", "Draws columns in proportion to their lights' power.", "", "", true},
+      kPowerSamplingFields);
 }
 
 }  // namespace lumirank::methods

@@ -8,7 +8,7 @@
 namespace lumirank::methods {
 
 namespace {
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kBlendGrain = 16384;
 // An expected error of 0 is not to be believed: rounding alone is larger.
 double precision_of(double error) { return 1.0 / std::max(error * error, 1e-14); }
 }  // namespace
@@ -24,7 +24,7 @@ std::vector<Rgb> Blend::with(std::span<const Rgb> sums, double expected_error) c
   std::vector<Rgb> out(sums.begin(), sums.end());
   if (empty()) return out;
   const auto share = static_cast<float>(share_of(expected_error));
-  parallel_for(out.size(), kGrain, [&](std::size_t b, std::size_t e) {
+  parallel_for(out.size(), kBlendGrain, [&](std::size_t b, std::size_t e) {
     for (std::size_t i = b; i < e; ++i) out[i] = lerp(sums_[i], sums[i], share);
   });
   return out;
@@ -34,7 +34,7 @@ void Blend::add(std::span<const Rgb> sums, double expected_error) {
   std::vector<Rgb> next = with(sums, expected_error);
   if (!empty()) {
     disagreement_.resize(sums.size());
-    parallel_for(sums.size(), kGrain, [&](std::size_t b, std::size_t e) {
+    parallel_for(sums.size(), kBlendGrain, [&](std::size_t b, std::size_t e) {
       for (std::size_t i = b; i < e; ++i) {
         const float d = norm2(sums[i] - sums_[i]);
         disagreement_[i] = d * d;

@@ -17,10 +17,10 @@ using matrix::ScaledColumn;
 
 namespace {
 
-constexpr std::size_t kStretch = 4096;  // columns decoded at a time
-constexpr float kLeastEntry = 1e-17f;   // its square is a number still
-constexpr float kNoColour = 1e-3f;      // of the scalar norm: no colour to scale
-constexpr float kLargestGain = 4;       // of a channel over the scalar factor
+constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
+constexpr float kLeastEntry = 1e-17f;        // its square is a number still
+constexpr float kNoSliceColour = 1e-3f;      // of the scalar norm: no colour to scale
+constexpr float kLargestSliceGain = 4;       // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
   if (projection == 0 || slices <= projection) return {columns, slices, false};
@@ -114,7 +114,7 @@ bool SliceLights::read_rows(const RunOptions& options, const RunClock& clock, st
       const double share = static_cast<double>(slice.size()) * static_cast<double>(slices_.count()) /
                            static_cast<double>(matrix_.rows());
       exploration_.read({slice[rng.next_below(slice.size())], static_cast<float>(std::sqrt(share))}, values);
-      parallel_for(values.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+      parallel_for(values.size(), kSliceStretch, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j) scalars[j] = norm2(values[j]);
       });
       rows_.set(s, scalars);
@@ -172,7 +172,7 @@ void SliceLights::cluster() {
   rows_.permute(initial_.order);
   const linalg::ColumnSketch& sketch = exploration_.sketch();
   norms_.resize(matrix_.columns());
-  parallel_for(norms_.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+  parallel_for(norms_.size(), kSliceStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
       Norms& n = norms_[j];
       n.all = sketch.norm(j);
@@ -186,13 +186,13 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
   const std::size_t rows = neighbour_count_;
   w.splitter.clear(rows);
   w.zero.assign(dark_.begin(), dark_.end());
-  w.entries.resize(rows * kStretch);
+  w.entries.resize(rows * kSliceStretch);
   w.point.resize(rows);
   std::size_t cluster = 0;
-  for (std::size_t begin = 0; begin < initial_.order.size(); begin += kStretch) {
-    const std::size_t size = std::min(kStretch, initial_.order.size() - begin);
+  for (std::size_t begin = 0; begin < initial_.order.size(); begin += kSliceStretch) {
+    const std::size_t size = std::min(kSliceStretch, initial_.order.size() - begin);
     for (std::size_t r = 0; r < rows; ++r)
-      rows_.read(neighbours_[slice * rows + r], begin, std::span(w.entries).subspan(r * kStretch, size));
+      rows_.read(neighbours_[slice * rows + r], begin, std::span(w.entries).subspan(r * kSliceStretch, size));
     for (std::size_t k = 0; k < size; ++k) {
       if (begin + k == initial_.starts[cluster]) {
         w.splitter.begin_cluster();
@@ -200,7 +200,7 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
       }
       float most = 0;
       for (std::size_t r = 0; r < rows; ++r) {
-        w.point[r] = w.entries[r * kStretch + k] / static_cast<float>(r + 1);
+        w.point[r] = w.entries[r * kSliceStretch + k] / static_cast<float>(r + 1);
         most = std::max(most, w.point[r]);
       }
       if (most > kLeastEntry)
@@ -244,9 +244,9 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
   if (settings_.colour == ColourMode::averaged)
     for (std::size_t c = 0; c < 3; ++c) {
       const float own = norms_[members[chosen]].channel[c];
-      if (own > kNoColour)
+      if (own > kNoSliceColour)
         column.scale[static_cast<int>(c)] *=
-            std::min(static_cast<float>(channels[c] / energy) / own, kLargestGain);
+            std::min(static_cast<float>(channels[c] / energy) / own, kLargestSliceGain);
     }
   return column;
 }

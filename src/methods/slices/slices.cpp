@@ -14,7 +14,7 @@ using matrix::Index;
 namespace {
 
 constexpr float kNormalWeight = 0.125f;  // of the diagonal of the box of places
-constexpr std::size_t kGrain = 8192;
+constexpr std::size_t kBoxGrain = 8192;
 
 struct Box {
   SlicePoints::Point low, high;
@@ -68,7 +68,7 @@ class Cutter {
     return slices_.rows.begin() + static_cast<std::ptrdiff_t>(k);
   }
   std::size_t longest_axis(std::size_t begin, std::size_t end) const {
-    return parallel_sum(end - begin, kGrain, Box{},
+    return parallel_sum(end - begin, kBoxGrain, Box{},
                         [&](std::size_t b, std::size_t e) {
                           Box box;
                           for (std::size_t k = b; k < e; ++k) box.extend(points_[slices_.rows[begin + k]]);

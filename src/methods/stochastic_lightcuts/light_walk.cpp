@@ -10,7 +10,7 @@ using Node = LightTree::Node;
 namespace {
 
 // What an infinite bound counts as; far above any finite one of use.
-constexpr float kUnknown = 1e30f;
+constexpr float kUnboundedStep = 1e30f;
 
 // A node is small where its nearest and its farthest point differ by so much in what distance makes of them,
 // and its directions by no more than that: at 1.2, a quarter fewer bounds and no measurable noise.
@@ -36,7 +36,7 @@ void LightWalk::add(Node node) {
   if (!(w.near > 0)) return;
   if (tree_.is_leaf(node)) return settled_.push_back(node);
   const auto columns = static_cast<float>(tree_.columns(node).size());
-  heap_.push_back({std::sqrt(std::min(w.near, kUnknown)) * std::sqrt(w.far * columns), w.near, node});
+  heap_.push_back({std::sqrt(std::min(w.near, kUnboundedStep)) * std::sqrt(w.far * columns), w.near, node});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 

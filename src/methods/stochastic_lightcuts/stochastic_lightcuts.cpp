@@ -30,7 +30,7 @@ struct StochasticSettings {
   std::size_t pilot = 8;
 };
 
-const Fields<StochasticSettings> kFields{
+const Fields<StochasticSettings> kStochasticFields{
     count_field<StochasticSettings>(
         {"nodes", "nodes", "Of a receiver's cut at most, and columns drawn; time is in proportion."},
         &StochasticSettings::nodes, 1, kMostColumns),
@@ -44,10 +44,10 @@ const Fields<StochasticSettings> kFields{
         &StochasticSettings::pilot, 1, kMostColumns)};
 
 // Receivers whose entries are asked for together: neighbours.
-constexpr std::size_t kTogether = 16;
+constexpr std::size_t kRowsTogether = 16;
 
-struct Workspace {
-  Workspace(const matrix::LightingMatrix& matrix, const LightTree& tree)
+struct WalkWorkspace {
+  WalkWorkspace(const matrix::LightingMatrix& matrix, const LightTree& tree)
       : reader(matrix.reader()), bounds(matrix.row_bounds()), walk(tree) {}
   std::unique_ptr<matrix::EntryReader> reader;
   std::unique_ptr<matrix::RowBounds> bounds;
@@ -76,14 +76,14 @@ class StochasticLightcuts final : public Method {
     const double seconds_tree = timer.seconds() - before_tree;
     auto& numbers = estimate.trace.numbers;
     {
-      WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(matrix, tree); });
+      WorkspacePool<WalkWorkspace> pool([&] { return std::make_unique<WalkWorkspace>(matrix, tree); });
       const UnitRows units = stretches(matrix.rows());
       TurnMethod method{.entries_per_row = static_cast<double>(settings_.nodes)};
       if (settings_.error_bound == 0)
         method.exact_from = static_cast<double>(tree.leaves()) / static_cast<double>(settings_.nodes);
       const UnitResult pass =
           run_in_turns(turns, units, {options, timer, 0, "columns"}, method, estimate.sums, pool,
-                       [&](std::size_t unit, Workspace& w, const Turn& turn, std::span<Rgb> sums) {
+                       [&](std::size_t unit, WalkWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
                          sum_rows(units[unit], options.seed, turn, w, sums);
                        });
       turns.write(estimate.trace);
@@ -102,12 +102,12 @@ class StochasticLightcuts final : public Method {
     std::vector<Index> all(rows);
     std::iota(all.begin(), all.end(), 0u);
     std::vector<std::uint32_t> first;
-    for (std::size_t i = 0; i < rows; i += kTogether) first.push_back(static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < rows; i += kRowsTogether) first.push_back(static_cast<std::uint32_t>(i));
     first.push_back(static_cast<std::uint32_t>(rows));
     return {std::move(all), std::move(first)};
   }
 
-  void sum_rows(std::span<const Index> rows, std::uint64_t seed, const Turn& turn, Workspace& w,
+  void sum_rows(std::span<const Index> rows, std::uint64_t seed, const Turn& turn, WalkWorkspace& w,
                 std::span<Rgb> sums) const {
     const std::uint64_t stream = 2 * turn.number;
     w.limits.assign(rows.size(), 0.0f);
@@ -125,7 +125,7 @@ class StochasticLightcuts final : public Method {
 
   // Cuts of `nodes` for all rows, columns for them and their entries.
   void draw(std::span<const Index> rows, std::uint64_t seed, std::uint64_t stream, std::size_t nodes,
-            Workspace& w) const {
+            WalkWorkspace& w) const {
     const Timer timer;
     w.drawn.clear(), w.ends.clear(), w.rows.clear(), w.columns.clear();
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -150,7 +150,7 @@ class StochasticLightcuts final : public Method {
   }
 
   // Of the entries from k on, which goes to `end`.
-  static Rgb take_sum(const Workspace& w, std::size_t end, std::size_t& k) {
+  static Rgb take_sum(const WalkWorkspace& w, std::size_t end, std::size_t& k) {
     double sum[3] = {0, 0, 0};
     for (; k < end; ++k)
       for (int c = 0; c < 3; ++c)
@@ -158,11 +158,11 @@ class StochasticLightcuts final : public Method {
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
   }
 
-  static void write_costs(const WorkspacePool<Workspace>& pool, const matrix::LightingMatrix& matrix,
+  static void write_costs(const WorkspacePool<WalkWorkspace>& pool, const matrix::LightingMatrix& matrix,
                           std::map<std::string, double>& numbers) {
     const auto rows = std::max(1.0, static_cast<double>(matrix.rows()));
     double nodes = 0, most = 0, bounds = 0, entries = 0;
-    pool.for_each([&](const Workspace& w) {
+    pool.for_each([&](const WalkWorkspace& w) {
       nodes += static_cast<double>(w.nodes), most = std::max(most, static_cast<double>(w.most_nodes));
       bounds += static_cast<double>(w.walk.bounds_computed()), entries += static_cast<double>(w.evaluated);
       numbers["cpu_seconds.cuts"] += w.seconds_cuts;
@@ -188,7 +188,7 @@ MethodInfo stochastic_lightcuts_info() {
        "Yuksel: Stochastic Lightcuts, HPG 2019; Stochastic Lightcuts for Sampling Many Lights, IEEE TVCG "
        "2020",
        "nodes or error-bound"},
-      kFields);
+      kStochasticFields);
 }
 
 }  // namespace lumirank::methods

@@ -41,8 +41,9 @@ const Fields<Settings>& fields() {
   return all;
 }
 
-struct Workspace {
-  explicit Workspace(const matrix::LightingMatrix& matrix) : reader(matrix.reader()), completion(*reader) {}
+struct CompletionWorkspace {
+  explicit CompletionWorkspace(const matrix::LightingMatrix& matrix)
+      : reader(matrix.reader()), completion(*reader) {}
   std::unique_ptr<matrix::EntryReader> reader;
   SliceLights::Workspace lights;
   SliceCosts costs;
@@ -64,15 +65,14 @@ class VisibilityCompletion final : public Method {
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
     const SlicePoints points(matrix.row_features(), matrix.rows());
-    WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(matrix); });
+    WorkspacePool<CompletionWorkspace> pool([&] { return std::make_unique<CompletionWorkspace>(matrix); });
     Estimate estimate =
         run_slices(matrix, options, settings_, pool,
-                   [&](const SliceLights& lights, std::size_t s, Workspace& w, std::span<Rgb> sums) {
-                     render(lights, points, options.seed, s, w, sums);
-                   });
+                   [&](const SliceLights& lights, std::size_t s, CompletionWorkspace& w,
+                       std::span<Rgb> sums) { render(lights, points, options.seed, s, w, sums); });
     Completion::Counts all;
     double visibility = 0, shading = 0;
-    pool.for_each([&](const Workspace& w) {
+    pool.for_each([&](const CompletionWorkspace& w) {
       const Completion::Counts& c = w.completion.counts();
       all.entries += c.entries, all.looked_at += c.looked_at, all.checks += c.checks, all.wrong += c.wrong;
       all.whole_columns += c.whole_columns;
@@ -93,7 +93,7 @@ class VisibilityCompletion final : public Method {
 
  private:
   void render(const SliceLights& lights, const SlicePoints& points, std::uint64_t seed, std::size_t s,
-              Workspace& w, std::span<Rgb> sums) const {
+              CompletionWorkspace& w, std::span<Rgb> sums) const {
     const Timer timer;
     const auto rows = lights.slices().slice(s);
     w.reader->set_rows(rows);
@@ -115,7 +115,7 @@ class VisibilityCompletion final : public Method {
 
   // Σ scale · E · V; where few rows see a column, E of these alone.
   static void shade(std::span<const matrix::ScaledColumn> chosen, std::span<const matrix::Index> rows,
-                    Workspace& w, std::span<Rgb> sums) {
+                    CompletionWorkspace& w, std::span<Rgb> sums) {
     for (const matrix::Index i : rows) sums[i] = Rgb(0);
     w.places.clear(), w.list_rows.clear(), w.list_columns.clear();
     for (std::size_t k = 0; k < chosen.size(); ++k) {

@@ -6,7 +6,6 @@
 namespace lumirank::scenedesc::gltf {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr int kLongerSide = 768;  // pixels, unless --size says otherwise
 
 // glTF's cameras look along -z with +x to the right, Lumirank's along +z with +x to the left.

@@ -51,7 +51,7 @@ class CurveParser {
         add(point, out_.file_radius > 0 ? out_.file_radius : number());
         skip_blanks(p_, end_);
         if (p_ != end_ && *p_ != '\n')
-          fail("there is more in the line than a point: " + quoted(take_word(p_, end_)));
+          fail("there is more in the line than a point: " + quoted_word(take_word(p_, end_)));
       }
       if (p_ != end_) ++p_;
     }
@@ -68,7 +68,7 @@ class CurveParser {
     Real value;
     if (!parse_float(p_, end_, value) || (p_ != end_ && !is_blank(*p_) && *p_ != '\n')) {
       p_ = word;
-      fail(quoted(take_word(p_, end_)) + " is not a number");
+      fail(quoted_word(take_word(p_, end_)) + " is not a number");
     }
     return value;
   }

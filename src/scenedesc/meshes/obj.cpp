@@ -96,7 +96,7 @@ class ObjParser {
     Real value = 0;
     if (at_line_end()) fail(std::string(what) + " has too few numbers");
     const char* first = p_;
-    if (!parse_float(p_, end_, value)) fail(quoted(take_word(first, end_)) + " is not a number");
+    if (!parse_float(p_, end_, value)) fail(quoted_word(take_word(first, end_)) + " is not a number");
     return value;
   }
 
@@ -160,7 +160,7 @@ class ObjParser {
   std::int64_t face_index() {
     std::int64_t index = 0;
     const char* first = p_;
-    if (!parse_integer(p_, end_, index)) fail(quoted(take_word(first, end_)) + " is not a face index");
+    if (!parse_integer(p_, end_, index)) fail(quoted_word(take_word(first, end_)) + " is not a face index");
     return index;
   }
 
@@ -177,7 +177,8 @@ class ObjParser {
           c.vn = resolve(face_index(), normals_.size(), "normal");
       }
     }
-    if (p_ != end_ && !is_blank(*p_) && *p_ != '\n') fail("a face index is followed by " + quoted({p_, 1}));
+    if (p_ != end_ && !is_blank(*p_) && *p_ != '\n')
+      fail("a face index is followed by " + quoted_word({p_, 1}));
     const auto [number, fresh] = table_.number(c);
     if (fresh && number == kAbsent) fail("the mesh has more than 4,294,967,295 vertices");
     return number;

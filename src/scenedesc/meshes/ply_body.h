@@ -28,7 +28,7 @@ class PlyBody {
   // Where the reader is, for messages.
   void enter(const PlyElement& element, std::uint64_t index) { element_ = &element, index_ = index; }
   [[noreturn]] void fail(const std::string& message) const {
-    const std::string at = element_ ? quoted(element_->name) + " " + std::to_string(index_) + ": " : "";
+    const std::string at = element_ ? quoted_word(element_->name) + " " + std::to_string(index_) + ": " : "";
     throw InputError({filename_, is_text() ? line_ : 0}, at + message, "repair or export the file again");
   }
 
@@ -89,7 +89,7 @@ class PlyBody {
     const bool good = real ? parse_float(p_, end_, f) : parse_integer(p_, end_, i);
     if (!good || (p_ != end_ && !is_blank(*p_) && *p_ != '\n')) {
       const char* q = first;
-      fail(quoted(take_word(q, end_)) + " is not " + (real ? "a number" : "an integer"));
+      fail(quoted_word(take_word(q, end_)) + " is not " + (real ? "a number" : "an integer"));
     }
     return real ? f : static_cast<double>(i);
   }

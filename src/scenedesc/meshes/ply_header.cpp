@@ -42,7 +42,7 @@ class HeaderParser {
       } else if (keyword == "property") {
         property(p, end);
       } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-        fail(quoted(keyword) + " in the header");
+        fail(quoted_word(keyword) + " in the header");
       }
     }
     if (!has_format) fail("the header names no format");
@@ -74,7 +74,7 @@ class HeaderParser {
     else if (name == "binary_big_endian")
       header_.format = PlyFormat::big_endian;
     else
-      fail("unknown format " + quoted(name));
+      fail("unknown format " + quoted_word(name));
   }
 
   void element(const char* p, const char* end) {
@@ -82,14 +82,15 @@ class HeaderParser {
     e.name = take_word(p, end);
     std::int64_t count = 0;
     skip_blanks(p, end);
-    if (!parse_integer(p, end, count) || count < 0) fail("element " + quoted(e.name) + " has no valid count");
+    if (!parse_integer(p, end, count) || count < 0)
+      fail("element " + quoted_word(e.name) + " has no valid count");
     e.count = static_cast<std::uint64_t>(count);
     header_.elements.push_back(std::move(e));
   }
 
   PlyType type(std::string_view name) const {
     const std::optional<PlyType> t = type_named(name);
-    if (!t) fail("unknown type " + quoted(name));
+    if (!t) fail("unknown type " + quoted_word(name));
     return *t;
   }
 

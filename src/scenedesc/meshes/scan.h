@@ -54,7 +54,7 @@ inline std::string_view take_word(const char*& p, const char* end) {
 }
 
 // A word for a message: in quotes, short, and without bytes that would upset a terminal.
-inline std::string quoted(std::string_view word) {
+inline std::string quoted_word(std::string_view word) {
   std::string out(1, '\'');
   for (const char c : word.substr(0, 24)) out += c < 0x20 || c > 0x7e ? '?' : c;
   out += word.size() > 24 ? "...'" : "'";

@@ -9,7 +9,7 @@ namespace lumirank::scenedesc::pbrt {
 
 namespace {
 
-using Kind = decltype(BsdfDesc::kind);
+using MaterialKind = decltype(BsdfDesc::kind);
 
 // Trowbridge-Reitz widths: α = √roughness unless "remaproughness" is false (TrowbridgeReitzDistribution of
 // pbrt-v4); below 10⁻³ pbrt takes the surface for smooth.
@@ -85,7 +85,7 @@ class MaterialMaker {
   }
 
  private:
-  int add(Kind kind) { return reader_.add_bsdf(id_, p_.where(), std::move(kind)); }
+  int add(MaterialKind kind) { return reader_.add_bsdf(id_, p_.where(), std::move(kind)); }
   ColorInput color(const char* name, float fallback) {
     return reader_.color(p_, name, {Rgb(fallback), kNone}, Intent::albedo);
   }
@@ -109,7 +109,7 @@ class MaterialMaker {
     p_.ignore({"displacement"});
     return bsdf;
   }
-  int two_sided(Kind kind) {
+  int two_sided(MaterialKind kind) {
     const int front = detailed(add(std::move(kind)));
     return add(TwoSidedDesc{front, front});
   }

@@ -8,7 +8,7 @@ namespace lumirank::scenedesc::pbrt {
 
 namespace {
 
-using Kind = decltype(ShapeDesc::kind);
+using ShapeKind = decltype(ShapeDesc::kind);
 
 std::vector<std::uint32_t> indices(Params& p, std::size_t vertices, std::size_t corners) {
   const auto& numbers = p.numbers("indices", ParamType::integer);
@@ -59,18 +59,18 @@ MeshData vertices(Params& p) {
 
 }  // namespace
 
-std::optional<Kind> held_mesh(Params& p, MeshData mesh) {
+std::optional<ShapeKind> held_mesh(Params& p, MeshData mesh) {
   return InlineMeshDesc{std::make_shared<const MeshData>(check_mesh(std::move(mesh), p.where())), p.title()};
 }
 
-std::optional<Kind> triangle_mesh(Reader&, Params& p) {
+std::optional<ShapeKind> triangle_mesh(Reader&, Params& p) {
   MeshData mesh = vertices(p);
   mesh.indices = indices(p, mesh.positions.size(), 3);
   p.numbers("S", ParamType::point3), p.numbers("faceIndices", ParamType::integer);
   return held_mesh(p, std::move(mesh));
 }
 
-std::optional<Kind> loop_surface(Reader& reader, Params& p) {
+std::optional<ShapeKind> loop_surface(Reader& reader, Params& p) {
   MeshData mesh;
   auto [positions, origin] = near_positions(p.places3("P"));
   mesh.positions = std::move(positions), mesh.origin = origin;
@@ -83,7 +83,7 @@ std::optional<Kind> loop_surface(Reader& reader, Params& p) {
   return held_mesh(p, std::move(mesh));
 }
 
-std::optional<Kind> bilinear_mesh(Reader& reader, Params& p) {
+std::optional<ShapeKind> bilinear_mesh(Reader& reader, Params& p) {
   const MeshData control = vertices(p);
   const auto corners = indices(p, control.positions.size(), 4);
   if (p.has("emissionfilename")) {
@@ -117,7 +117,7 @@ std::optional<Kind> bilinear_mesh(Reader& reader, Params& p) {
   return held_mesh(p, std::move(mesh));
 }
 
-std::optional<Kind> curve(Reader& reader, Params& p) {
+std::optional<ShapeKind> curve(Reader& reader, Params& p) {
   const std::string type = p.text("type", "flat"), basis = p.text("basis", "bezier");
   if (type != "flat" && type != "cylinder" && type != "ribbon")
     p.fail("type", "is " + in_quotes(type), "flat, cylinder and ribbon are known");

@@ -8,7 +8,7 @@ namespace lumirank::scenedesc::pbrt {
 
 namespace {
 
-using Kind = decltype(ShapeDesc::kind);
+using ShapeKind = decltype(ShapeDesc::kind);
 
 float radians(float degrees) { return degrees * (kPi / 180); }
 
@@ -18,7 +18,7 @@ float phi_max(Params& p) {
   return radians(std::min(degrees, 360.0f));
 }
 
-std::optional<Kind> sphere(Params& p, Transform& to_world) {
+std::optional<ShapeKind> sphere(Params& p, Transform& to_world) {
   const float radius = p.positive("radius", 1), phi = phi_max(p);
   const float z0 = p.number("zmin", -radius), z1 = p.number("zmax", radius);
   const float low = std::max(std::min(z0, z1), -radius), high = std::min(std::max(z0, z1), radius);
@@ -31,20 +31,20 @@ std::optional<Kind> sphere(Params& p, Transform& to_world) {
   return SphereDesc{{0, 0, 0}, radius};
 }
 
-std::optional<Kind> cylinder(Params& p) {
+std::optional<ShapeKind> cylinder(Params& p) {
   const float radius = p.positive("radius", 1), z0 = p.number("zmin", -1), z1 = p.number("zmax", 1);
   if (z0 == z1) p.fail("zmax", "is the same as zmin", "give the cylinder a height");
   return held_mesh(p, part_of_cylinder(radius, std::min(z0, z1), std::max(z0, z1), phi_max(p)));
 }
 
-std::optional<Kind> disk(Params& p) {
+std::optional<ShapeKind> disk(Params& p) {
   const float height = p.number("height", 0), radius = p.positive("radius", 1);
   const float inner = p.number("innerradius", 0);
   if (!(inner >= 0 && inner < radius)) p.fail("innerradius", "is not between 0 and the radius");
   return held_mesh(p, part_of_disk(height, radius, inner, phi_max(p)));
 }
 
-std::optional<Kind> ply_mesh(Reader& reader, Params& p) {
+std::optional<ShapeKind> ply_mesh(Reader& reader, Params& p) {
   MeshFileDesc out;
   out.format = MeshFormat::ply;
   const auto file = reader.named_file(p.required_text("filename"), p.where_of("filename"), "mesh file", "");
@@ -60,7 +60,7 @@ std::optional<Kind> ply_mesh(Reader& reader, Params& p) {
 
 }  // namespace
 
-std::optional<Kind> make_shape(Reader& reader, Params& p, const std::string& type, Transform& to_world) {
+std::optional<ShapeKind> make_shape(Reader& reader, Params& p, const std::string& type, Transform& to_world) {
   if (type == "trianglemesh") return triangle_mesh(reader, p);
   if (type == "plymesh") return ply_mesh(reader, p);
   if (type == "bilinearmesh") return bilinear_mesh(reader, p);
