@@ -152,8 +152,9 @@ transport::ReceiverSettings receiver_settings(const View& view, const RenderSett
 
 void make_eye_receivers(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
   const Timer timer;
-  setup.receivers = transport::trace_receivers(*setup.world, world::Camera(setup.view.sensor, setup.world->units()),
-                                               receiver_settings(setup.view, settings), sinks);
+  setup.receivers =
+      transport::trace_receivers(*setup.world, world::Camera(setup.view.sensor, setup.world->units()),
+                                 receiver_settings(setup.view, settings), sinks);
   setup.seconds["receivers"] = timer.seconds();
   if (sinks.cancelled()) throw Cancelled();
 }
