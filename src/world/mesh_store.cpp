@@ -152,7 +152,8 @@ geometry::TriangleMesh MeshStore::make(Source& source, Vec3d& origin) const {
   if (const auto* file = std::get_if<sd::MeshFileDesc>(&shape.kind))
     return convert(sd::read_mesh(*file), source.left_out, source.mended, origin);
   if (const auto* held = std::get_if<sd::InlineMeshDesc>(&shape.kind))
-    return held->mesh ? convert(*held->mesh, source.left_out, source.mended, origin) : geometry::TriangleMesh{};
+    return held->mesh ? convert(*held->mesh, source.left_out, source.mended, origin)
+                      : geometry::TriangleMesh{};
   if (const auto* curves = std::get_if<sd::CurvesDesc>(&shape.kind))
     return from_curves(shape, *curves, origin);
   if (std::holds_alternative<sd::RectangleDesc>(shape.kind)) return geometry::make_rectangle();
