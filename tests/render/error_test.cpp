@@ -28,9 +28,9 @@ std::vector<Rgb> sums_of(const matrix::LightingMatrix& matrix) {
   for (std::size_t j = 0; j < matrix.columns(); ++j)
     columns.push_back({static_cast<matrix::Index>(j), Rgb(1)});
   std::vector<Rgb> sums(matrix.rows());
-  const Timer timer;
   const methods::RunOptions options;
-  methods::render_columns(matrix, columns, {options, timer, 0, {}}, sums);
+  const methods::RunClock clock(options);
+  methods::render_columns(matrix, columns, {options, clock, 0, {}}, sums);
   return sums;
 }
 
