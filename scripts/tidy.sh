@@ -5,7 +5,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$1; shift
 jobs=${JOBS:-$(scripts/jobs.sh)}
+checks=()
 if [ $# -eq 0 ]; then
+  checks=(--checks=-bugprone-suspicious-include)  # merged sources consist of such
   mapfile -t files < <(python3 - "$build/compile_commands.json" <<'EOF'
 import json, os, sys
 build = os.path.dirname(sys.argv[1])
@@ -17,5 +19,5 @@ for entry in json.load(open(sys.argv[1])):
 EOF
 )
 else files=("$@"); fi
-printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$jobs" clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option 2> >(grep -v 'warnings generated' >&2)
+printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$jobs" clang-tidy -p "$build" --quiet ${checks[@]+"${checks[@]}"} --extra-arg=-Wno-unknown-warning-option 2> >(grep -v 'warnings generated' >&2)
 echo "clang-tidy: ${#files[@]} files, fine"

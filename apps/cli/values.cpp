@@ -82,11 +82,11 @@ std::vector<std::string> read_list(const std::string& option, const std::string&
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     parts.push_back(text.substr(begin, end - begin));
-    if (parts.back().empty())
-      throw InputError("'" + text + "' of " + option + " has an empty part",
-                       "separate its parts by single commas");
     begin = end + 1;
   }
+  if (std::ranges::any_of(parts, [](const std::string& part) { return part.empty(); }))
+    throw InputError("'" + text + "' of " + option + " has an empty part",
+                     "separate its parts by single commas");
   return parts;
 }
 

@@ -13,12 +13,12 @@ namespace lumirank::linalg {
 
 namespace {
 // Columns per GEMM and per scale of the batch: batch and points of a block stay in the second-level cache.
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kSketchBlock = 2048;
 constexpr std::size_t kBatchRows = 32;
 // With more columns the batch gets shorter, not larger.
 constexpr std::size_t kBatchEntries = std::size_t{1} << 26;
 
-std::size_t blocks(std::size_t columns) { return (columns + kBlock - 1) / kBlock; }
+std::size_t blocks(std::size_t columns) { return (columns + kSketchBlock - 1) / kSketchBlock; }
 }  // namespace
 
 ColumnSketch::ColumnSketch(const Shape& shape, std::uint64_t seed)
@@ -38,8 +38,8 @@ double ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const flo
   if (values.size() != columns_ * kChannels) throw InternalError("sketch: a row of the wrong length");
   const std::size_t b = batch_ids_.size();
   if (batch_.empty()) batch_.resize(columns_ * batch_rows_);
-  const double total = parallel_sum(columns_, kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
-    float scalar[kBlock];
+  const double total = parallel_sum(columns_, kSketchBlock, 0.0, [&](std::size_t begin, std::size_t end) {
+    float scalar[kSketchBlock];
     double some = 0;
     for (std::size_t j = begin; j < end; ++j) {
       float sum = 0;
@@ -52,7 +52,7 @@ double ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const flo
       some += static_cast<double>(scalar[j - begin]);
     }
     const float scale = scale_for(largest_of({scalar, end - begin})), inverse = 1 / scale;
-    batch_scale_[b * blocks(columns_) + begin / kBlock] = scale;
+    batch_scale_[b * blocks(columns_) + begin / kSketchBlock] = scale;
     std::uint16_t* out = batch_.data() + b * columns_ + begin;
     for (std::size_t k = 0; k < end - begin; ++k) out[k] = shorten(scalar[k] * inverse);
     return some;
@@ -64,7 +64,7 @@ double ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const flo
 }
 
 void ColumnSketch::read_batch(std::size_t b, std::size_t begin, std::size_t end, float* out) const {
-  const float scale = batch_scale_[b * blocks(columns_) + begin / kBlock];
+  const float scale = batch_scale_[b * blocks(columns_) + begin / kSketchBlock];
   const std::uint16_t* from = batch_.data() + b * columns_ + begin;
   for (std::size_t k = 0; k < end - begin; ++k) out[k] = scale * lengthen(from[k]);
 }
@@ -73,7 +73,7 @@ void ColumnSketch::make_room(std::size_t rows) {
   if (rows <= dimension_) return;
   const std::size_t grown = std::max(rows, 2 * dimension_);
   std::vector<std::int16_t> next(columns_ * grown, std::int16_t{0});
-  parallel_for(columns_, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_for(columns_, kSketchBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j)
       std::copy_n(units_.data() + j * dimension_, dimension_, next.data() + j * grown);
   });
@@ -111,7 +111,7 @@ void ColumnSketch::flush() {
   if (batch == 0) return;
   if (!projected_) {
     make_room(rows_);
-    parallel_for(columns_, kBlock,
+    parallel_for(columns_, kSketchBlock,
                  [&](std::size_t begin, std::size_t end) { add_rows_as_dimensions(begin, end); });
   } else {
     std::vector<float> gaussian(batch * dimension_);
@@ -121,7 +121,7 @@ void ColumnSketch::flush() {
       for (std::size_t d = 0; d < dimension_; ++d)
         gaussian[b * dimension_ + d] = static_cast<float>(scale * rng.next_gaussian());
     }
-    parallel_for(columns_, kBlock,
+    parallel_for(columns_, kSketchBlock,
                  [&](std::size_t begin, std::size_t end) { project(gaussian, begin, end); });
   }
   batch_ids_.clear();

@@ -214,8 +214,8 @@ double target_for_sampling(double target, double lights, double clamping) {
 KnownRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std::uint64_t seed) {
   KnownRows known(matrix);
   std::vector<Rgb> values(matrix.columns());
-  constexpr std::uint64_t kRound = 1;  // round 0 is row-column sampling's
-  for (const SampledRow& row : RowSampler(matrix, seed).stratified(count, kRound)) known.read(row, values);
+  constexpr std::uint64_t kOwnRound = 1;  // round 0 is row-column sampling's
+  for (const SampledRow& row : RowSampler(matrix, seed).stratified(count, kOwnRound)) known.read(row, values);
   return known;
 }
 

@@ -29,7 +29,7 @@ void EmitterNames::name(em::Emitter& emitter, const std::string& wanted, const S
 
 em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint32_t placement,
                                   const scatter::ColorInput& radiance, const scatter::TextureSet& textures) {
-  constexpr int kParts = 4;  // a triangle's mean is taken over the centroids of kParts² equal parts
+  constexpr int kTriangleParts = 4;  // a triangle's mean is taken over the centroids of kParts² equal parts
   em::AreaEmitter emitter;
   emitter.placement = placement;
   emitter.triangles.resize(mesh.triangle_count());
@@ -47,16 +47,17 @@ em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint3
       out.mean_radiance = radiance.value;
       if (radiance.texture < 0) continue;
       Rgb sum;
-      for (int i = 0; i < kParts; ++i)
-        for (int j = 0; i + j < kParts; ++j) {
+      for (int i = 0; i < kTriangleParts; ++i)
+        for (int j = 0; i + j < kTriangleParts; ++j) {
           const auto add = [&](float du, float dv) {
-            const Vec2f b{(static_cast<float>(i) + du) / kParts, (static_cast<float>(j) + dv) / kParts};
+            const Vec2f b{(static_cast<float>(i) + du) / kTriangleParts,
+                          (static_cast<float>(j) + dv) / kTriangleParts};
             sum += textures.lookup(radiance.texture, interpolate_uv(mesh, static_cast<std::uint32_t>(t), b));
           };
           add(1.0f / 3, 1.0f / 3);
-          if (i + j < kParts - 1) add(2.0f / 3, 2.0f / 3);
+          if (i + j < kTriangleParts - 1) add(2.0f / 3, 2.0f / 3);
         }
-      out.mean_radiance = sum / static_cast<float>(kParts * kParts);
+      out.mean_radiance = sum / static_cast<float>(kTriangleParts * kTriangleParts);
     }
   });
   em::finish(emitter);

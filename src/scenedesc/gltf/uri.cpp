@@ -49,7 +49,7 @@ std::string base64_decoded(const std::string& text, std::size_t begin, const Ele
   std::uint32_t bits = 0;
   int count = 0;
   for (std::size_t k = begin; k < end; ++k) {
-    const int value = values[static_cast<unsigned char>(text[k])];
+    const auto value = values[static_cast<unsigned char>(text[k])];
     if (value < 0)
       uri.fail("has a character that is not base64, " + std::to_string(k) + " characters in",
                "encode the data again");

@@ -66,7 +66,7 @@ std::string MitsubaWriter::relative(const std::string& file) const {
 
 std::string MitsubaWriter::add_file(const std::string& what, const std::string& extension,
                                     std::string bytes) {
-  const std::string name = filename_.stem().string() + "." + what + extension;
+  std::string name = filename_.stem().string() + "." + what + extension;
   out_.files.push_back({name, std::move(bytes)});
   return name;
 }

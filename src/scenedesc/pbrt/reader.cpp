@@ -49,14 +49,14 @@ void Reader::warn_once(const SourceLocation& where, const std::string& what,
 
 std::string Reader::resolve(const std::string& name, const Place& where) const {
   for (const std::string& file : {main_file_, where.file ? *where.file : main_file_}) {
-    const std::string path = resolve_path(name, file);
+    std::string path = resolve_path(name, file);
     if (std::error_code error; !name.empty() && std::filesystem::exists(path, error)) return path;
   }
   return {};
 }
 
 std::string Reader::existing_file(const std::string& name, const Place& where, const std::string& kind) {
-  const std::string path = resolve(name, where);
+  std::string path = resolve(name, where);
   if (path.empty())
     throw InputError(where, kind + " not found: " + resolve_path(name, main_file_), "check the name");
   if (std::error_code error; std::filesystem::is_directory(path, error))

@@ -129,7 +129,7 @@ class Reader {
   void finish();
 
   int masked(Params& p, int bsdf);
-  void add_shape(Params& p, ShapeDesc shape, std::shared_ptr<const AreaLight> light);
+  void add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light);
 
   const std::string main_file_;
   const ReadOptions& options_;

@@ -71,10 +71,10 @@ void Reader::read_shape(Params& p, const std::string& type) {
               "no light");
     light = nullptr;
   }
-  add_shape(p, std::move(shape), std::move(light));
+  add_shape(p, std::move(shape), light);
 }
 
-void Reader::add_shape(Params& p, ShapeDesc shape, std::shared_ptr<const AreaLight> light) {
+void Reader::add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light) {
   shape.in_group = in_object_;
   if (!scene_.shapes.empty() && joins(scene_.shapes.back(), shape)) {
     join(std::get<CurvesDesc>(scene_.shapes.back().kind), std::get<CurvesDesc>(shape.kind));
