@@ -76,7 +76,7 @@ Round run_round(const world::World& world, const EmitterChoice& choice, const Pa
       Rng rng(settings.seed, Stage::pilot, settings.first_id + path, 1);
       EmissionGuide::Observation o;
       o.at[0] = std::min(static_cast<float>(start.emitter), 0x1.fffffep-1f);
-      std::copy(start.rest, start.rest + kStartDimensions - 1, o.at.begin() + 1);
+      std::copy(std::begin(start.rest), std::end(start.rest), o.at.begin() + 1);
       o.density = static_cast<float>(start.density);
       for (const LightRecord& light : batch.lights) {
         LightImportance::Site place{light.position, light.normal, 0, false};

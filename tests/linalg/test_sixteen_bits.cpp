@@ -2,6 +2,7 @@
 // precision.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -53,7 +54,7 @@ TEST(ShortFloat, ScalesArePowersOfTwoAndHaveInverses) {
 // half a unit.
 TEST(PackedPoints, AreWithinTwoToTheMinusFifteenOfTheLargestCoordinate) {
   for (float length : {0.0f, 1e-44f, 1e-20f, 1.0f, 12345.0f, 1e30f}) {
-    Rng rng(2, Stage::test, 31, static_cast<std::uint64_t>(length));
+    Rng rng(2, Stage::test, 31, std::bit_cast<std::uint32_t>(length));
     std::vector<float> point(50), back(50);
     std::vector<std::int16_t> units(50);
     float largest = 0;

@@ -130,7 +130,7 @@ TEST(GltfMaterial, TextureTransforms) {
   const auto at = [](const UvTransform& t, float u, float v) {
     return Vec2f{t.m[0] * u + t.m[1] * v + t.m[2], t.m[3] * u + t.m[4] * v + t.m[5]};
   };
-  EXPECT_EQ(at(transform_of(json::object()), 0.25f, 0.75f), Vec2f{0.25f, 0.25f});
+  EXPECT_EQ(at(transform_of(json::object()), 0.25f, 0.75f), (Vec2f{0.25f, 0.25f}));
   const UvTransform t =
       transform_of({{"offset", {0.5, 0.25}}, {"rotation", std::acos(0.0)}, {"scale", {2, 4}}});
   // (1, 0) → (2, 0) → (0, -2) → (0.5, -1.75), upside down 2.75; (0, 1) → (0, 4) → (4, 0) → (4.5, 0.25), 0.75.
@@ -150,7 +150,7 @@ TEST(GltfMaterial, UvSetsAndVertexColours) {
   attributes["TEXCOORD_1"] = m.accessor("VEC2", std::vector<float>{7, 8, 0, 0, 0, 0, 0, 0});
   attributes["COLOR_0"] = m.accessor("VEC3", std::vector<float>{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0});
   const SceneDesc scene = parse(m);
-  EXPECT_EQ(mesh_of(scene).uvs[0], Vec2f{7, 8});
+  EXPECT_EQ(mesh_of(scene).uvs[0], (Vec2f{7, 8}));
   EXPECT_EQ(mesh_of(scene).colors[0], Rgb(1, 0, 0));
   const auto* plastic = find_bsdf<PlasticDesc>(scene);
   ASSERT_NE(plastic, nullptr);
@@ -291,7 +291,7 @@ TEST(GltfLights, PointSpotAndDirectional) {
   const SceneDesc scene = parse(m);
   ASSERT_EQ(scene.emitters.size(), 3u);
   const auto& point = std::get<PointLightDesc>(scene.emitters[0].kind);
-  EXPECT_EQ(point.position, Vec3f{1, 2, 3});
+  EXPECT_EQ(point.position, (Vec3f{1, 2, 3}));
   EXPECT_EQ(point.intensity, Rgb(4, 2, 1));
   const auto& spot = std::get<SpotLightDesc>(scene.emitters[1].kind);
   EXPECT_NEAR(spot.cutoff_angle, 0.5 * 180 / M_PI, 1e-4);
@@ -318,10 +318,10 @@ TEST(GltfCameras, PerspectiveLooksAlongMinusZ) {
   EXPECT_NEAR(s.fov_x, 2 * std::atan(2 * std::tan(0.25)) * 180 / M_PI, 1e-4);
   EXPECT_EQ(s.near_clip, 0.5f);
   EXPECT_GT(s.far_clip, 1e20f);
-  EXPECT_EQ(s.to_world.point({0, 0, 0}), Vec3f{0, 0, 5});
-  EXPECT_EQ(s.to_world.vector({0, 0, 1}), Vec3f{0, 0, -1});
-  EXPECT_EQ(s.to_world.vector({1, 0, 0}), Vec3f{-1, 0, 0}) << "+x is left";
-  EXPECT_EQ(s.to_world.vector({0, 1, 0}), Vec3f{0, 1, 0});
+  EXPECT_EQ(s.to_world.point({0, 0, 0}), (Vec3f{0, 0, 5}));
+  EXPECT_EQ(s.to_world.vector({0, 0, 1}), (Vec3f{0, 0, -1}));
+  EXPECT_EQ(s.to_world.vector({1, 0, 0}), (Vec3f{-1, 0, 0})) << "+x is left";
+  EXPECT_EQ(s.to_world.vector({0, 1, 0}), (Vec3f{0, 1, 0}));
 }
 
 TEST(GltfCameras, OrthographicShowsItsMagnification) {
@@ -331,7 +331,7 @@ TEST(GltfCameras, OrthographicShowsItsMagnification) {
   m.root["nodes"][0]["camera"] = 0;
   const SensorDesc s = parse(m).sensors.at(0);
   EXPECT_EQ(s.kind, SensorKind::orthographic);
-  EXPECT_EQ(s.to_world.vector({1, 0, 0}), Vec3f{-4, 0, 0});
+  EXPECT_EQ(s.to_world.vector({1, 0, 0}), (Vec3f{-4, 0, 0}));
   EXPECT_EQ(s.film.width, 2 * s.film.height);
 }
 

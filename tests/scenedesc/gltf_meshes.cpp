@@ -63,7 +63,7 @@ TEST(GltfMesh, StripsAndFansFaceOneWay) {
     const SceneDesc scene = parse(m);
     const MeshData& mesh = mesh_of(scene);
     ASSERT_EQ(mesh.triangle_count(), 3u);
-    for (std::size_t t = 0; t < 3; ++t) EXPECT_EQ(face_normal(mesh, t), Vec3f{0, 0, 1}) << mode << ' ' << t;
+    for (std::size_t t = 0; t < 3; ++t) EXPECT_EQ(face_normal(mesh, t), (Vec3f{0, 0, 1})) << mode << ' ' << t;
   }
 }
 
@@ -94,9 +94,9 @@ TEST(GltfMesh, NormalizedAndPlainIntegers) {
       "VEC4", std::vector<std::uint8_t>{255, 51, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255}, true);
   const SceneDesc scene = parse(m);
   const MeshData& mesh = mesh_of(scene);
-  EXPECT_EQ(mesh.positions[2], Vec3f{300, -7, 0});
-  EXPECT_EQ(mesh.normals[0], Vec3f{0, 0, 1});
-  EXPECT_EQ(mesh.normals[3], Vec3f{0, 0, -1});
+  EXPECT_EQ(mesh.positions[2], (Vec3f{300, -7, 0}));
+  EXPECT_EQ(mesh.normals[0], (Vec3f{0, 0, 1}));
+  EXPECT_EQ(mesh.normals[3], (Vec3f{0, 0, -1}));
   EXPECT_EQ(mesh.uvs[0].y, 1);
   EXPECT_NEAR(mesh.uvs[1].x, 0.2f, 1e-7f);
   EXPECT_NEAR(mesh.colors[0].g, 0.2f, 1e-7f);
@@ -121,7 +121,7 @@ TEST(GltfMesh, StridedViewsAndOffsets) {
   attributes["POSITION"] = m.root["accessors"].size() - 2;
   attributes["TEXCOORD_0"] = m.root["accessors"].size() - 1;
   const SceneDesc scene = parse(m);
-  EXPECT_EQ(mesh_of(scene).positions[2], Vec3f{1, 1, 0});
+  EXPECT_EQ(mesh_of(scene).positions[2], (Vec3f{1, 1, 0}));
   EXPECT_EQ(mesh_of(scene).uvs[3].x, 3);
 }
 
@@ -177,7 +177,7 @@ TEST(GltfNodes, GpuInstancing) {
                                                                                {"SCALE", scales}};
   const SceneDesc scene = parse(m);
   ASSERT_EQ(scene.shapes.size(), 2u);
-  EXPECT_EQ(scene.shapes[1].to_world.point({1, 0, 0}), Vec3f{5, 0, 0});
+  EXPECT_EQ(scene.shapes[1].to_world.point({1, 0, 0}), (Vec3f{5, 0, 0}));
 }
 
 TEST(GltfPoses, MorphTargetsByTheirWeights) {
@@ -186,9 +186,9 @@ TEST(GltfPoses, MorphTargetsByTheirWeights) {
   const int right = m.accessor("VEC3", std::vector<float>{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0});
   m.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}, {{"POSITION", right}}};
   m.root["meshes"][0]["weights"] = {0.5, 0};
-  EXPECT_EQ(mesh_of(parse(m)).positions[0], Vec3f{0, 0, 0.5f});
+  EXPECT_EQ(mesh_of(parse(m)).positions[0], (Vec3f{0, 0, 0.5f}));
   m.root["nodes"][0]["weights"] = {0, 2};  // wins
-  EXPECT_EQ(mesh_of(parse(m)).positions[0], Vec3f{2, 0, 0});
+  EXPECT_EQ(mesh_of(parse(m)).positions[0], (Vec3f{2, 0, 0}));
 }
 
 TEST(GltfPoses, SkinsInThePoseOfTheirNodes) {
