@@ -14,7 +14,7 @@ using json = nlohmann::json;
 // The square with one material.
 GltfMaker with_material(const json& material) {
   GltfMaker m = square();
-  m.root["materials"] = {material};
+  m.root["materials"] = json::array({material});
   m.root["meshes"][0]["primitives"][0]["material"] = 0;
   return m;
 }
