@@ -36,7 +36,7 @@ def reference(args, scene):
                     "--size", args.size, "--report", report, "--quiet"])
         if done.returncode:
             return None, done.stderr.strip()[-300:]
-    return image, json.loads(report.read_text()).get("error.estimate", float("nan"))
+    return image, json.loads(report.read_text()).get("error.relative_l1", float("nan"))
 
 
 def measure(args, scene, seconds):

@@ -29,7 +29,7 @@ struct TimeWishes {
 };
 
 struct TimePlan {
-  int spp = 4;
+  int spp = 4;  // fewer than wished for where time is short, more where it abounds
   std::size_t lights = 100000;
   double direct_seconds = 0, rest_seconds = 0;  // at first; what is left over at the end is added
   double film_seconds = 0;                      // kept back
