@@ -128,7 +128,7 @@ def mirror(out):
     furniture(rng, woods, cloths, (2.0, 1.6), 6)
     # A wall washer that shines at the mirror: much of the room's light comes off it.
     frame.box((-1.5, 2.3, -2.95), (1.5, 2.34, -2.6))
-    scene.lamp((0.6, 2.3, 0.0), (0.12, 0, 0.18), (0.1, -0.15, 0), (90, 82, 72))
+    scene.lamp((0.6, 2.3, 0.0), (0, 0, 0.18), (-0.05, 0.15, 0), (90, 82, 72))
     scene.lamp((1.8, 2.75, 1.8), (0.3, 0, 0), (0, 0, 0.3), (6, 5.6, 5))
     return scene, out / "mirror"
 
