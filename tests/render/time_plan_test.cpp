@@ -39,14 +39,15 @@ TEST(TimePlan, AHugeBudgetLowersNothing) {
   EXPECT_FALSE(p.build_alone);
 }
 
-// The method ends with some 10,000 entries of a receiver: beyond that only more receivers use the time.
+// The method ends with what takes as long as some 3,000 of the pilot's columns: beyond that only more
+// receivers use the time.
 TEST(TimePlan, AbundantTimeGoesToReceivers) {
   TimeCosts c = ordinary_costs();
-  c.pixels = 50000, c.column = 4e-9;  // 10,000 columns for one receiver per pixel take 2 s
+  c.pixels = 50000, c.column = 1e-8;  // 3,000 columns for one receiver per pixel take 1.5 s
   EXPECT_EQ(plan_time(budget_of(5), c).spp, 4);
   const TimePlan p = plan_time(budget_of(40), c);
   EXPECT_GT(p.spp, 4);
-  const double to_the_end = 10000 * c.column * c.pixels * p.spp;
+  const double to_the_end = 3000 * c.column * c.pixels * p.spp;
   EXPECT_GE(to_the_end, 0.85 * (kTimeAim * 40 - c.passed));
   TimeWishes by_hand = budget_of(40);
   by_hand.spp_given = true;
