@@ -19,10 +19,10 @@ constexpr double kLeastColumns = 50;
 // ... or than direct light of fewer samples, whose noise four receivers of one sample have as well.
 constexpr double kLeastDirect = 4;
 // slice-cuts has nothing left to gain beyond some 8,000 to 12,000 entries of a receiver, and would end before
-// its time; they take about as long as a third as many columns take the pilot. Where more than this many of
+// its time; they take about as long as 1,000 to 3,000 columns take the pilot. Where more than this many of
 // the pilot's columns fit, more receivers per pixel serve the picture (cleaner edges) and use the time; no
 // more than the film shows, nor than memory should be spent on (240 bytes for each of them).
-constexpr double kManyColumns = 2000, kMostSamples = 8e6;
+constexpr double kManyColumns = 1000, kMostSamples = 8e6;
 constexpr int kMostReceivers = 64;
 // With fewer lights one sees each of them.
 constexpr std::size_t kFewestLights = 2000;
