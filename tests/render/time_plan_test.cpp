@@ -44,7 +44,7 @@ TEST(TimePlan, AHugeBudgetLowersNothing) {
 TEST(TimePlan, AbundantTimeGoesToReceivers) {
   TimeCosts c = ordinary_costs();
   c.pixels = 50000, c.column = 1e-8;  // 3,000 columns for one receiver per pixel take 1.5 s
-  EXPECT_EQ(plan_time(budget_of(3), c).spp, 4);
+  EXPECT_EQ(plan_time(budget_of(2), c).spp, 4);
   const TimePlan p = plan_time(budget_of(40), c);
   EXPECT_GT(p.spp, 4);
   const double to_the_end = 3000 * c.column * c.pixels * p.spp;
