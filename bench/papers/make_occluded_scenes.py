@@ -8,12 +8,11 @@
   room       shelves full of small things, a table with chairs, glossy crockery; light comes from a lamp outside of the window (room)
   arcade     a long hall of columns and arches with hanging cloths, under a strip of sky (Sponza)
 """
-import argparse
 import math
 import pathlib
 import random
 
-from scene_parts import Scene, add, catmull_rom, diffuse, mul, rgb, unit, ward
+from scene_parts import Scene, add, catmull_rom, diffuse, mul, rgb, unit, ward, write_scenes
 from make_fur_and_trees import leaf, on_sphere
 
 
@@ -293,17 +292,5 @@ def arcade(out):
 SCENES = {"courtyard": courtyard, "fair": fair, "room": room, "arcade": arcade}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("scenes", nargs="*")
-    args = parser.parse_args()
-    for name in args.scenes or SCENES:
-        if name not in SCENES:
-            parser.error(f"there is no scene {name}; the scenes are {', '.join(SCENES)}")
-        scene, folder = SCENES[name](args.out)
-        print(f"{folder}/scene.xml: {scene.write(folder)} triangles")
-
-
 if __name__ == "__main__":
-    main()
+    write_scenes(__doc__, SCENES)

@@ -2,6 +2,7 @@
 
 Units are metres, +y is up. Every mesh has texture coordinates, because the direction of brushing of an anisotropic metal is that of u.
 """
+import argparse
 import math
 import pathlib
 import struct
@@ -268,3 +269,16 @@ class Scene:
             lines.append(f'\t<shape type="ply"><string name="filename" value="{name}.ply"/><ref id="{name}"/></shape>')
         (folder / "scene.xml").write_text("\n".join(lines + ["</scene>"]) + "\n")
         return total
+
+
+def write_scenes(description, scenes):
+    """The command line of a generator: OUT and the names of scenes (all by default); scenes[name](OUT) gives (scene, folder)."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("scenes", nargs="*")
+    args = parser.parse_args()
+    for name in args.scenes or scenes:
+        if name not in scenes:
+            parser.error(f"there is no scene {name}; the scenes are {', '.join(scenes)}")
+        scene, folder = scenes[name](args.out)
+        print(f"{folder}/scene.xml: {scene.write(folder)} triangles")

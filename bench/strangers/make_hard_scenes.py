@@ -9,14 +9,13 @@
   mirror  a room whose light is seen and thrown by a large mirror, with a polished metal ball
   gloss   sharp gloss on floor, balls and crockery; one of its meshes has no usable triangle, another has many broken ones
 """
-import argparse
 import math
 import pathlib
 import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "papers"))
-from scene_parts import Scene, add, brushed, diffuse, rgb, ward  # noqa: E402
+from scene_parts import Scene, add, brushed, diffuse, rgb, ward, write_scenes  # noqa: E402
 
 
 def room(wall, floor, ceiling, half, height, openings=()):
@@ -165,17 +164,5 @@ def gloss(out):
 SCENES = {"atrium": atrium, "shades": shades, "blinds": blinds, "mirror": mirror, "gloss": gloss}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("scenes", nargs="*")
-    args = parser.parse_args()
-    for name in args.scenes or SCENES:
-        if name not in SCENES:
-            parser.error(f"there is no scene {name}; the scenes are {', '.join(SCENES)}")
-        scene, folder = SCENES[name](args.out)
-        print(f"{folder}/scene.xml: {scene.write(folder)} triangles")
-
-
 if __name__ == "__main__":
-    main()
+    write_scenes(__doc__, SCENES)
