@@ -16,9 +16,14 @@ using matrix::Index;
 
 namespace {
 
-constexpr std::size_t kStretch = 128;     // rows of a unit
-constexpr std::size_t kMostDraws = 64;    // more of them are for the methods to choose
-constexpr double kCoarseShare = 0.05;     // of the budget
+constexpr std::size_t kStretch = 128;  // rows of a unit
+// More columns are for the methods to choose; with fewer than the least one sees rather which they are.
+constexpr std::size_t kMostDraws = 64, kLeastDraws = 16;
+// Of the budget: for all of them, and for the least.
+constexpr double kCoarseShare = 0.05, kFewDrawsShare = 0.2;
+// Rows that are asked what columns matter, and what part of the budget for all of them.
+constexpr std::size_t kTriedRows = 16;
+constexpr double kTriedRowsShare = 0.02;
 constexpr double kLatest = 0.3;           // of the budget: no stretch of rows is begun after it
 constexpr std::uint64_t kRound = 0xc0a5;  // of draws: those of the methods are independent of it
 
@@ -45,6 +50,57 @@ void sum_stretch(std::span<const Index> rows, std::span<const matrix::ScaledColu
     w.reader->column(c.column, w.values);
     for (std::size_t a = 0; a < rows.size(); ++a) sums[rows[a]] += gain * c.scale * w.values[a];
   }
+}
+
+// What to draw columns by: half their power, half what some rows get of them. By power alone nearly all draws
+// may be of columns that hardly any row sees: what is outside of a room with a window.
+std::vector<float> importance(const matrix::LightingMatrix& matrix, const RunOptions& options,
+                              const RunClock& clock) {
+  const std::size_t rows = matrix.rows(), columns = matrix.columns();
+  const std::size_t most = std::min(kTriedRows, rows);
+  const std::vector<std::uint32_t> order = coarse_to_fine(most);
+  std::vector<std::vector<Rgb>> read(most);
+  std::size_t have = 0;
+  const auto read_until = [&](std::size_t end) {
+    parallel_for(end - have, 1, [&](std::size_t b, std::size_t e) {
+      for (std::size_t k = have + b; k < have + e; ++k) {
+        read[k].resize(columns);
+        matrix.row(static_cast<Index>((2 * order[k] + 1) * rows / (2 * most)), read[k]);
+      }
+    });
+    have = end;
+  };
+  // One for each thread in any case; they tell what the others take.
+  const std::size_t count =
+      timed_choice(options, "coarse_rows", static_cast<std::int64_t>(most), [&]() -> std::size_t {
+        const double begin = clock.seconds();
+        while (have < most) {
+          const std::size_t next = std::min(most, have + static_cast<std::size_t>(current_threads()));
+          const double took = clock.seconds() - begin;
+          if (have > 0 && took * static_cast<double>(next) >
+                              kTriedRowsShare * options.time_seconds * static_cast<double>(have))
+            break;
+          read_until(next);
+        }
+        return have;
+      });
+  if (have < count) read_until(count);
+
+  const std::span<const float> power = matrix.column_features().power;
+  std::vector<double> seen(columns, 0.0);
+  for (std::size_t k = 0; k < have; ++k) {
+    double sum = 0;
+    for (const Rgb& v : read[k]) sum += static_cast<double>(luminance(v));
+    if (!(sum > 0)) continue;
+    for (std::size_t j = 0; j < columns; ++j) seen[j] += static_cast<double>(luminance(read[k][j])) / sum;
+  }
+  const double all_power = std::accumulate(power.begin(), power.end(), 0.0),
+               all_seen = std::accumulate(seen.begin(), seen.end(), 0.0);
+  std::vector<float> weights(columns);
+  for (std::size_t j = 0; j < columns; ++j)
+    weights[j] = static_cast<float>((all_power > 0 ? static_cast<double>(power[j]) / all_power : 0) +
+                                    (all_seen > 0 ? seen[j] / all_seen : 0));
+  return weights;
 }
 
 // See the rule of succession above.
@@ -79,7 +135,7 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   if (rows == 0 || matrix.columns() == 0) return picture;
   std::vector<Index> all(matrix.columns());
   std::iota(all.begin(), all.end(), 0u);
-  const auto drawn = draw_columns(all, matrix.column_features().power,
+  const auto drawn = draw_columns(all, importance(matrix, options, clock),
                                   {kMostDraws, true, options.seed, Stage::method, kRound});
   const UnitRows units = stretches_of_rows(rows);
   WorkspacePool<CoarseWork> pool([&] {
@@ -110,8 +166,10 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
       for (std::size_t k = 0; k < tried; ++k) read += units[order[k]].size();
       picture.entry_seconds = took / static_cast<double>(read * count);
       const double column = std::max(picture.entry_seconds * static_cast<double>(rows), 1e-12);
+      const double fit = options.time_seconds / column;
       most = static_cast<std::size_t>(
-          std::clamp(kCoarseShare * options.time_seconds / column, 1.0, static_cast<double>(drawn.size())));
+          std::clamp(std::max(kCoarseShare * fit, std::min(kFewDrawsShare * fit, double{kLeastDraws})), 1.0,
+                     static_cast<double>(drawn.size())));
     }
     return most;
   };

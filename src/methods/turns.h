@@ -23,7 +23,7 @@
 namespace lumirank::methods {
 
 // Of a turn, and of all turns of a unit together: more would cost more than it shows.
-inline constexpr double kMostQualityOfTurn = 8, kMostQuality = 16;
+inline constexpr double kMostQualityOfTurn = 8, kMostQuality = 64;
 
 struct Turn {
   double quality = 1;        // 1: the method's own

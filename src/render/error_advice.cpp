@@ -1,5 +1,6 @@
 #include "render/error_advice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -63,13 +64,16 @@ std::string error_advice(const ErrorAsked& asked, const std::map<std::string, do
   return text;
 }
 
-std::string budget_advice(double budget, double given, const std::map<std::string, double>& numbers) {
+std::string budget_advice(double budget, double given, double enough_for_plan,
+                          const std::map<std::string, double>& numbers) {
   const auto coarse = numbers.find("budget.coarse_share"), wanted = numbers.find("budget.seconds_wanted");
   if (coarse == numbers.end() || coarse->second < 0.005) return {};
-  std::string text = "in " + percent(coarse->second) + " of the picture the budget of " +
-                     number("%.3g s", budget) + " left time for a coarse estimate only";
+  const std::string part = coarse->second < 0.995 ? "in " + percent(coarse->second) + " of" : "in all of";
+  std::string text = part + " the picture the budget of " + number("%.3g s", budget) +
+                     " left time for a coarse estimate only";
   if (wanted != numbers.end() && wanted->second > given)
-    text += "; about " + number("%.2g s", budget + wanted->second - given) + " would do";
+    text += "; about " + number("%.2g s", std::max(budget + wanted->second - given, enough_for_plan)) +
+            " would do";
   return text;
 }
 

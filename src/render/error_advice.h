@@ -29,8 +29,9 @@ std::string error_not_aimed_at(const methods::MethodInfo& method, double target)
 std::string error_advice(const ErrorAsked& asked, const std::map<std::string, double>& numbers);
 
 // A warning where a method's time was too short for more than a coarse estimate of a part of the picture,
-// with a budget that would do. `given`: the seconds that it got. `numbers`: of the method's trace
-// (budget.coarse_share, budget.seconds_wanted).
-std::string budget_advice(double budget, double given, const std::map<std::string, double>& numbers);
+// with a budget that would do. `given`: the seconds that it got. `enough_for_plan`: the budget that would
+// have lowered nothing else. `numbers`: of the method's trace (budget.coarse_share, budget.seconds_wanted).
+std::string budget_advice(double budget, double given, double enough_for_plan,
+                          const std::map<std::string, double>& numbers);
 
 }  // namespace lumirank::rendering

@@ -230,21 +230,33 @@ transport::SceneMatrixSettings matrix_settings(const Setup& setup, const RenderS
   return ms;
 }
 
-void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks) {
-  const Timer timer;
-  setup.matrix.reset();  // before its lights change
+namespace {
+transport::LightSettings light_settings(const Setup& setup, const RenderSettings& settings) {
   transport::LightSettings ls;
   ls.seed = settings.seed;
-  ls.count = count;
   ls.max_depth = setup.view.max_depth;
   ls.direct = settings.only != "indirect";
   ls.indirect = settings.only != "direct";
-  std::unique_ptr<transport::Receivers> aim = std::move(setup.aim);
-  if (!aim && !setup.unaimed)
-    aim = std::make_unique<transport::Receivers>(aim_at(setup, settings.seed, sinks));
-  ls.receivers = aim.get();
   ls.diffuse_only = settings.light_type == "diffuse-point";
   ls.traced_direct_below = static_cast<float>(setup.traced_below);
+  return ls;
+}
+}  // namespace
+
+void survey_lights(Setup& setup, const RenderSettings& settings, const transport::Receivers& aim) {
+  transport::LightSettings ls = light_settings(setup, settings);
+  ls.receivers = &aim;
+  setup.survey = transport::survey_lights(*setup.world, ls);
+}
+
+void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks) {
+  const Timer timer;
+  setup.matrix.reset();  // before its lights change
+  if (!setup.survey) survey_lights(setup, settings, aim_at(setup, settings.seed, sinks));
+  const std::shared_ptr<const transport::LightSurvey> survey = std::move(setup.survey);
+  transport::LightSettings ls = light_settings(setup, settings);
+  ls.count = count;
+  ls.survey = survey.get();
   setup.lights = transport::trace_virtual_lights(*setup.world, ls, sinks);
   setup.held = {};
   if (settings.compensate > 0) {

@@ -44,9 +44,9 @@ struct Setup {
   std::vector<Rgb> traced_direct;
   double traced_below = 0;  // roughness under which receivers are traced
   int direct_samples = 0;   // of traced direct light, per receiver
-  // Receivers at which lights are aimed, where they are there already; else they are made.
-  std::unique_ptr<transport::Receivers> aim;
-  bool unaimed = false;  // lights are aimed at nothing
+  // What pilots told of the light, where it is known already (survey_lights() below); the next matrix takes
+  // it.
+  std::shared_ptr<const transport::LightSurvey> survey;
   // Indirect light of sharp lobes, one per film sample; such lobes have left the receivers then.
   std::vector<Rgb> traced_indirect;
   // Indirect light from close by, one per film sample (RenderSettings::local_near).
@@ -77,6 +77,8 @@ void trace_sharp_lobes(Setup& setup, const RenderSettings& settings, const Sinks
 // but neither on the crop nor on the number of pixels and samples.
 transport::Receivers aim_at(const Setup& setup, std::uint64_t seed, const Sinks& sinks);
 transport::SceneMatrixSettings matrix_settings(const Setup& setup, const RenderSettings& settings);
+// Setup::survey for lights that are aimed at these receivers.
+void survey_lights(Setup& setup, const RenderSettings& settings, const transport::Receivers& aim);
 // `count` virtual lights and the matrix over them.
 void make_matrix(Setup& setup, const RenderSettings& settings, std::size_t count, const Sinks& sinks);
 

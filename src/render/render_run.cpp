@@ -216,7 +216,8 @@ class RenderRun {
       estimate_.trace.notes["error.advice"] = advice;
     }
     if (!timed() || replays() || estimate_.interrupted) return;
-    if (const std::string advice = budget_advice(asked_.time, given_seconds, estimate_.trace.numbers);
+    if (const std::string advice =
+            budget_advice(asked_.time, given_seconds, plan_.enough, estimate_.trace.numbers);
         !advice.empty())
       sinks_.warn(advice);
   }

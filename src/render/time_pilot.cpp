@@ -11,8 +11,8 @@
 namespace lumirank::rendering {
 namespace {
 
-// So many lights and columns are tried: together less than a tenth of a second on ordinary scenes. Two
-// numbers of lights, because some of their time is the same for any number.
+// So many lights and columns are tried: together about a tenth of a second on ordinary scenes. Two numbers
+// of lights, because some of their time is the same for any number.
 constexpr std::size_t kFewLights = 1024, kPilotLights = 8192, kPilotColumns = 16;
 
 double direct_seconds(const Setup& pilot, const RenderSettings& settings, const Sinks& sinks) {
@@ -44,26 +44,28 @@ double column_seconds(const Setup& pilot, const Sinks& sinks) {
 TimeCosts measure_costs(Setup& setup, const RenderSettings& settings, const Sinks& sinks) {
   TimeCosts costs;
   const Timer eye_timer;
-  setup.aim = std::make_unique<transport::Receivers>(aim_at(setup, settings.seed, sinks));
+  const transport::Receivers aim = aim_at(setup, settings.seed, sinks);
   costs.receiver = eye_timer.seconds();
-  const auto samples = static_cast<double>(setup.aim->samples());
+  const auto samples = static_cast<double>(aim.samples());
+  setup.traced_below = traced_roughness(settings);
+  // Takes as long for few lights as for many, and is not made again.
+  survey_lights(setup, settings, aim);
 
   Setup pilot;
   pilot.world = setup.world, pilot.view = setup.view;
-  pilot.receivers = *setup.aim;
-  pilot.traced_below = traced_roughness(settings);
+  pilot.receivers = aim;
+  pilot.traced_below = setup.traced_below;
   if (pilot.traced_below > 0) costs.direct = direct_seconds(pilot, settings, sinks);
-  // Without aim: to learn where lights help takes as long for few as for many, and cannot be saved.
   RenderSettings plain = settings;
   plain.local_paths = 0;
-  pilot.unaimed = true;
-  const Timer few_timer;
-  make_matrix(pilot, plain, kFewLights, sinks);
-  const double few = few_timer.seconds();
-  const Timer light_timer;
-  make_matrix(pilot, plain, kPilotLights, sinks);
+  const auto light_seconds = [&](std::size_t count) {
+    pilot.survey = setup.survey;
+    const Timer timer;
+    make_matrix(pilot, plain, count, sinks);
+    return timer.seconds();
+  };
+  const double few = light_seconds(kFewLights), many = light_seconds(kPilotLights);
   // On a busy machine the smaller number can take longer: then as if a quarter of the time went by number.
-  const double many = light_timer.seconds();
   costs.light = std::max(many - few, 0.25 * many) / static_cast<double>(kPilotLights - kFewLights);
   costs.column = column_seconds(pilot, sinks);
   const Timer film_timer;

@@ -7,7 +7,7 @@
 namespace lumirank::rendering {
 
 // Of eye rays, traced direct light, columns, lights and film; `passed` and `pixels` are the caller's. Keeps
-// the receivers at which lights are aimed in `setup`, which needs them again.
+// in `setup` what it learnt of the light.
 TimeCosts measure_costs(Setup& setup, const RenderSettings& settings, const Sinks& sinks);
 
 }  // namespace lumirank::rendering

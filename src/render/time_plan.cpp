@@ -13,9 +13,9 @@ namespace {
 // a fifth too, and it gets what is left over at the end besides.
 constexpr double kReceiverShare = 0.2, kLightShare = 0.2, kDirectShare = 0.2, kRestShare = 0.2,
                  kFilmShare = 0.15, kMethodShare = 0.4;
-// Fewer receivers per pixel are better than sums over fewer columns than this (a tenth of what slice-cuts
-// ends with by default; with less, whole shadows are missing) ...
-constexpr double kLeastColumns = 50;
+// Fewer receivers per pixel are better than sums over fewer columns than this (a third of what slice-cuts has
+// without a budget; with less, whole shadows are missing and slices show) ...
+constexpr double kLeastColumns = 150;
 // ... or than direct light of fewer samples, whose noise four receivers of one sample have as well.
 constexpr double kLeastDirect = 4;
 // slice-cuts has nothing left to gain beyond some 8,000 to 12,000 entries of a receiver, and would end before

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "base/parallel.h"
-#include "transport/emitter_lights.h"
 #include "transport/halves.h"
 #include "transport/particle.h"
 
@@ -29,6 +28,16 @@ constexpr double kWorth = 0.7, kMostRoulettePaths = 16;
 // to the use of all; and of all that is kept, about the last part may be lights of places that the pilots
 // never saw.
 constexpr double kLeastUse = 0.7, kGreatestUse = 3, kLowShare = 0.25, kUnseenShare = 0.1;
+
+ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey& survey) {
+  return {settings.seed,
+          Stage::pilot,
+          survey.aimed ? kRoulettePaths : kPilotPaths,
+          survey.parts.deepest,
+          0,
+          &survey.aim.guide,
+          settings.diffuse_only};
+}
 
 struct Pilot {
   double lights_per_path = 0;
@@ -182,40 +191,47 @@ RoulettePlan plan_roulette(std::vector<double> uses, std::size_t pilot_paths, do
   }
 }
 
-LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
-                      LightParts parts) {
-  LightPlan plan;
-  const DirectNeed need = direct_need(world, choice);
+LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice,
+                          const LightSettings& settings) {
+  LightSurvey survey;
+  const bool unlimited = settings.max_depth < 0;
+  // A light of depth k, seen by a receiver at the first hit, makes a path of depth k + 2.
+  survey.parts = {settings.direct && (unlimited || settings.max_depth >= 2),
+                  settings.indirect && (unlimited || settings.max_depth >= 3),
+                  unlimited ? -1 : settings.max_depth - 2};
+  survey.need = direct_need(world, choice);
+  survey.aimed = survey.parts.indirect && settings.receivers != nullptr;
   Pilot pilot;
-  ParticleSettings ps{settings.seed,   Stage::pilot,         kPilotPaths, parts.deepest, 0,
-                      &plan.aim.guide, settings.diffuse_only};
-  const bool aimed = settings.receivers != nullptr;
-  if (parts.indirect) {
-    if (aimed) {
-      plan.aim = learn_aim(world, choice, settings, parts.deepest);
-      ps.paths = kRoulettePaths;
-    }
-    pilot = run_pilot(world, choice, ps, aimed ? &plan.aim.importance : nullptr);
+  if (survey.parts.indirect) {
+    if (survey.aimed) survey.aim = learn_aim(world, choice, settings, survey.parts.deepest);
+    pilot = run_pilot(world, choice, pilot_settings(settings, survey),
+                      survey.aimed ? &survey.aim.importance : nullptr);
     // Nothing that the emitters reach scatters: all lights may go to them.
-    if (pilot.lights_per_path == 0 && parts.direct) parts.indirect = false;
+    if (pilot.lights_per_path == 0 && survey.parts.direct) survey.parts.indirect = false;
   }
+  survey.lights_per_path = pilot.lights_per_path;
+  survey.emitter_share = emitter_share(pilot, settings, survey.aim);
+  if (!survey.parts.indirect || !survey.aimed) return survey;
+  if (const auto range = bounded_uses(pilot, survey.uses)) survey.aim.importance.set_range(*range);
+  return survey;
+}
+
+LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
+                      const LightSurvey& survey) {
+  LightPlan plan;
   plan.emitter_samples =
-      emitter_sample_count(settings.count, need, emitter_share(pilot, settings, plan.aim), parts);
-  if (!parts.indirect) return plan;
+      emitter_sample_count(settings.count, survey.need, survey.emitter_share, survey.parts);
+  if (!survey.parts.indirect) return plan;
   const double wanted =
       std::max(1.0, static_cast<double>(settings.count) - static_cast<double>(plan.emitter_samples));
-  plan.paths = natural_paths(wanted, pilot.lights_per_path);
-  if (!aimed) return plan;
-
-  std::vector<double> uses;
-  const auto range = bounded_uses(pilot, uses);
-  if (!range) return plan;
-  plan.aim.importance.set_range(*range);
-  const RoulettePlan roulette = plan_roulette(std::move(uses), kRoulettePaths, wanted);
+  plan.paths = natural_paths(wanted, survey.lights_per_path);
+  if (survey.uses.empty()) return plan;
+  const RoulettePlan roulette = plan_roulette(survey.uses, kRoulettePaths, wanted);
   if (!(roulette.level > 0)) return plan;
   // Paths in parts leave more lights than the uses tell: counted.
   plan.level = roulette.level;
-  const LightRoulette chosen(plan.aim.importance, plan.level);
+  const LightRoulette chosen(survey.aim.importance, plan.level);
+  ParticleSettings ps = pilot_settings(settings, survey);
   ps.roulette = &chosen, ps.first_id = 1ull << 50;
   const double kept = run_pilot(world, choice, ps, nullptr).lights_per_path;
   plan.paths = natural_paths(wanted, kept);

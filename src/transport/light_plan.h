@@ -1,25 +1,41 @@
-// How many lights of which sort, fixed by pilots before any is made.
+// What pilots tell of a scene's light before any virtual light is made, and how many of which sort follow.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "transport/emitter_choice.h"
+#include "transport/emitter_lights.h"
 #include "transport/guide_pilot.h"
 #include "transport/virtual_lights.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
 
+// Which light is wanted, by the settings.
+struct LightParts {
+  bool direct = false, indirect = false;
+  int deepest = -1;  // depth of a particle's light; -1: unlimited
+};
+
+// The same for any number of lights, so it can be made once for several (LightSettings::survey).
+struct LightSurvey {
+  LightParts parts;
+  DirectNeed need;
+  bool aimed = false;
+  Aim aim;  // where particles start, and where their lights are of use
+  double lights_per_path = 0;
+  double emitter_share = 0;  // of all lights
+  // Of the pilot's lights, times the number of its paths; empty where none is of any use.
+  std::vector<double> uses;
+};
+LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice,
+                          const LightSettings& settings);
+
 struct LightPlan {
   std::size_t emitter_samples = 0;
   std::size_t paths = 0;  // of particles
-  Aim aim;                // where they start, and where their lights are of use
   double level = 0;       // LightRoulette's
-};
-
-struct LightParts {
-  bool direct, indirect;
-  int deepest;  // depth of a particle's light; -1: unlimited
 };
 
 // With receivers, the number of paths is that from which on lights of unequal use are worth most of
@@ -27,7 +43,7 @@ struct LightParts {
 // that is about one path for each few lights; where it does not, up to sixteen paths for each light are
 // traced so that none stands for much more light than the others.
 LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
-                      LightParts parts);
+                      const LightSurvey& survey);
 
 // Paths and level for lights of the given uses (times the number of paths), met on `pilot_paths`, so that
 // `wanted` are kept. In any order.

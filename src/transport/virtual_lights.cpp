@@ -32,25 +32,28 @@ void trace_particles(const world::World& world, const EmitterChoice& choice, con
 
 }  // namespace
 
+std::shared_ptr<const LightSurvey> survey_lights(const world::World& world, const LightSettings& settings) {
+  const EmitterChoice choice(world);
+  if (choice.empty()) return std::make_shared<LightSurvey>();
+  return std::make_shared<LightSurvey>(survey_lights(world, choice, settings));
+}
+
 VirtualLights trace_virtual_lights(const world::World& world, const LightSettings& settings,
                                    const Sinks& sinks) {
   if (settings.count < 1) throw InputError("the number of virtual lights is 0", "ask for at least 1");
   const EmitterChoice choice(world);
   if (choice.empty()) return {};
-  const bool unlimited = settings.max_depth < 0;
-  // A light of depth k, seen by a receiver at the first hit, makes a path of depth k + 2.
-  const bool direct = settings.direct && (unlimited || settings.max_depth >= 2);
-  const bool indirect = settings.indirect && (unlimited || settings.max_depth >= 3);
-  const int deepest = unlimited ? -1 : settings.max_depth - 2;
-
-  const LightPlan plan = plan_lights(world, choice, settings, {direct, indirect, deepest});
+  const auto made =
+      settings.survey ? nullptr : std::make_unique<LightSurvey>(survey_lights(world, choice, settings));
+  const LightSurvey& survey = settings.survey ? *settings.survey : *made;
+  const LightPlan plan = plan_lights(world, choice, settings, survey);
   std::vector<LightBatch> batches(1 + (plan.paths + kPathsPerPiece - 1) / kPathsPerPiece);
   batches[0] = emitter_lights(world, choice, settings.seed, plan.emitter_samples);
   const std::size_t direct_count = batches[0].lights.size();
   if (plan.paths > 0) {
-    const LightRoulette roulette(plan.aim.importance, plan.level);
+    const LightRoulette roulette(survey.aim.importance, plan.level);
     trace_particles(world, choice,
-                    {settings.seed, Stage::particles, plan.paths, deepest, 0, &plan.aim.guide,
+                    {settings.seed, Stage::particles, plan.paths, survey.parts.deepest, 0, &survey.aim.guide,
                      settings.diffuse_only, &roulette},
                     std::span(batches).subspan(1), sinks);
   }

@@ -17,6 +17,7 @@
 namespace lumirank::transport {
 
 struct Receivers;
+struct LightSurvey;
 
 enum class LightKind : std::uint8_t {
   omni,      // power: intensity (W/sr), point emitters
@@ -55,6 +56,9 @@ struct LightSettings {
   // Lobes of receivers with a roughness below this get their direct light elsewhere: emitters then get fewer
   // of the lights (if receivers are given; above 1: all lobes).
   float traced_direct_below = 0;
+  // If given, that of the same settings but for the count (light_plan.h); else it is made in the call. Read
+  // during the call only.
+  const LightSurvey* survey = nullptr;
 };
 
 // Sorted by kind (in the order of LightKind), lambertian surface lights before others, then along a Morton
@@ -95,6 +99,9 @@ struct VirtualLights {
   bool spherical() const { return !radius.empty(); }
   std::size_t memory_bytes() const;
 };
+
+// What pilots tell of the light with these settings, whatever their count.
+std::shared_ptr<const LightSurvey> survey_lights(const world::World& world, const LightSettings& settings);
 
 // Deterministic in the seed; the number of particle paths is fixed by a pilot before tracing, so the true
 // count is near, not exactly, the target.

@@ -25,7 +25,8 @@ class TimedSlices : public testing::TestWithParam<const char*> {
 
 // Repeated choices ask no clock.
 TEST_P(TimedSlices, RowsAndColumnsFollowTheChoices) {
-  TimedChoices choices({{"coarse_columns", {2}},
+  TimedChoices choices({{"coarse_rows", {2}},
+                        {"coarse_columns", {2}},
                         {"known_rows", {0}},
                         {"slices", {4}},
                         {"slice_rows", {4}},
@@ -41,7 +42,8 @@ TEST_P(TimedSlices, RowsAndColumnsFollowTheChoices) {
 
 // Clusters of all slices, and one more for what is split further.
 TEST_P(TimedSlices, FewestColumnsAreTheClustersOfAllSlices) {
-  TimedChoices choices({{"coarse_columns", {2}},
+  TimedChoices choices({{"coarse_rows", {2}},
+                        {"coarse_columns", {2}},
                         {"known_rows", {0}},
                         {"slices", {4}},
                         {"slice_rows", {4}},

@@ -158,12 +158,16 @@ TEST(Layers, AreRefusedBeforeAnythingIsMadeWhereTheMethodCannotGiveThem) {
 
 TEST(BudgetAdvice, NamesWhatIsCoarseAndTheTimeThatWouldDo) {
   using rendering::budget_advice;
-  EXPECT_EQ(budget_advice(5, 3, {}), "");
-  EXPECT_EQ(budget_advice(5, 3, {{"budget.coarse_share", 0.0}, {"budget.seconds_wanted", 2.0}}), "");
+  EXPECT_EQ(budget_advice(5, 3, 0, {}), "");
+  EXPECT_EQ(budget_advice(5, 3, 0, {{"budget.coarse_share", 0.0}, {"budget.seconds_wanted", 2.0}}), "");
   const std::string text =
-      budget_advice(5, 3, {{"budget.coarse_share", 0.4}, {"budget.seconds_wanted", 10.0}});
+      budget_advice(5, 3, 0, {{"budget.coarse_share", 0.4}, {"budget.seconds_wanted", 10.0}});
   EXPECT_NE(text.find("40 %"), std::string::npos) << text;
   EXPECT_NE(text.find("12 s would do"), std::string::npos) << text;
+  const std::string all =
+      budget_advice(3, 2, 20, {{"budget.coarse_share", 1.0}, {"budget.seconds_wanted", 4.0}});
+  EXPECT_NE(all.find("in all of the picture"), std::string::npos) << all;
+  EXPECT_NE(all.find("20 s would do"), std::string::npos) << "the whole plan's time: " << all;
 }
 
 }  // namespace
