@@ -25,9 +25,10 @@ constexpr double kMostPathsPerLight = 32;
 constexpr double kWorth = 0.7, kMostRoulettePaths = 16;
 // Where receivers see it, light is held to be of use between these many times a typical one's: what is of
 // little use to all together may be close to a few, and must not be heavy. The lower bound may add this part
-// to the use of all; and of all that is kept, about the last part may be lights of places that the pilots
-// never saw.
-constexpr double kLeastUse = 0.7, kGreatestUse = 3, kLowShare = 0.25, kUnseenShare = 0.1;
+// to the use of all; and of all that is kept, about the unseen share is lights of places that the pilots
+// never saw, more where such lights would be so many times as strong as others and up to the most.
+constexpr double kLeastUse = 0.7, kGreatestUse = 3, kLowShare = 0.25, kUnseenShare = 0.1,
+                 kMostUnseenShare = 0.25, kStrongUnseen = 16;
 
 ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey& survey) {
   return {settings.seed,
@@ -142,8 +143,12 @@ std::optional<LightImportance::Range> bounded_uses(const Pilot& pilot, std::vect
     (use_with(middle) <= (1 + kLowShare) * bounded ? low : above) = middle;
   }
   LightImportance::Range range{static_cast<float>(low), static_cast<float>(high), static_cast<float>(low)};
-  if (unseen > 0)
-    range.unseen = std::min(range.low, static_cast<float>(kUnseenShare * use_with(low) / unseen));
+  if (unseen > 0) {
+    const double share = use_with(low) / unseen;
+    range.unseen =
+        std::min(range.low, static_cast<float>(std::clamp(typical / kStrongUnseen, kUnseenShare * share,
+                                                          kMostUnseenShare * share)));
+  }
   for (std::size_t k = 0; k < n; ++k) {
     const float importance = pilot.importances[k];
     uses.push_back(pilot.powers[k] *
