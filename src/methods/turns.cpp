@@ -162,7 +162,9 @@ UnitResult Turns::run(const UnitRows& units, const TurnMethod& method, std::span
     result = run_turn(units, method, turn, sums, pass);
     spent += turn.quality;
     if (options_.on_estimate && result.done > 0) options_.on_estimate(sums);
-    if (result.cancelled || result.out_of_time) break;
+    if (result.cancelled) break;
+    // A lower quality may still fit, where estimates are averaged.
+    if (result.out_of_time && (result.done == 0 || !method.averaged)) break;
     if (!method.averaged && turn.quality >= kMostQualityOfTurn) break;
     if (method.exact_from > 0 && turn.quality >= method.exact_from) break;
   }

@@ -227,6 +227,22 @@ TEST(CoarsePicture, TakesATwentiethOfTheTime) {
   EXPECT_FALSE(coarse(m, 1e-9).picture.all_rows_read);
 }
 
+// A turn is shared out among slices: of 1,200 pixels, two of the usual size would be too few.
+TEST(SliceCuts, HasSlicesEnoughForTurns) {
+  const auto m = matrix::low_rank_matrix({1200, 1000, 1}, 5);
+  const auto slices = [&](double seconds, SettingsMap settings) {
+    RunOptions options;
+    options.time_seconds = seconds;
+    options.clock = [&m] {
+      return kSecondsOfEntry * static_cast<double>(m.counters().entries_evaluated.load());
+    };
+    return find_method("slice-cuts").make(settings)->run(m, options).trace.numbers.at("slices");
+  };
+  EXPECT_LE(slices(0, {}), 2);
+  EXPECT_GE(slices(0.5, {}), 8);
+  EXPECT_LE(slices(0.5, {{"slice-rows", "900"}}), 2) << "set by hand";
+}
+
 TEST(Turn, ScalesNumbers) {
   EXPECT_EQ(Turn{}.scaled(500), 500u);
   EXPECT_EQ((Turn{0.25, 0}.scaled(500)), 125u);

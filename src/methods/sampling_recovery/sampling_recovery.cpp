@@ -20,6 +20,8 @@ namespace {
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
+// Under a budget there are at least so many slices, unless one would be smaller than this.
+constexpr std::size_t kSlicesForTurns = 32, kPixelsForTurns = 128;
 constexpr std::uint64_t kKey = 0x5245434f;  // of random numbers
 // A slice's row costs as much as 1/slices of its columns, so even small pictures afford some.
 constexpr RowsForError::Share kErrorOfSlices{0.08, 8};
@@ -100,7 +102,7 @@ class SamplingRecovery : public Method {
     SliceLightSettings lights;
     lights.columns = settings_.columns;
     lights.neighbours = settings_.neighbours;
-    lights.slice_rows = most_receivers(matrix);
+    lights.slice_rows = most_receivers(matrix, false);
     WorkspacePool<Workspace> pool([&] { return std::make_unique<Workspace>(settings_, matrix); });
     Estimate estimate =
         run_slices(matrix, options, lights, pool,
@@ -124,7 +126,8 @@ class SamplingRecovery : public Method {
     auto& numbers = estimate.trace.numbers;
     const LightTree tree(matrix, options.seed);
     numbers["seconds.tree"] = timer.seconds() - before_tree;
-    const Slices slices = make_slices(matrix.row_features(), matrix.rows(), most_receivers(matrix));
+    const Slices slices =
+        make_slices(matrix.row_features(), matrix.rows(), most_receivers(matrix, options.time_seconds > 0));
     numbers["seconds.slices"] = timer.seconds() - before_tree - numbers["seconds.tree"];
     numbers["slices"] = static_cast<double>(slices.count());
     numbers["rows"] = static_cast<double>(rows.size());
@@ -168,11 +171,15 @@ class SamplingRecovery : public Method {
   }
 
   bool traced() const { return settings_.visibility == RecoverySettings::Visibility::traced; }
-  // Slices are cut by receivers, of which a pixel has several.
-  std::size_t most_receivers(const matrix::LightingMatrix& matrix) const {
+  // Slices are cut by receivers, of which a pixel has several. Where little of the picture is to be lit,
+  // those of the usual size are too few to be refined by the clock: a turn ends with some of them.
+  std::size_t most_receivers(const matrix::LightingMatrix& matrix, bool timed) const {
     const std::size_t pixels = UnitRows::pixels(matrix).size();
     const std::size_t per_pixel = pixels > 0 ? (matrix.rows() + pixels / 2) / pixels : 1;
-    return settings_.slice_rows * std::max<std::size_t>(per_pixel, 1);
+    std::size_t rows = settings_.slice_rows;
+    if (timed && rows == RecoverySettings{}.slice_rows)  // not set by hand
+      rows = std::min(rows, std::max(kPixelsForTurns, pixels / kSlicesForTurns));
+    return rows * std::max<std::size_t>(per_pixel, 1);
   }
 
   RecoverySettings settings_;
