@@ -211,6 +211,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     task.timer = timer;
     task.view = rendering::make_view(scene.impl().desc, settings);
     task.info = &rendering::chosen_method(settings, &task.why);
+    task.by_default = settings.method == "auto" && settings.method_settings.empty() && settings.error <= 0 &&
+                      !task.info->combination;
     rendering::check_layers(*task.info, settings);
     task.method = task.info->make(settings.method_settings);
     if (const std::string text = rendering::error_not_aimed_at(*task.info, settings.error); !text.empty())

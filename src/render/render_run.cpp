@@ -14,6 +14,7 @@
 #include "render/reference.h"
 #include "render/report.h"
 #include "render/rest_pilot.h"
+#include "render/smaller_film.h"
 #include "render/time_pilot.h"
 #include "render/time_plan.h"
 #include "render/timed_passes.h"
@@ -21,6 +22,9 @@
 namespace lumirank::rendering {
 namespace {
 
+// Below so many of the pilot's columns for each receiver, columns that all receivers share make a better
+// picture than those of slices: docs/measurements.md.
+constexpr double kColumnsForSlices = 180;
 // At the end of a budget, beyond which more samples of traced parts are not seen.
 constexpr int kMostDirect = 1024, kMostRest = 4096;
 
@@ -97,7 +101,6 @@ class RenderRun {
   void plan() {
     lights_ = lights_for(*task_.info, settings_);
     if (!timed()) return;
-    choices_.expect("method." + task_.info->name, 1);
     const RenderSettings defaults;
     TimeWishes wishes;
     wishes.budget = asked_.time;
@@ -107,25 +110,46 @@ class RenderRun {
     wishes.lights_given = asked_.lights_given || asked_.lights != defaults.lights || lights_ != asked_.lights;
     wishes.rest_paths = rest_plan_.paths;
     wishes.layers = static_cast<int>(asked_.aovs.size());
+    wishes.may_be_smaller = asked_.aovs.empty() && is_whole_film(setup_.view);
     if (!replays()) {
       const Timer timer;
       TimeCosts costs = measure_costs(setup_, settings_, sinks_);
       setup_.seconds["pilot"] = timer.seconds();
       const auto film = receiver_settings(setup_.view, settings_);
       costs.pixels = static_cast<double>(film.crop_width) * static_cast<double>(film.crop_height);
+      costs.rest = rest_plan_.pilot.path_seconds;
       costs.passed = clock_();
       plan_ = plan_time(wishes, costs);
       if (!plan_.shortage.empty()) sinks_.warn(plan_.shortage);
       sinks_.say(
           "plan: " + std::to_string(plan_.spp) + " receivers per pixel, " + std::to_string(plan_.lights) +
           " virtual lights; " + run_number("%.2g s for traced direct light, ", plan_.direct_seconds) +
-          run_number("%.2g s", plan_.rest_seconds) + " at first for the light that columns cannot carry");
+          run_number("%.2g s", plan_.rest_seconds) + " at first for the light that columns cannot carry; " +
+          run_number("%.3g columns", plan_.columns) + " of the pilot's fit the rest");
     }
     settings_.spp = static_cast<int>(planned("receivers_per_pixel", wishes.spp_given,
                                              static_cast<std::size_t>(wishes.spp),
                                              static_cast<std::size_t>(plan_.spp), 4096));
     lights_ = static_cast<std::size_t>(
         planned("lights_asked", wishes.lights_given, wishes.lights, plan_.lights, 50000000));
+    const auto divisor = static_cast<int>(
+        planned("film_divisor", !wishes.may_be_smaller, 1, static_cast<std::size_t>(plan_.divisor), 1024));
+    if (divisor > 1) setup_.view = smaller(setup_.view, divisor);
+    const bool few = planned("few_columns", !task_.by_default, 0,
+                             plan_.columns < kColumnsForSlices ? std::size_t{1} : std::size_t{0}, 1) > 0;
+    if (few) {
+      task_.info = &methods::find_method("row-column-sampling");
+      task_.method = task_.info->make({});
+      task_.why = "the time holds few columns for each receiver";
+      sinks_.say("method: " + task_.info->name + " (" + task_.why + ")");
+    }
+    choices_.expect("method." + task_.info->name, 1);
+  }
+
+  Picture as_asked(const film::Image& image) const {
+    Picture picture = to_picture(image);
+    if (picture.width == task_.view.width && picture.height == task_.view.height) return picture;
+    return enlarged(picture, task_.view.width, task_.view.height);
   }
 
   void receivers() {
@@ -193,7 +217,7 @@ class RenderRun {
         if (!throttle_.due()) return;
         film::Image image = develop(setup_, sample_values(setup_, sums, wanted_parts(settings_)));
         if (rest_) add_to(image, rest_->result().image);
-        throttle_.show(to_picture(image));
+        throttle_.show(as_asked(image));
       };
     const Timer timer;
     estimate_ = task_.method->run(*setup_.matrix, run);
@@ -314,7 +338,7 @@ class RenderRun {
     late_rest(image);
     const Timer layer_timer;
     compensate(image);
-    result_.picture = to_picture(image);
+    result_.picture = as_asked(image);
     // The report counts what the method looked at; layers look at the chosen columns once more.
     auto& counters = setup_.matrix->counters();
     const auto evaluated = counters.entries_evaluated.load(), culled = counters.entries_culled.load(),
@@ -331,6 +355,9 @@ class RenderRun {
     if (rest_plan_.piloted) estimate_.trace.numbers["rest.share"] = rest_plan_.pilot.share;
     estimate_.trace.numbers["rest.paths"] = rest_paths_;
     estimate_.trace.numbers["receivers_per_pixel"] = settings_.spp;
+    if (setup_.view.width < task_.view.width)
+      estimate_.trace.numbers["film.rendered_part"] =
+          static_cast<double>(setup_.view.width) / static_cast<double>(task_.view.width);
     estimate_.trace.notes["method.why"] = task_.why;
     if (!plan_.shortage.empty()) estimate_.trace.notes["budget.short"] = plan_.shortage;
     result_.report_json =

@@ -16,7 +16,8 @@ struct RenderTask {
   View view;
   const methods::MethodInfo* info = nullptr;
   std::unique_ptr<methods::Method> method;
-  std::string why;  // it is this method
+  std::string why;          // it is this method
+  bool by_default = false;  // nobody asked for it: a short time may choose another
   double lumens_per_unit = 1;
   Timer timer;  // since the scene was loaded
   double build_seconds = 0;

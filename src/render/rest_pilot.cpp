@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/timer.h"
 
 namespace lumirank::rendering {
 namespace {
@@ -71,10 +72,16 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
       return sums;
     });
   };
+  const Timer timer;
   const PilotSums found = trace(rest, kRestPaths, true);
+  const double of_rest = timer.seconds() / static_cast<double>(pixels * kRestPaths);
+  const Timer all_timer;
   const double light = trace(all, kAllPaths, false).all;
+  const double of_all = all_timer.seconds() / static_cast<double>(pixels * kAllPaths);
   if (sinks.cancelled()) throw Cancelled();
   RestPilot pilot;
+  // The first paths warm the caches; others, which are longer, bound what they take.
+  pilot.path_seconds = std::min(of_rest, of_all);
   // Where only the rest was met, all of the light is rest.
   const double base = std::max(light, found.rest);
   if (base > 0)

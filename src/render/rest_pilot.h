@@ -12,6 +12,7 @@ struct RestPilot {
   double share = 0;  // of the light that surfaces send to the eye (emission seen directly left out)
   double without_brightest = 0;  // the same without the brightest of the paths: one path decides nothing
   double deviation = 0;          // of one path per pixel, over that light: Σ standard deviation / Σ light
+  double path_seconds = 0;       // of one such path, all threads at work
   bool matters() const { return without_brightest > kLeast; }
   // Paths per pixel whose noise is as large as the error allowed for it, within reason.
   int paths() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace lumirank::rendering {
 namespace {
@@ -24,6 +25,13 @@ constexpr double kLeastDirect = 4;
 // more than the film shows, nor than memory should be spent on (240 bytes for each of them).
 constexpr double kManyColumns = 1000, kMostSamples = 8e6;
 constexpr int kMostReceivers = 64;
+// A film of half the width and height, enlarged, is better than sums over fewer columns than these for each
+// of its pixels (kitchen, living-room and dining-room at 1280 × 720 in 3 s: flat or black), and than a budget
+// that is not kept because single samples of every pixel take longer (paths: the pilot's few take about twice
+// as long as those of a whole film). A quarter is the end.
+constexpr double kFewColumns = 40, kMostOfShare = 1.5, kMostOfPathShare = 3;
+constexpr int kMostDivisor = 4;
+constexpr double kFewestPixels = 4096;  // fewer save no time worth having
 // With fewer lights one sees each of them.
 constexpr std::size_t kFewestLights = 2000;
 
@@ -52,6 +60,8 @@ std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, cons
                           double left) {
   std::string lacks;
   const auto add = [&](const std::string& text) { lacks += (lacks.empty() ? "" : ", ") + text; };
+  if (plan.divisor > 1)
+    add("rendered with 1/" + std::to_string(plan.divisor) + " of its width and height, and enlarged");
   if (plan.spp < wishes.spp)
     add(std::to_string(plan.spp) + " instead of " + std::to_string(wishes.spp) + " receivers per pixel");
   else if (wishes.spp_given && wanted_for_receivers(costs, wishes.spp, wishes.layers) > left)
@@ -72,14 +82,7 @@ std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, cons
   return text + "; about " + planned_number(plan.enough) + " s would do";
 }
 
-}  // namespace
-
-double stage_seconds(double planned, double left) {
-  constexpr double kMostOfRest = 0.25;
-  return std::clamp(planned, 0.0, std::max(0.0, kMostOfRest * left));
-}
-
-TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
+TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {
   TimePlan plan;
   const double left = std::max(0.0, kTimeAim * wishes.budget - costs.passed);
   plan.build_alone = !(left > 0);
@@ -103,11 +106,47 @@ TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
   plan.direct_seconds = costs.direct > 0 ? kDirectShare * left : 0;
   plan.rest_seconds = wishes.rest_paths > 0 ? kRestShare * left : 0;
   plan.film_seconds = samples * costs.develop * (1 + wishes.layers);
+  const double others = samples * costs.receiver + static_cast<double>(plan.lights) * costs.light +
+                        plan.direct_seconds + plan.rest_seconds + plan.film_seconds;
+  const double column = costs.column * samples;
+  plan.columns = column > 0 ? std::max(0.0, left - others) / column : std::numeric_limits<double>::infinity();
+  return plan;
+}
+
+// Whether every pixel can have what it needs least.
+bool plan_holds(const TimePlan& plan, const TimeWishes& wishes, const TimeCosts& costs, double left) {
+  return plan.columns >= kFewColumns &&
+         costs.pixels * costs.receiver <= kMostOfShare * kReceiverShare * left &&
+         costs.pixels * costs.direct <= kMostOfShare * kDirectShare * left &&
+         (wishes.rest_paths == 0 || costs.pixels * costs.rest <= kMostOfPathShare * kRestShare * left);
+}
+
+}  // namespace
+
+double stage_seconds(double planned, double left) {
+  constexpr double kMostOfRest = 0.25;
+  return std::clamp(planned, 0.0, std::max(0.0, kMostOfRest * left));
+}
+
+TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
+  const double left = std::max(0.0, kTimeAim * wishes.budget - costs.passed);
+  TimePlan plan = plan_of_size(wishes, costs);
+  TimeCosts fewer = costs;
+  if (wishes.may_be_smaller && !wishes.spp_given)
+    while (plan.divisor < kMostDivisor && !plan_holds(plan, wishes, fewer, left)) {
+      const int divisor = 2 * plan.divisor;
+      if (costs.pixels < kFewestPixels * divisor * divisor) break;
+      fewer.pixels = costs.pixels / (divisor * divisor);
+      plan = plan_of_size(wishes, fewer);
+      plan.divisor = divisor;
+    }
+  const double paths =
+      wishes.rest_paths > 0 ? costs.pixels * costs.rest / (kMostOfPathShare * kRestShare) : 0;
   plan.enough = planned_round(
-      (costs.passed + std::max(wanted_for_receivers(costs, wishes.spp, wishes.layers),
-                               static_cast<double>(wishes.lights) * costs.light / kLightShare)) /
+      (costs.passed + std::max({wanted_for_receivers(costs, wishes.spp, wishes.layers), paths,
+                                static_cast<double>(wishes.lights) * costs.light / kLightShare})) /
       kTimeAim);
-  plan.shortage = shortage_text(wishes, costs, plan, left);
+  plan.shortage = shortage_text(wishes, fewer, plan, left);
   return plan;
 }
 

@@ -16,6 +16,7 @@ struct TimeCosts {
   double column = 0;    // per film sample: one column of the matrix
   double develop = 0;   // per film sample: from values to a picture
   double light = 0;     // per virtual light, features of the matrix included
+  double rest = 0;      // per pixel: one path of what columns cannot carry
 };
 
 struct TimeWishes {
@@ -24,18 +25,23 @@ struct TimeWishes {
   bool spp_given = false;  // by hand: kept whatever it takes
   std::size_t lights = 100000;
   bool lights_given = false;
-  int rest_paths = 0;  // per pixel; 0: none are traced
-  int layers = 0;      // pictures beside the first
+  int rest_paths = 0;           // per pixel; 0: none are traced
+  int layers = 0;               // pictures beside the first
+  bool may_be_smaller = false;  // the film: it is enlarged afterwards
 };
 
 struct TimePlan {
-  int spp = 4;  // fewer than wished for where time is short, more where it abounds
+  int divisor = 1;  // of the film's width and height, where there is no time for all of its pixels
+  int spp = 4;      // fewer than wished for where time is short, more where it abounds
   std::size_t lights = 100000;
   double direct_seconds = 0, rest_seconds = 0;  // at first; what is left over at the end is added
   double film_seconds = 0;                      // kept back
-  bool build_alone = false;                     // the budget was over before there was anything to plan
-  double enough = 0;                            // the budget with which nothing would have been lowered
-  std::string shortage;  // what the budget does not hold, for a person; empty if nothing
+  // Of the pilot's columns, that fit what is left to the method, for all receivers; infinite if there are
+  // none.
+  double columns = 0;
+  bool build_alone = false;  // the budget was over before there was anything to plan
+  double enough = 0;         // the budget with which nothing would have been lowered
+  std::string shortage;      // what the budget does not hold, for a person; empty if nothing
 };
 
 TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs);

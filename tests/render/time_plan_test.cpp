@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/smaller_film.h"
 #include "render/timed_passes.h"
 
 namespace lumirank::rendering {
@@ -126,6 +127,63 @@ TEST(TimePlan, ATinyBudgetSaysThatBuildingAloneTookIt) {
   EXPECT_EQ(p.direct_seconds, 0);
   EXPECT_NE(p.shortage.find("building the scene took 4 s"), std::string::npos) << p.shortage;
   EXPECT_GT(p.enough, 4);
+}
+
+// A film of 2 megapixels in 2 s: forty columns for every pixel would take longer alone.
+TEST(TimePlan, AFilmThatIsTooLargeIsRenderedSmaller) {
+  TimeCosts c = ordinary_costs();
+  c.pixels = 2e6;
+  TimeWishes w = budget_of(2);
+  w.may_be_smaller = true;
+  const TimePlan p = plan_time(w, c);
+  EXPECT_EQ(p.divisor, 2);
+  EXPECT_GE(p.columns, 40);
+  EXPECT_NE(p.shortage.find("1/2 of its width"), std::string::npos) << p.shortage;
+  const TimePlan enough = plan_time(
+      [&] {
+        TimeWishes longer = w;
+        longer.budget = p.enough;
+        return longer;
+      }(),
+      c);
+  EXPECT_EQ(enough.divisor, 1);
+  EXPECT_EQ(enough.shortage, "") << p.enough;
+  w.may_be_smaller = false;  // layers or a crop are wanted
+  EXPECT_EQ(plan_time(w, c).divisor, 1);
+  w.may_be_smaller = true, w.spp_given = true;
+  EXPECT_EQ(plan_time(w, c).divisor, 1);
+}
+
+// One path for every pixel of what columns cannot carry is the least that there is.
+TEST(TimePlan, PathsThatDoNotFitMakeTheFilmSmaller) {
+  TimeCosts c = ordinary_costs();
+  TimeWishes w = budget_of(4);
+  w.may_be_smaller = true, w.rest_paths = 16;
+  EXPECT_EQ(plan_time(w, c).divisor, 1);
+  c.rest = 2e-5;  // 4.6 s
+  EXPECT_EQ(plan_time(w, c).divisor, 2);
+  c.rest = 1e-3;
+  EXPECT_EQ(plan_time(w, c).divisor, 4) << "and no smaller";
+}
+
+TEST(TimePlan, WithoutColumnsNothingIsShort) {
+  TimeCosts c = ordinary_costs();
+  c.column = 0;
+  TimeWishes w = budget_of(3);
+  w.may_be_smaller = true;
+  EXPECT_EQ(plan_time(w, c).divisor, 1);
+}
+
+TEST(SmallerFilm, EnlargesLinearlyBetweenCentres) {
+  Picture p;
+  p.width = 2, p.height = 1;
+  p.planes.push_back({"", {0, 1, 2, 4, 5, 6}});
+  const Picture larger = enlarged(p, 4, 2);
+  ASSERT_EQ(larger.planes[0].rgb.size(), 4u * 2 * 3);
+  // Centres at 1/4, 3/4, 5/4, 7/4 of the smaller one's pixels, whose own are at 1/2 and 3/2.
+  const float expected[] = {0, 1, 3, 4};
+  for (std::size_t y = 0; y < 2; ++y)
+    for (std::size_t x = 0; x < 4; ++x) EXPECT_FLOAT_EQ(larger.planes[0].rgb[3 * (y * 4 + x)], expected[x]);
 }
 
 TEST(TimePlan, AStageThatBeginsLateGetsLess) {

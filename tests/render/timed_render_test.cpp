@@ -41,21 +41,31 @@ std::vector<std::vector<float>> bits(const RenderResult& result) {
 
 TEST(TimedRender, EveryStagesChoiceIsRecordedAndRepeatsTheBits) {
   const Scene scene = room();
-  for (const double seconds : {0.01, 0.25}) {
+  struct Budget {
+    double seconds;
+    int size;
+  };
+  // Columns that all receivers share, slices, and a smaller film.
+  for (const auto [seconds, size] : {Budget{0.01, 16}, Budget{0.25, 16}, Budget{0.02, 200}}) {
     RenderSettings s;
     s.time = seconds;
+    s.width = s.height = size;
     s.max_depth = 4;
     s.rest = "trace";
     const RenderResult first = render(scene, s);
     const auto report = report_of(first);
     const auto& choices = report["choices"];
     for (const char* what : {"receivers_per_pixel", "lights_asked", "direct_samples", "rest_paths",
-                             "receivers", "virtual_lights", "method.slice-cuts"})
+                             "film_divisor", "few_columns", "receivers", "virtual_lights"})
       EXPECT_TRUE(choices.contains(what)) << what;
+    EXPECT_TRUE(choices.contains("method." + report["method"].get<std::string>()));
+    EXPECT_EQ(report["method"] == "row-column-sampling", choices["few_columns"][0] == 1);
+    EXPECT_EQ(report.contains("film.rendered_part"), size == 200);
     EXPECT_EQ(report["rest.paths"], choices["rest_paths"][0]);
     EXPECT_EQ(report["traced_direct.samples"], choices["direct_samples"][0]);
     EXPECT_EQ(report["receivers_per_pixel"], choices["receivers_per_pixel"][0]);
-    EXPECT_EQ(first.picture.width, 16) << "whatever the budget";
+    EXPECT_EQ(first.picture.width, size) << "whatever the budget";
+    EXPECT_EQ(first.picture.planes[0].rgb.size(), 3u * static_cast<std::size_t>(size * size));
     for (const int threads : {2}) {
       RenderSettings again = render_settings_from_report(first.report_json);
       again.threads = threads;
