@@ -134,7 +134,13 @@ class RenderRun {
         planned("lights_asked", wishes.lights_given, wishes.lights, plan_.lights, 50000000));
     const auto divisor = static_cast<int>(
         planned("film_divisor", !wishes.may_be_smaller, 1, static_cast<std::size_t>(plan_.divisor), 1024));
-    if (divisor > 1) setup_.view = smaller(setup_.view, divisor);
+    if (divisor > 1) {
+      // Lights are aimed at what the whole film shows, which the pilot has done already unless this is a
+      // repetition.
+      setup_.traced_below = traced_roughness(settings_);
+      if (!setup_.survey) survey_lights(setup_, settings_, aim_at(setup_, settings_.seed, sinks_));
+      setup_.view = smaller(setup_.view, divisor);
+    }
     const bool few = planned("few_columns", !task_.by_default, 0,
                              plan_.columns < kColumnsForSlices ? std::size_t{1} : std::size_t{0}, 1) > 0;
     if (few) {
