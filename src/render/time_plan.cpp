@@ -26,10 +26,12 @@ constexpr double kLeastDirect = 4;
 constexpr double kManyColumns = 1000, kMostSamples = 8e6;
 constexpr int kMostReceivers = 64;
 // A film of half the width and height, enlarged, is better than sums over fewer columns than these for each
-// of its pixels (kitchen, living-room and dining-room at 1280 × 720 in 3 s: flat or black), and than a budget
-// that is not kept because single samples of every pixel take longer (paths: the pilot's few take about twice
-// as long as those of a whole film). A quarter is the end.
-constexpr double kFewColumns = 40, kMostOfShare = 1.5, kMostOfPathShare = 3;
+// of its pixels, of which a method has time for a third to a half (those that it chooses are lit, which the
+// pilot's seldom are, and rows come first): kitchen, living-room and dining-room at 1280 × 720 in 3 s were
+// flat or black, or with 27 columns of 79 half as bright again. And it is better than a budget that is not
+// kept because single samples of every pixel take longer (paths: the pilot's few take about twice as long as
+// those of a whole film). A quarter is the end, and shows: it takes more to be worth it.
+constexpr double kFewColumns = 100, kFewColumnsOfHalf = 40, kMostOfShare = 1.5, kMostOfPathShare = 3;
 constexpr int kMostDivisor = 4;
 constexpr double kFewestPixels = 4096;  // fewer save no time worth having
 // With fewer lights one sees each of them.
@@ -115,7 +117,7 @@ TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {
 
 // Whether every pixel can have what it needs least.
 bool plan_holds(const TimePlan& plan, const TimeWishes& wishes, const TimeCosts& costs, double left) {
-  return plan.columns >= kFewColumns &&
+  return plan.columns >= (plan.divisor == 1 ? kFewColumns : kFewColumnsOfHalf) &&
          costs.pixels * costs.receiver <= kMostOfShare * kReceiverShare * left &&
          costs.pixels * costs.direct <= kMostOfShare * kDirectShare * left &&
          (wishes.rest_paths == 0 || costs.pixels * costs.rest <= kMostOfPathShare * kRestShare * left);

@@ -129,7 +129,7 @@ TEST(TimePlan, ATinyBudgetSaysThatBuildingAloneTookIt) {
   EXPECT_GT(p.enough, 4);
 }
 
-// A film of 2 megapixels in 2 s: forty columns for every pixel would take longer alone.
+// A film of 2 megapixels in 2 s: a hundred columns for every pixel would take longer alone.
 TEST(TimePlan, AFilmThatIsTooLargeIsRenderedSmaller) {
   TimeCosts c = ordinary_costs();
   c.pixels = 2e6;
