@@ -32,8 +32,8 @@ JOBS=$jobs scripts/tidy.sh build/release
 
 # OpenBLAS keeps to one thread: its own threads are not instrumented.
 export OPENBLAS_NUM_THREADS=1
-# Clang 14's runtime mistakes memory that a library loaded later keeps per thread (OpenImageIO's) for another layout once in
-# 4,096 starts, and its search for leaks then crashes after all tests have passed; it does without such memory.
+# Clang 14's runtime mistakes memory that a library loaded later keeps per thread (OpenImageIO's) for another layout now and
+# then, where its address happens to fit, and its search for leaks then crashes after all tests have passed; it does without such memory.
 export ASAN_OPTIONS=intercept_tls_get_addr=0
 export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
