@@ -23,7 +23,7 @@ namespace lumirank::rendering {
 namespace {
 
 // Below so many of the pilot's columns for each receiver, columns that all receivers share make a better
-// picture than those of slices: docs/measurements.md.
+// picture than those of slices: the table in docs/decisions.md.
 constexpr double kColumnsForSlices = 180;
 // At the end of a budget, beyond which more samples of traced parts are not seen.
 constexpr int kMostDirect = 1024, kMostRest = 4096;
