@@ -13,13 +13,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
 #include "bench_scene.h"
 #include "geometry/embree.h"
-#include "transport/kernels/lanes.h"
-#include "transport/scene_matrix.h"
+#include "transport/cpu/scene_matrix.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "linalg/clustering.h"
 #include "linalg/column_sketch.h"
 #include "linalg/multiset_sampling.h"
-#include "methods/row_column/representatives.h"
+#include "methods/common/representatives.h"
 
 namespace {
 

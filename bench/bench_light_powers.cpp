@@ -15,9 +15,9 @@
 
 #include "base/error.h"
 #include "base/timer.h"
-#include "render/pipeline.h"
+#include "pipeline/pipeline.h"
 #include "scenedesc/readers.h"
-#include "transport/scene_matrix.h"
+#include "transport/cpu/scene_matrix.h"
 
 namespace {
 
@@ -68,12 +68,12 @@ void run(const Options& options) {
   RenderSettings settings;
   settings.width = options.width, settings.height = options.height;
   settings.spp = 1, settings.seed = options.seed;
-  rendering::Setup setup;
+  pipeline::Setup setup;
   setup.world = &world;
-  setup.view = rendering::make_view(desc, settings);
-  rendering::make_receivers(setup, settings, {});
+  setup.view = pipeline::make_view(desc, settings);
+  pipeline::make_receivers(setup, settings, {});
   Timer timer;
-  rendering::make_matrix(setup, settings, options.lights, {});
+  pipeline::make_matrix(setup, settings, options.lights, {});
   const double seconds = timer.seconds();
   const transport::VirtualLights& lights = setup.lights;
 

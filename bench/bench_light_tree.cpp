@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "matrix/lighting_matrix.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 
 namespace lumirank {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "scenedesc/readers.h"
-#include "transport/receivers.h"
-#include "transport/virtual_lights.h"
+#include "transport/lights/virtual_lights.h"
+#include "transport/rows/receivers.h"
 #include "world/world.h"
 
 namespace lumirank::bench {

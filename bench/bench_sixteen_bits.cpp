@@ -15,11 +15,11 @@
 #include "linalg/blas.h"
 #include "linalg/clustering.h"
 #include "linalg/column_sketch.h"
-#include "methods/row_column/row_sampler.h"
+#include "methods/common/row_sampler.h"
 #include "scenedesc/readers.h"
-#include "transport/receivers.h"
-#include "transport/scene_matrix.h"
-#include "transport/virtual_lights.h"
+#include "transport/cpu/scene_matrix.h"
+#include "transport/lights/virtual_lights.h"
+#include "transport/rows/receivers.h"
 #include "world/world.h"
 
 namespace {

@@ -17,8 +17,8 @@
 #include "base/random.h"
 #include "bench_scene.h"
 #include "matrix/entry_reader.h"
-#include "methods/slices/slices.h"
-#include "transport/scene_matrix.h"
+#include "methods/common/slices/slices.h"
+#include "transport/cpu/scene_matrix.h"
 
 namespace {
 

@@ -15,8 +15,8 @@
 #include "base/random.h"
 #include "bench_scene.h"
 #include "methods/method.h"
-#include "transport/scene_matrix.h"
-#include "transport/sphere_lights.h"
+#include "transport/cpu/scene_matrix.h"
+#include "transport/lights/sphere_lights.h"
 
 namespace {
 

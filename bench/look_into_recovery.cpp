@@ -23,12 +23,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "film/pfm.h"
+#include "image/pfm.h"
 #include "recovery_looker.h"
 #include "scenedesc/readers.h"
-#include "transport/receivers.h"
-#include "transport/scene_matrix.h"
-#include "transport/virtual_lights.h"
+#include "transport/cpu/scene_matrix.h"
+#include "transport/lights/virtual_lights.h"
+#include "transport/rows/receivers.h"
 #include "world/world.h"
 
 namespace {
@@ -36,8 +36,8 @@ namespace {
 using namespace lumirank;
 
 // A box filter: good enough to see what is where.
-film::Image render(const transport::Receivers& receivers, std::span<const Rgb> sums) {
-  film::Image image(receivers.width, receivers.height), count = image;
+image::Image render(const transport::Receivers& receivers, std::span<const Rgb> sums) {
+  image::Image image(receivers.width, receivers.height), count = image;
   std::vector<Rgb> light(receivers.emission);
   for (std::size_t i = 0; i < receivers.size(); ++i)
     light[receivers.sample[i]] += receivers.weight[i] * sums[i];
@@ -73,8 +73,8 @@ void run(const bench::LookOptions& options) {
 
   bench::Looker looker(options, matrix);
   looker.look();
-  film::write_pfm((std::filesystem::path(options.folder) / "image.pfm").string(),
-                  render(receivers, looker.sums()));
+  image::write_pfm((std::filesystem::path(options.folder) / "image.pfm").string(),
+                   render(receivers, looker.sums()));
   nlohmann::json told = looker.tell();
   told["receivers"] = receivers.size();
   told["lights"] = lights.size();

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "film/image.h"
+#include "image/image.h"
 #include "matrix/entry_reader.h"
+#include "methods/common/row_group_pass.h"
+#include "methods/common/slices/slices.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_recovery.h"
-#include "methods/slices/slices.h"
-#include "methods/unit_pass.h"
 
 namespace lumirank::bench {
 
@@ -109,8 +109,8 @@ class Looker {
   void separate_endlessly(Workspace& w, Findings& f) const;
   void compare_rows(Workspace& w, Findings& f, std::vector<double>& right) const;
   void look_at(std::size_t s, Workspace& w);
-  film::Image paint(const std::function<Rgb(const Findings&)>& value) const;
-  void write(const std::string& name, const film::Image& image) const;
+  image::Image paint(const std::function<Rgb(const Findings&)>& value) const;
+  void write(const std::string& name, const image::Image& image) const;
 
   LookOptions options_;
   methods::RecoverySettings settings_;

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "film/pfm.h"
+#include "image/pfm.h"
 #include "linalg/svd.h"
 #include "recovery_looker.h"
 
@@ -14,13 +14,13 @@ using matrix::Index;
 using methods::RecoverySettings;
 using methods::SliceRecovery;
 
-void Looker::write(const std::string& name, const film::Image& image) const {
-  film::write_pfm((std::filesystem::path(options_.folder) / (name + ".pfm")).string(), image);
+void Looker::write(const std::string& name, const image::Image& image) const {
+  image::write_pfm((std::filesystem::path(options_.folder) / (name + ".pfm")).string(), image);
 }
 
 // A pixel gets the mean of its receivers' slices.
-film::Image Looker::paint(const std::function<Rgb(const Findings&)>& value) const {
-  film::Image image(options_.width, options_.height), count = image;
+image::Image Looker::paint(const std::function<Rgb(const Findings&)>& value) const {
+  image::Image image(options_.width, options_.height), count = image;
   const auto pixel = matrix_.row_features().pixel;
   for (std::size_t s = 0; s < slices_.count(); ++s)
     for (const Index i : slices_.slice(s)) {
@@ -204,7 +204,7 @@ json Looker::write_matrices(std::size_t s, const std::string& name) {
   const auto e = w.recovery.unoccluded();
   const std::size_t rows = w.recovery.entries().rows().size(), columns = w.recovery.clusters().size();
   const auto matrix_picture = [&](const std::string& what, const auto& value) {
-    film::Image image(static_cast<int>(columns), static_cast<int>(rows));
+    image::Image image(static_cast<int>(columns), static_cast<int>(rows));
     for (std::size_t at = 0; at < e.size(); ++at)
       image.at(static_cast<int>(at / rows), static_cast<int>(at % rows)) =
           e[at] > 0 ? Rgb(value(at)) : Rgb(std::numeric_limits<float>::quiet_NaN());
@@ -239,7 +239,7 @@ json Looker::write_matrices(std::size_t s, const std::string& name) {
     seen[at] = std::max(w.truth[at], 0.0f), lit[at] = seen[at] * e[at];
   const Findings& f = findings_[s];
   const double entries = std::max(f.entries, 1.0);
-  film::Image where = paint([&](const Findings& g) { return Rgb(&g == &f ? 1.0f : 0.0f); });
+  image::Image where = paint([&](const Findings& g) { return Rgb(&g == &f ? 1.0f : 0.0f); });
   for (Rgb& p : where.pixels)
     if (p.r < 0) p = Rgb(0);
   write(name + "_where", where);

@@ -44,7 +44,7 @@ function(lumirank_room name)
   target_link_libraries(lumirank_${name} PRIVATE ${ROOM_LINKS})
   lumirank_unity(lumirank_${name})
   # What fuzz targets reach tells the fuzzer where it has been.
-  if(LUMIRANK_FUZZ AND name MATCHES "^(base|film|scenedesc)$")
+  if(LUMIRANK_FUZZ AND name MATCHES "^(base|image|scenedesc)$")
     target_compile_options(lumirank_${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 endfunction()

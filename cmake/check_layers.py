@@ -16,12 +16,18 @@ ROOMS = {
     "geometry": ["base"],
     "scatter": ["base"],
     "emitters": ["base"],
-    "film": ["base"],
-    "oiio": ["film"],
+    "image": ["base"],
+    "film": ["image"],
+    "oiio": ["image"],
     "scenedesc": ["base"],
     "world": ["scenedesc", "geometry", "scatter", "emitters", "film"],
+    "pathtrace": ["world"],
     "transport": ["world", "matrix"],
-    "render": ["transport", "methods", "film"],
+    "settings": ["methods"],
+    "pipeline": ["pathtrace", "transport", "methods", "settings"],
+    "pages": ["image"],
+    "study": ["pipeline", "pages"],
+    "api": ["study"],
 }
 
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "film/image.h"
+#include "image/image.h"
 
 namespace lumirank::film {
 
@@ -30,7 +30,7 @@ struct Filter {
 // pixel that no sample reaches is black. The order of sums is fixed. Samples outside the window count as far
 // as the filter reaches, so a window has the bits that the whole has there. Throws InternalError if the spans
 // differ in length or a position is not finite.
-Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
-            std::span<const Rgb> values, Vec2i corner = {0, 0});
+image::Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
+                   std::span<const Rgb> values, Vec2i corner = {0, 0});
 
 }  // namespace lumirank::film

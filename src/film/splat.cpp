@@ -106,11 +106,11 @@ struct Splatter {
 
 }  // namespace
 
-Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
-            std::span<const Rgb> values, Vec2i corner) {
+image::Image splat(int width, int height, const Filter& filter, std::span<const Vec2f> positions,
+                   std::span<const Rgb> values, Vec2i corner) {
   if (positions.size() != values.size()) throw InternalError("as many film positions as values are needed");
   if (positions.size() > UINT32_MAX) throw InternalError("more than 2^32 - 1 film samples");
-  Image image(width, height);
+  image::Image image(width, height);
   const int reach = filter.reach();
   const Rows rows = group_by_row(corner.y, height, reach, positions);
   const Splatter splatter{corner, width, filter, positions, values, rows, reach};

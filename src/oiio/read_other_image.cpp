@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "film/other_formats.h"
+#include "image/other_formats.h"
 
-namespace lumirank::film {
+namespace lumirank::image {
 namespace {
 
 struct ReadFailure {
@@ -117,15 +117,15 @@ class OtherReader {
 };
 
 }  // namespace
-}  // namespace lumirank::film
+}  // namespace lumirank::image
 
 // What the sink throws goes through; what goes wrong here is told in `error`.
 extern "C" [[gnu::visibility("default")]] void lumirank_read_other_image(const std::string& filename,
-                                                                         lumirank::film::PixelSink& sink,
+                                                                         lumirank::image::PixelSink& sink,
                                                                          std::string& error) {
   try {
-    lumirank::film::OtherReader(filename, sink).read();
-  } catch (const lumirank::film::ReadFailure& failure) {
+    lumirank::image::OtherReader(filename, sink).read();
+  } catch (const lumirank::image::ReadFailure& failure) {
     error = failure.why;
   }
 }

@@ -3,7 +3,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc {
 namespace {

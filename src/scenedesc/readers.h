@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/sinks.h"
-#include "scenedesc/mesh.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/mesh.h"
+#include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::scenedesc {
 

@@ -4,7 +4,7 @@
 #include "base/transform.h"
 #include "base/vec.h"
 #include "geometry/ray_scene.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/units.h"
 
 namespace lumirank::world {

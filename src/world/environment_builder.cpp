@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "emitters/daylight.h"
 #include "emitters/environment.h"
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "world/equal_area.h"
 #include "world/lights.h"
 
@@ -51,9 +51,9 @@ void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::Em
   if (!std::isfinite(map.scale) || map.scale < 0)
     throw InputError(from.where, "the environment map's scale is negative or not finite", "give 0 or more");
   const Frame frame = orientation(map.to_world, from.where);
-  film::Image image;
+  image::Image image;
   try {
-    image = film::read_image(map.filename).color;
+    image = image::read_image(map.filename).color;
   } catch (const InputError& e) {
     throw InputError(from.where, e.what());
   }
@@ -75,7 +75,7 @@ void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::Em
     add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
 }
 
-void EnvironmentBuilder::add_equal_area(const sd::EnvironmentMapDesc& map, film::Image image,
+void EnvironmentBuilder::add_equal_area(const sd::EnvironmentMapDesc& map, image::Image image,
                                         const sd::EmitterDesc& from) {
   // The latitude-longitude map has its pole at +y, that of pbrt at +z, and longitude 0 at -z and at +x.
   Transform to_pole;

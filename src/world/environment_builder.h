@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "emitters/emitter.h"
-#include "film/image.h"
-#include "scenedesc/scene_desc.h"
+#include "image/image.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/notes.h"
 
 namespace lumirank::world {
@@ -30,7 +30,7 @@ class EnvironmentBuilder {
   emitters::EnvironmentEmitter build();
 
  private:
-  void add_equal_area(const scenedesc::EnvironmentMapDesc& map, film::Image image,
+  void add_equal_area(const scenedesc::EnvironmentMapDesc& map, image::Image image,
                       const scenedesc::EmitterDesc& from);
   void add(emitters::EnvironmentEmitter part, const scenedesc::EmitterDesc& from);
 

@@ -24,9 +24,9 @@ Vec2f sphere_to_square(Vec3f d) {
   return {0.5f * (std::copysign(u, d.x) + 1), 0.5f * (std::copysign(v, d.y) + 1)};
 }
 
-film::Image to_latitude_longitude(const film::Image& square) {
+image::Image to_latitude_longitude(const image::Image& square) {
   const int n = square.width;
-  film::Image out(2 * n, n);
+  image::Image out(2 * n, n);
   std::vector<double> weights(static_cast<std::size_t>(n));  // of the rows: their solid angles
   parallel_for(static_cast<std::size_t>(n), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
@@ -64,7 +64,7 @@ film::Image to_latitude_longitude(const film::Image& square) {
   return out;
 }
 
-double illuminance_of_pole(const film::Image& map) {
+double illuminance_of_pole(const image::Image& map) {
   double sum = 0;
   const double step = kPiD / map.height;
   for (int row = 0; row < map.height; ++row) {

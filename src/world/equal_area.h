@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/vec.h"
-#include "film/image.h"
+#include "image/image.h"
 
 namespace lumirank::world {
 
@@ -12,9 +12,9 @@ Vec2f sphere_to_square(Vec3f direction);
 
 // A square map resampled, with the same mean radiance of each channel, to latitudes and longitudes: row 0 at
 // +z, column 0 at +x, columns growing towards +y; as high as the square and twice as wide.
-film::Image to_latitude_longitude(const film::Image& square);
+image::Image to_latitude_longitude(const image::Image& square);
 
 // Illuminance (of radiance as luminance: ∫ L cosθ dω) of a plane that faces +z under such a map.
-double illuminance_of_pole(const film::Image& map);
+double illuminance_of_pole(const image::Image& map);
 
 }  // namespace lumirank::world

@@ -11,7 +11,7 @@
 #include "geometry/mesh.h"
 #include "scatter/material.h"
 #include "scatter/texture.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/notes.h"
 #include "world/units.h"
 

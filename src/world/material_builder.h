@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scatter/material.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/notes.h"
 #include "world/texture_builder.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "geometry/mesh.h"
-#include "scenedesc/mesh.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/mesh.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/notes.h"
 
 namespace lumirank::world {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::world {
 

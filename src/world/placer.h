@@ -5,7 +5,7 @@
 
 #include "base/transform.h"
 #include "geometry/ray_scene.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/mesh_store.h"
 #include "world/notes.h"
 #include "world/units.h"

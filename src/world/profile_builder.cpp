@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "scenedesc/ies/ies.h"
 
 namespace lumirank::world {
@@ -78,9 +78,9 @@ em::AngularProfile from_ies(const sd::ProfileLightDesc& light, const SourceLocat
 
 em::AngularProfile from_picture(const sd::ProfileLightDesc& light, const SourceLocation& where,
                                 Notes& notes) {
-  film::Image image;
+  image::Image image;
   try {
-    image = film::read_image(light.filename).color;
+    image = image::read_image(light.filename).color;
   } catch (const InputError& e) {
     throw InputError(where, e.what());
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emitters/emitter.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/notes.h"
 
 namespace lumirank::world {

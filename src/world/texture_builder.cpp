@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "film/image_io.h"
+#include "image/image_io.h"
 
 namespace lumirank::world {
 
@@ -36,7 +36,7 @@ void check_uv(const scenedesc::UvTransform& to_uv, const SourceLocation& where) 
 }
 
 // The pixels of `image`, or one channel of it as grey.
-std::vector<Rgb> take_pixels(film::LoadedImage& image, scenedesc::TextureChannel channel,
+std::vector<Rgb> take_pixels(image::LoadedImage& image, scenedesc::TextureChannel channel,
                              bool alpha_may_lack) {
   using enum scenedesc::TextureChannel;
   std::vector<Rgb> pixels = std::move(image.color.pixels);
@@ -202,7 +202,8 @@ scatter::TextureSet TextureBuilder::finish() {
           continue;
         }
         const auto& [name, bytes, raw, channel, alpha_may_lack] = files[i]->first;
-        film::LoadedImage image = bytes ? film::decode_image(*bytes, name, raw) : film::read_image(name, raw);
+        image::LoadedImage image =
+            bytes ? image::decode_image(*bytes, name, raw) : image::read_image(name, raw);
         auto& pixels = *files[i]->second.pixels;
         pixels.width = image.color.width, pixels.height = image.color.height;
         pixels.rgb = take_pixels(image, channel, alpha_may_lack);

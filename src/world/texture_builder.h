@@ -10,7 +10,7 @@
 
 #include "scatter/material.h"
 #include "scatter/texture.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::world {
 

@@ -12,7 +12,7 @@
 #include "emitters/emitter.h"
 #include "geometry/ray_scene.h"
 #include "scatter/material.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/camera.h"
 #include "world/units.h"
 

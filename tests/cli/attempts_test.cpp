@@ -16,9 +16,9 @@
 #include <sstream>
 #include <thread>
 
-#include "film/image_io.h"
+#include "image/image_io.h"
+#include "pipeline/memory.h"
 #include "program.h"
-#include "render/memory.h"
 
 namespace lumirank::test {
 namespace {
@@ -45,9 +45,9 @@ void make_socket(const std::string& file) {
 }
 
 void write_picture_file(const std::string& file, int width, int height) {
-  film::LayeredImage image;
-  image.color = film::Image(width, height, Rgb(0.5f));
-  film::write_image(file, image);
+  image::LayeredImage image;
+  image.color = image::Image(width, height, Rgb(0.5f));
+  image::write_image(file, image);
 }
 
 class Attempts : public testing::Test {
@@ -255,8 +255,8 @@ TEST_F(Attempts, OnMemoryAreWarnedInTime) {
     return json["memory.lights_bytes"].get<double>() + json["memory.receivers_bytes"].get<double>() +
            json["memory.matrix_bytes"].get<double>();
   };
-  const double lights = rendering::memory_of_picture(12, 20000, false),
-               samples = rendering::memory_of_picture(200 * 100, 50, false);
+  const double lights = pipeline::memory_of_picture(12, 20000, false),
+               samples = pipeline::memory_of_picture(200 * 100, 50, false);
   const double of_lights = report_of({"--size", "4x3", "--lights", "20000"}),
                of_samples = report_of({"--size", "200x100", "--lights", "50"});
   EXPECT_LT(of_lights, lights);

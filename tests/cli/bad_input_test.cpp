@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "program.h"
 
 namespace lumirank::test {
@@ -91,14 +91,14 @@ std::string textured(const std::string& file) {
 
 TEST(BadInput, Textures) {
   const TemporaryFolder folder, out;
-  film::LayeredImage image;
-  image.color = film::Image(64, 64);
+  image::LayeredImage image;
+  image.color = image::Image(64, 64);
   for (std::size_t p = 0; p < image.color.pixels.size(); ++p)
     image.color.pixels[p] = Rgb(static_cast<float>(p % 61) / 61);
   for (const char* extension : {"exr", "png", "pfm"}) {
     const std::string whole = folder / (std::string("whole.") + extension),
                       half = folder / (std::string("half.") + extension);
-    film::write_image(whole, image);
+    image::write_image(whole, image);
     const std::string bytes = read_text(whole);
     EXPECT_SUCCESS(lumirank(render_small(write_scene(folder, textured(whole)), folder / "good.exr")));
     for (const std::size_t length : {bytes.size() / 2, std::size_t{10}, std::size_t{0}}) {

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "film/atomic_file.h"
+#include "image/atomic_file.h"
 #include "process.h"
 #include "program.h"
 
@@ -99,7 +99,7 @@ TEST(Interrupt, ASecondOneLeavesNoTemporaryFile) {
   const TemporaryFolder folder;
   const auto twice = [&] {
     cli::prepare_process();
-    const film::AtomicFile first(folder / "a.exr"), second(folder / "b.exr");
+    const image::AtomicFile first(folder / "a.exr"), second(folder / "b.exr");
     if (files_in(folder / "").size() == 2) raise(SIGINT);
     raise(SIGTERM);
   };

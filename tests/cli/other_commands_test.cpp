@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "program.h"
 
 namespace lumirank::test {
@@ -75,10 +75,10 @@ TEST(ReferenceCommand, PathsOfColumnsAndTheRestMakeAll) {
 // 2 × 1 pixels: I = (1, 2, 3), (4, 5, 6); R = (1, 1, 1), (5, 5, 5).
 TEST(ErrorCommand, ByHand) {
   const TemporaryFolder folder;
-  film::LayeredImage image, truth;
-  image.color = film::Image(2, 1), truth.color = film::Image(2, 1);
+  image::LayeredImage image, truth;
+  image.color = image::Image(2, 1), truth.color = image::Image(2, 1);
   image.color.pixels = {{1, 2, 3}, {4, 5, 6}}, truth.color.pixels = {{1, 1, 1}, {5, 5, 5}};
-  film::write_image(folder / "i.exr", image), film::write_image(folder / "r.pfm", truth);
+  image::write_image(folder / "i.exr", image), image::write_image(folder / "r.pfm", truth);
   const Outcome outcome = lumirank({"error", folder / "i.exr", folder / "r.pfm"});
   EXPECT_SUCCESS(outcome);
   const auto json = nlohmann::json::parse(outcome.out);
@@ -94,12 +94,12 @@ TEST(ErrorCommand, ByHand) {
 
 TEST(ErrorCommand, RefusesWhatCannotBeCompared) {
   const TemporaryFolder folder;
-  film::LayeredImage image, wide, broken;
-  image.color = film::Image(2, 2, Rgb(1)), wide.color = film::Image(3, 2, Rgb(1)), broken = image;
+  image::LayeredImage image, wide, broken;
+  image.color = image::Image(2, 2, Rgb(1)), wide.color = image::Image(3, 2, Rgb(1)), broken = image;
   broken.color.pixels[0].r = std::numeric_limits<float>::quiet_NaN();
   broken.color.pixels[3].g = std::numeric_limits<float>::infinity();
   const std::string a = folder / "a.exr", w = folder / "wide.exr", b = folder / "broken.pfm";
-  film::write_image(a, image), film::write_image(w, wide), film::write_image(b, broken);
+  image::write_image(a, image), image::write_image(w, wide), image::write_image(b, broken);
   expect_refused(lumirank({"error", a, w}), "2 x 2 pixels and the reference 3 x 2");
   expect_refused(lumirank({"error", b, a}), "2 ");
   expect_refused(lumirank({"error", a, b}), "2 ");

@@ -23,7 +23,7 @@
 #include <thread>
 
 #include "base/rgb.h"
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "run.h"
 
 namespace lumirank::test {
@@ -212,7 +212,7 @@ Pixels read_pfm_pixels(const std::string& file) {
 
 Pixels read_png_pixels(const std::string& file) {
   Pixels pixels;
-  const film::Image image = film::read_image(file, true).color;
+  const image::Image image = image::read_image(file, true).color;
   pixels.width = image.width, pixels.height = image.height;
   for (int c = 0; c < 3; ++c)
     for (const Rgb& p : image.pixels) pixels.channels[std::string(1, "RGB"[c])].push_back(p[c]);

@@ -86,7 +86,7 @@ TEST(Splat, ConstantStaysConstantUpToTheBorders) {
   Samples samples = jittered(11, 7);
   std::fill(samples.values.begin(), samples.values.end(), Rgb(0.3f, 5, 1e-3f));
   for (const FilterKind kind : kAll) {
-    const Image image = splat(11, 7, Filter::standard(kind), samples.positions, samples.values);
+    const image::Image image = splat(11, 7, Filter::standard(kind), samples.positions, samples.values);
     for (const Rgb& pixel : image.pixels) {
       EXPECT_FLOAT_EQ(pixel.r, 0.3f) << static_cast<int>(kind);
       EXPECT_FLOAT_EQ(pixel.g, 5) << static_cast<int>(kind);
@@ -109,7 +109,7 @@ TEST(Splat, AgreesWithTheDefinition) {
   filters.push_back({.kind = FilterKind::box, .radius = 1.7f});
   filters.push_back({.kind = FilterKind::tent, .radius = 2.25f});
   for (const Filter& filter : filters) {
-    const Image image = splat(width, height, filter, samples.positions, samples.values);
+    const image::Image image = splat(width, height, filter, samples.positions, samples.values);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         double sum = 0, weights = 0;
@@ -130,7 +130,7 @@ TEST(Splat, PixelsWithoutSamplesAreBlack) {
   const std::vector<Vec2f> positions{{0.5f, 0.5f}};
   const std::vector<Rgb> values{Rgb(3)};
   for (const FilterKind kind : {FilterKind::box, FilterKind::tent}) {
-    const Image image = splat(4, 1, Filter::standard(kind), positions, values);
+    const image::Image image = splat(4, 1, Filter::standard(kind), positions, values);
     EXPECT_EQ(image.at(0, 0), Rgb(3));
     EXPECT_EQ(image.at(3, 0), Rgb(0));
   }
@@ -147,15 +147,16 @@ TEST(Splat, CancelledWeightsStayWithinRange) {
   for (int i = 0; i < 60; ++i) (filter.eval((lo + hi) / 2) > 1.0f / 16 ? lo : hi) = (lo + hi) / 2;
   const std::vector<Vec2f> positions{{0.5f + lo, 0.5f}, {2.0f, 0.5f}};
   const std::vector<Rgb> values{Rgb(1), Rgb(2)};
-  const Image image = splat(1, 1, filter, positions, values);
+  const image::Image image = splat(1, 1, filter, positions, values);
   EXPECT_NEAR(image.at(0, 0).r, 1.5f, 1e-3f);  // equal magnitudes: the plain mean
 }
 
 TEST(Splat, AWindowHasTheBitsOfTheWhole) {
   const Samples samples = jittered(40, 60);
   for (const auto kind : {FilterKind::box, FilterKind::tent, FilterKind::gaussian, FilterKind::lanczos}) {
-    const Image whole = splat(40, 60, Filter::standard(kind), samples.positions, samples.values);
-    const Image window = splat(9, 7, Filter::standard(kind), samples.positions, samples.values, {31, 1});
+    const image::Image whole = splat(40, 60, Filter::standard(kind), samples.positions, samples.values);
+    const image::Image window =
+        splat(9, 7, Filter::standard(kind), samples.positions, samples.values, {31, 1});
     for (int y = 0; y < 7; ++y)
       for (int x = 0; x < 9; ++x) EXPECT_EQ(window.at(x, y), whole.at(x + 31, y + 1));
   }
@@ -164,7 +165,7 @@ TEST(Splat, AWindowHasTheBitsOfTheWhole) {
 TEST(Splat, SameBitsForAnyNumberOfThreads) {
   const Samples samples = jittered(40, 60);
   const Filter filter = Filter::standard(FilterKind::gaussian);
-  Image one, four;
+  image::Image one, four;
   with_threads(1, [&] { one = splat(40, 60, filter, samples.positions, samples.values); });
   with_threads(4, [&] { four = splat(40, 60, filter, samples.positions, samples.values); });
   EXPECT_EQ(one.pixels, four.pixels);

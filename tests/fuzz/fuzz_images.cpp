@@ -6,13 +6,13 @@
 #include <string>
 
 #include "base/error.h"
-#include "film/image_builder.h"
-#include "film/image_io.h"
-#include "film/radiance_file.h"
+#include "image/image_builder.h"
+#include "image/image_io.h"
+#include "image/radiance_file.h"
 
 namespace {
 
-void require_whole(const lumirank::film::LoadedImage& image) {
+void require_whole(const lumirank::image::LoadedImage& image) {
   const auto pixels =
       static_cast<std::size_t>(image.color.width) * static_cast<std::size_t>(image.color.height);
   if (image.color.pixels.size() != pixels) __builtin_trap();

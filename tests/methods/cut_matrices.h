@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods::test {

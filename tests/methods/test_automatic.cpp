@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
 #include "methods/row_column/planner.h"
 #include "methods/row_column/settings.h"
 #include "support/sanitizers.h"

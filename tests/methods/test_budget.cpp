@@ -8,11 +8,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "matrix/synthetic.h"
-#include "methods/coarse_picture.h"
-#include "methods/column_pass.h"
+#include "methods/common/coarse_picture.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/timed_choices.h"
+#include "methods/common/turns.h"
 #include "methods/parameters.h"
-#include "methods/timed_choices.h"
-#include "methods/turns.h"
 
 namespace lumirank::methods {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
 #include "methods/method.h"
 
 namespace lumirank::methods {

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {

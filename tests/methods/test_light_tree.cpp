@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "matrix/synthetic.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 #include "methods/statistics.h"
 
 namespace lumirank::methods {

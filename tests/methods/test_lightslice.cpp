@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
 #include "methods/method.h"
 #include "methods/statistics.h"
 

@@ -5,10 +5,10 @@
 
 #include "base/random.h"
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/row_group_pass.h"
 #include "methods/multidimensional_lightcuts/gather_tree.h"
 #include "methods/multidimensional_lightcuts/pair_cut.h"
-#include "methods/unit_pass.h"
 
 namespace lumirank::methods {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "matrix/entry_reader.h"
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
 #include "methods/lightcuts/answers.h"
 #include "methods/lightcuts/image_blocks.h"
 #include "methods/lightcuts/reconstruction.h"

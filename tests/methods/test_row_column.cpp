@@ -5,8 +5,8 @@
 #include <set>
 
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
-#include "methods/row_column/columns_known.h"
+#include "methods/common/column_clusters.h"
+#include "methods/common/column_pass.h"
 #include "methods/statistics.h"
 
 namespace lumirank::methods {

@@ -1,5 +1,5 @@
 // Slices: every row in one, none too large, alike within.
-#include "methods/slices/slices.h"
+#include "methods/common/slices/slices.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Choices of a run under a time budget, written down and repeated.
-#include "methods/timed_choices.h"
+#include "methods/common/timed_choices.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
-#include "methods/timed_choices.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/timed_choices.h"
 
 namespace lumirank::methods {
 namespace {

@@ -6,9 +6,9 @@
 #include "base/random.h"
 #include "matrix/entry_reader.h"
 #include "matrix/synthetic.h"
-#include "methods/column_pass.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/slices/slices.h"
 #include "methods/method.h"
-#include "methods/slices/slices.h"
 #include "methods/visibility_completion/completion.h"
 
 namespace lumirank::methods {

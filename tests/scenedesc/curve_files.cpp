@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "scenedesc/hair.h"
 #include "scenedesc/readers.h"
+#include "scenedesc/schema/hair.h"
 
 namespace lumirank::scenedesc {
 namespace {

@@ -1,5 +1,5 @@
 // A film of other proportions keeps the field of view that the format states.
-#include "scenedesc/film_size.h"
+#include "scenedesc/schema/film_size.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "scenedesc/mitsuba/ior.h"
+#include "scenedesc/data/ior.h"
 #include "scenedesc/mitsuba/solar.h"
 #include "scenedesc/readers.h"
 

@@ -1,6 +1,6 @@
 // Read, written, read again: the same description, for every variant that Mitsuba 3 has, and a stand-in with
 // a warning for every other.
-#include "scenedesc/mitsuba_writer/mitsuba_writer.h"
+#include "scenedesc/writer/mitsuba_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "scenedesc/hair.h"
 #include "scenedesc/pbrt_scene.h"
+#include "scenedesc/schema/hair.h"
 
 namespace lumirank::scenedesc {
 namespace {

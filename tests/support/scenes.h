@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/transform.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/camera.h"
 #include "world/world.h"
 

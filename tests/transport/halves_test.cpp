@@ -1,5 +1,5 @@
 // The two halves of the lights are independent estimates of the same.
-#include "transport/halves.h"
+#include "transport/lights/halves.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "support/scenes.h"
 #include "support/statistics.h"
-#include "transport/receivers.h"
-#include "transport/scene_matrix.h"
-#include "transport/virtual_lights.h"
+#include "transport/cpu/scene_matrix.h"
+#include "transport/lights/virtual_lights.h"
+#include "transport/rows/receivers.h"
 
 namespace lumirank::transport {
 namespace {

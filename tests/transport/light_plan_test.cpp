@@ -1,5 +1,5 @@
 // How lights are shared out: no single one stands for much more than the others, and all is unbiased.
-#include "transport/light_plan.h"
+#include "transport/lights/light_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include "matrix_fixture.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
-#include "transport/light_areas.h"
-#include "transport/particle.h"
-#include "transport/sphere_lights.h"
+#include "transport/lights/light_areas.h"
+#include "transport/lights/particle.h"
+#include "transport/lights/sphere_lights.h"
 
 namespace lumirank::transport {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "base/random.h"
 #include "base/warp.h"
-#include "scenedesc/scene_desc.h"
-#include "transport/receivers.h"
-#include "transport/scene_matrix.h"
-#include "transport/virtual_lights.h"
+#include "scenedesc/schema/scene_desc.h"
+#include "transport/cpu/scene_matrix.h"
+#include "transport/lights/virtual_lights.h"
+#include "transport/rows/receivers.h"
 #include "world/world.h"
 
 namespace lumirank::transport::testing {

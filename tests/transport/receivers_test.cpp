@@ -1,4 +1,4 @@
-#include "transport/receivers.h"
+#include "transport/rows/receivers.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
-#include "transport/film_order.h"
+#include "transport/rows/film_order.h"
 
 namespace lumirank::transport {
 namespace {

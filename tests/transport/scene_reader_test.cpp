@@ -5,7 +5,7 @@
 
 #include "matrix/entry_reader.h"
 #include "matrix_fixture.h"
-#include "transport/sphere_lights.h"
+#include "transport/lights/sphere_lights.h"
 
 namespace lumirank::transport::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/warp.h"
-#include "transport/kernels/sphere_samples.h"
+#include "transport/pairs/sphere_samples.h"
 
 namespace lumirank::transport {
 namespace {

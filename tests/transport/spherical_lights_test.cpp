@@ -6,9 +6,9 @@
 #include "base/parallel.h"
 #include "base/warp.h"
 #include "matrix_fixture.h"
-#include "transport/light_reach.h"
-#include "transport/sphere_integral.h"
-#include "transport/sphere_lights.h"
+#include "transport/lights/light_reach.h"
+#include "transport/lights/sphere_lights.h"
+#include "transport/pairs/sphere_integral.h"
 
 namespace lumirank::transport::testing {
 namespace {

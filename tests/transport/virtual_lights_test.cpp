@@ -1,4 +1,4 @@
-#include "transport/virtual_lights.h"
+#include "transport/lights/virtual_lights.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
-#include "transport/receivers.h"
+#include "transport/rows/receivers.h"
 
 namespace lumirank::transport {
 namespace {

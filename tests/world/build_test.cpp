@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "scenedesc/readers.h"
 #include "world/scene_maker.h"
 
@@ -234,9 +234,9 @@ TEST(Build, ShadowRaysPassCutoutsAndNullSurfaces) {
 
 TEST(Build, TexturesOfOneFileShareTheirPixels) {
   const std::string path = ::testing::TempDir() + "lumirank_world_texture.pfm";
-  film::Image image(2, 2);
+  image::Image image(2, 2);
   image.at(0, 0) = Rgb(1, 0, 0), image.at(1, 0) = Rgb(0, 1, 0), image.at(0, 1) = Rgb(0, 0, 1);
-  film::write_image(path, {image, {}});
+  image::write_image(path, {image, {}});
   auto desc = lit_rectangle();
   sd::BitmapTextureDesc bitmap;
   bitmap.filename = path;
@@ -292,14 +292,14 @@ TEST(Build, AMaskReadsTheAlphaOfItsPicture) {
   EXPECT_FLOAT_EQ(build(desc).materials().opacity(material, {{0.25f, 0.5f}}), 0.2f);
   std::remove(path.c_str());
   bitmap.filename = ::testing::TempDir() + "lumirank_world_colours.pfm";
-  film::write_image(bitmap.filename, {film::Image(1, 1, Rgb(0.9f, 0, 0)), {}});
+  image::write_image(bitmap.filename, {image::Image(1, 1, Rgb(0.9f, 0, 0)), {}});
   desc.textures[static_cast<std::size_t>(alpha)].kind = bitmap;
   desc.textures[static_cast<std::size_t>(red)].kind = bitmap;
   EXPECT_FLOAT_EQ(build(desc).materials().opacity(material, {{0.25f, 0.5f}}), 0.3f);
   std::remove(bitmap.filename.c_str());
   bitmap.filename = ::testing::TempDir() + "lumirank_world_no_alpha.pfm";
   bitmap.channel = sd::TextureChannel::alpha;
-  film::write_image(bitmap.filename, {film::Image(1, 1), {}});
+  image::write_image(bitmap.filename, {image::Image(1, 1), {}});
   desc.textures[static_cast<std::size_t>(alpha)].kind = bitmap;
   EXPECT_THROW(build(desc), InputError);
   std::remove(bitmap.filename.c_str());

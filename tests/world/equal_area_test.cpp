@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "world/equal_area.h"
 #include "world/scene_maker.h"
 
@@ -38,9 +38,9 @@ TEST(EqualArea, AreasAreKept) {
 }
 
 TEST(EqualArea, ResamplingKeepsTheMeanAndTheIlluminanceOfTheSky) {
-  film::Image square(32, 32, Rgb(0.5f));
+  image::Image square(32, 32, Rgb(0.5f));
   square.at(20, 9) = Rgb(900, 0, 3);  // a small sun
-  const film::Image map = to_latitude_longitude(square);
+  const image::Image map = to_latitude_longitude(square);
   EXPECT_EQ(map.width, 64);
   EXPECT_EQ(map.height, 32);
   double sum = 0, all = 0;
@@ -49,14 +49,14 @@ TEST(EqualArea, ResamplingKeepsTheMeanAndTheIlluminanceOfTheSky) {
     for (int x = 0; x < 64; ++x) sum += weight * map.at(x, y).r, all += weight;
   }
   EXPECT_NEAR(sum / all, (0.5 * 1023 + 900) / 1024, 1e-4);
-  EXPECT_NEAR(illuminance_of_pole(film::Image(8, 4, Rgb(2))), 2 * M_PI, 1e-5);
+  EXPECT_NEAR(illuminance_of_pole(image::Image(8, 4, Rgb(2))), 2 * M_PI, 1e-5);
 }
 
 const std::string kFile = ::testing::TempDir() + "lumirank_world_equal_area.pfm";
 
-World sky(const film::Image& image, const sd::EnvironmentMapDesc& map,
+World sky(const image::Image& image, const sd::EnvironmentMapDesc& map,
           std::vector<sd::Warning>* warnings = nullptr) {
-  film::write_image(kFile, {image, {}});
+  image::write_image(kFile, {image, {}});
   auto desc = empty_scene();
   add_shape(desc, sd::RectangleDesc{});
   add_emitter(desc, map);
@@ -74,7 +74,7 @@ sd::EnvironmentMapDesc octahedral() {
 
 TEST(EqualArea, DirectionsOfTheWorldReadTheirTexels) {
   // Red to the right (u > ½: +x), green in the lower rows of the file (v > ½: +y), blue in the diamond (+z).
-  film::Image image(64, 64);
+  image::Image image(64, 64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
       image.at(x, y) = Rgb(x >= 32, y >= 32, std::abs(x - 31.5f) + std::abs(y - 31.5f) < 32);
@@ -98,12 +98,12 @@ TEST(EqualArea, IlluminanceIsWhatPbrtMakesOfIt) {
   sd::EnvironmentMapDesc map = octahedral();
   map.illuminance = 100;
   // pbrt finds π/2 for a sky of 1.
-  EXPECT_NEAR(sky(film::Image(16, 16, Rgb(3)), map).background({0, 0, 1}).g, 200 / M_PI, 1e-3);
-  EXPECT_THROW(sky(film::Image(16, 16), map), InputError);
+  EXPECT_NEAR(sky(image::Image(16, 16, Rgb(3)), map).background({0, 0, 1}).g, 200 / M_PI, 1e-3);
+  EXPECT_THROW(sky(image::Image(16, 16), map), InputError);
 }
 
 TEST(EqualArea, OtherPicturesAreLatitudesAndLongitudesWithAWarning) {
-  film::Image image(8, 4);
+  image::Image image(8, 4);
   image.at(1, 0) = Rgb(5);  // longitude 1.5/8 · 2π from +x towards +y, latitude 1/8 · π from +z
   std::vector<sd::Warning> warnings;
   const World world = sky(image, octahedral(), &warnings);

@@ -7,7 +7,7 @@
 #include "emitters/daylight.h"
 #include "emitters/environment.h"
 #include "emitters/statistics.h"
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::world {
@@ -62,9 +62,9 @@ TEST(SpotLight, EdgesOfTheFormats) {
 // values).
 TEST(GoniometricLight, PowerScalesThePicture) {
   const std::string path = testing::TempDir() + "lumirank_lamp.pfm";
-  film::Image image(32, 32, Rgb(1, 2, 3));
+  image::Image image(32, 32, Rgb(1, 2, 3));
   for (int k = 0; k < 512; ++k) image.pixels[static_cast<std::size_t>(k)] = Rgb(6);
-  film::write_image(path, {image, {}});
+  image::write_image(path, {image, {}});
   auto desc = empty_scene();
   sd::ProfileLightDesc lamp;
   lamp.kind = sd::ProfileLightDesc::Kind::image;
@@ -89,8 +89,8 @@ TEST(GoniometricLight, PowerScalesThePicture) {
   }
   EXPECT_NEAR(least, 1, 1e-5);
   EXPECT_NEAR(most, 3, 1e-5);
-  image = film::Image(32, 32);
-  film::write_image(path, {image, {}});
+  image = image::Image(32, 32);
+  image::write_image(path, {image, {}});
   EXPECT_THROW(build(desc), InputError);
 }
 
@@ -134,10 +134,10 @@ TEST(AreaLight, ManySpheresKeepTheirPower) {
 
 TEST(AreaLight, TexturedRadianceIsExactInEverySample) {
   const std::string path = ::testing::TempDir() + "lumirank_world_lamp.pfm";
-  film::Image image(4, 4);
+  image::Image image(4, 4);
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) image.at(x, y) = Rgb(static_cast<float>(1 + x + 4 * y));
-  film::write_image(path, {image, {}});
+  image::write_image(path, {image, {}});
   auto desc = empty_scene();
   sd::BitmapTextureDesc bitmap;
   bitmap.filename = path;
@@ -169,9 +169,9 @@ TEST(AreaLight, TexturedRadianceIsExactInEverySample) {
 
 TEST(Environment, MapIsReadAndTurned) {
   const std::string path = ::testing::TempDir() + "lumirank_world_sky.pfm";
-  film::Image image(8, 4, Rgb(0.25f));
+  image::Image image(8, 4, Rgb(0.25f));
   image.at(2, 1) = Rgb(4);  // longitude 2.5/8 · 2π: towards +x, a little to +z
-  film::write_image(path, {image, {}});
+  image::write_image(path, {image, {}});
   auto desc = empty_scene();
   add_shape(desc, sd::RectangleDesc{});
   sd::EnvironmentMapDesc map{path, 2, Transform::rotate(0, 1, 0, 90) * Transform::scale(5, 5, 5)};

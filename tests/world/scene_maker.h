@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "world/world.h"
 
 namespace lumirank::test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "film/image_io.h"
+#include "image/image_io.h"
 #include "support/scene_file.h"
 #include "world/scene_maker.h"
 
@@ -111,10 +111,10 @@ TEST(Units, PointLightsKeepTheirIrradiance) {
 // Bumps are lengths: the slope of the surface does not depend on the unit.
 TEST(Units, BumpsKeepTheirSlope) {
   const TemporaryFolder folder;
-  film::LayeredImage ramp;
-  ramp.color = film::Image(4, 1);
+  image::LayeredImage ramp;
+  ramp.color = image::Image(4, 1);
   for (int x = 0; x < 4; ++x) ramp.color.at(x, 0) = Rgb(0.25f * static_cast<float>(x));
-  film::write_image(folder / "ramp.pfm", ramp);
+  image::write_image(folder / "ramp.pfm", ramp);
   const auto normal = [&](double s) {
     sd::SceneDesc desc = empty_scene();
     sd::BitmapTextureDesc heights;

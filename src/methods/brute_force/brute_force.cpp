@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "methods/column_pass.h"
-#include "methods/known_rows.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/exact_rows.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "matrix/entry_reader.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 
 namespace lumirank::methods {
 

@@ -9,7 +9,7 @@
 
 #include "matrix/entry_bounds.h"
 #include "matrix/entry_reader.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 
 namespace lumirank::methods {
 

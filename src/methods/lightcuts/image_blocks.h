@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "matrix/lighting_matrix.h"
-#include "methods/unit_pass.h"
+#include "methods/common/row_group_pass.h"
 
 namespace lumirank::methods {
 

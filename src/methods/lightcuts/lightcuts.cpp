@@ -11,12 +11,12 @@
 #include <algorithm>
 #include <numeric>
 
-#include "methods/known_rows.h"
-#include "methods/light_tree/cut_costs.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/exact_rows.h"
+#include "methods/common/light_tree/cut_costs.h"
+#include "methods/common/light_tree/light_tree.h"
+#include "methods/common/turns.h"
 #include "methods/lightcuts/block_painter.h"
 #include "methods/parameters.h"
-#include "methods/turns.h"
 
 namespace lumirank::methods {
 

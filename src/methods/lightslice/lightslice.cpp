@@ -1,7 +1,7 @@
 #include "methods/lightslice/lightslice.h"
 
 #include "matrix/entry_reader.h"
-#include "methods/slices/slice_pass.h"
+#include "methods/common/slices/slice_pass.h"
 
 namespace lumirank::methods {
 

@@ -11,11 +11,11 @@
 
 #include "base/timer.h"
 #include "matrix/entry_reader.h"
-#include "methods/known_rows.h"
-#include "methods/light_tree/cut_costs.h"
+#include "methods/common/exact_rows.h"
+#include "methods/common/light_tree/cut_costs.h"
+#include "methods/common/turns.h"
 #include "methods/multidimensional_lightcuts/pair_cut.h"
 #include "methods/parameters.h"
-#include "methods/turns.h"
 
 namespace lumirank::methods {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 #include "methods/multidimensional_lightcuts/gather_tree.h"
 
 namespace lumirank::methods {

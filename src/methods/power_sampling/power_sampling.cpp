@@ -6,11 +6,11 @@
 #include <set>
 
 #include "base/parallel.h"
-#include "methods/column_pass.h"
-#include "methods/known_rows.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/exact_rows.h"
+#include "methods/common/power_draws.h"
+#include "methods/common/timed_choices.h"
 #include "methods/parameters.h"
-#include "methods/power_draws.h"
-#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/common/timed_choices.h"
 #include "methods/row_column/run.h"
-#include "methods/timed_choices.h"
 
 namespace lumirank::methods {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "methods/brute_force/brute_force.h"
-#include "methods/timed_choices.h"
+#include "methods/common/timed_choices.h"
 
 namespace lumirank::methods {
 

@@ -4,11 +4,11 @@
 #include <set>
 #include <string>
 
-#include "methods/column_pass.h"
+#include "methods/common/column_clusters.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/run_clock.h"
 #include "methods/row_column/blend.h"
-#include "methods/row_column/columns_known.h"
 #include "methods/row_column/planner.h"
-#include "methods/run_clock.h"
 
 namespace lumirank::methods {
 

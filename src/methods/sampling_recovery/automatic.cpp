@@ -8,9 +8,9 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "methods/known_rows.h"
+#include "methods/common/exact_rows.h"
+#include "methods/common/row_group_pass.h"
 #include "methods/sampling_recovery/slice_recovery.h"
-#include "methods/unit_pass.h"
 
 namespace lumirank::methods {
 

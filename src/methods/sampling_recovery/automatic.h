@@ -3,10 +3,10 @@
 // known.
 #pragma once
 
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
+#include "methods/common/slices/slices.h"
 #include "methods/method.h"
 #include "methods/sampling_recovery/settings.h"
-#include "methods/slices/slices.h"
 
 namespace lumirank::methods {
 

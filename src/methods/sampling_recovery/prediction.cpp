@@ -9,8 +9,6 @@
 namespace lumirank::methods {
 
 using linalg::Entry;
-using linalg::SeparatingPlane;
-namespace seen = linalg::seen;
 
 namespace {
 constexpr std::size_t kRoundsWithoutPrediction = 5;
@@ -61,9 +59,9 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, std::
     const std::uint32_t row = order[k];
     if (known[row] == seen::kUnknown) continue;
     const float v = known[row] == seen::kVisible ? 1.0f : 0.0f;
-    const std::array<float, 3> p{linalg::nearest_probability(neighbours[k - column.trained], known),
+    const std::array<float, 3> p{nearest_probability(neighbours[k - column.trained], known),
                                  fitted.probability(entries.rows().points()[row]),
-                                 counts_.probability(c, row / linalg::BayesCounts::kStretch)};
+                                 counts_.probability(c, row / BayesCounts::kStretch)};
     const double light = static_cast<double>(e[c * entries.rows().size() + row]) /
                          static_cast<double>(slot.sampled - column.trained);
     for (std::size_t kind = 0; kind < p.size(); ++kind) {
@@ -88,16 +86,15 @@ void Prediction::predict(std::size_t c, SliceEntries& entries, std::span<float> 
   const SliceEntries::Slot& slot = entries.slot(column.slot);
   switch (column.best) {
     case nearest:
-      linalg::nearest_probabilities(entries.patterns().nearest(slot.pattern, slot.sampled),
-                                    entries.seen(column.slot), out);
+      nearest_probabilities(entries.patterns().nearest(slot.pattern, slot.sampled), entries.seen(column.slot),
+                            out);
       break;
     case plane:
       column.plane.fit().probabilities(entries.rows().points(), out);
       break;
     case bayes:
       counts_.probabilities(c, stretch_probability_);
-      for (std::size_t i = 0; i < out.size(); ++i)
-        out[i] = stretch_probability_[i / linalg::BayesCounts::kStretch];
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = stretch_probability_[i / BayesCounts::kStretch];
       break;
   }
 }
@@ -119,9 +116,9 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
       if (settings.draw == RecoverySettings::Draw::likely)
         for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability[i] > 0.5f ? 1 : 0;
       else
-        linalg::draw_visibility(
-            probability, static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
-            drawn_);
+        draw_visibility(probability,
+                        static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
+                        drawn_);
     }
     const float* const reach = &e[c * rows];
     Entry* const out = &state[c * rows];

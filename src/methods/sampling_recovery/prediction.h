@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "linalg/separation.h"
-#include "linalg/visibility_predictors.h"
+#include "methods/common/visibility_predictors.h"
 #include "methods/sampling_recovery/calibration.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_entries.h"
@@ -49,7 +49,7 @@ class Prediction {
     float allowed = 0;                     // error
     std::uint32_t known = 0, visible = 0;  // of these
     std::size_t tested = 0;                // kind of its last test (Calibration)
-    linalg::PlaneSums plane = {};
+    PlaneSums plane = {};
   };
 
   void learn(std::size_t c, std::size_t begin, std::size_t end, SliceEntries& entries);
@@ -61,7 +61,7 @@ class Prediction {
 
   std::vector<Column> columns_;
   std::vector<std::uint32_t> active_, still_active_;
-  linalg::BayesCounts counts_;
+  BayesCounts counts_;
   std::vector<std::uint32_t> sample_rows_;
   std::vector<std::uint8_t> sample_visible_, drawn_;
   std::vector<float> probabilities_, stretch_probability_;

@@ -7,18 +7,18 @@
 #include <span>
 #include <vector>
 
-#include "linalg/hilbert.h"
+#include "methods/common/hilbert_neighbours.h"
 
 namespace lumirank::methods {
 
 class SamplePatterns {
  public:
   static constexpr std::size_t kPatterns = 4;
-  using Few = linalg::SampledNeighbours::Few;
+  using Few = SampledNeighbours::Few;
 
   // Orders whose every beginning is spread evenly along the curve (a random bit flip of van der Corput's
   // sequence). `curves` must outlive what is asked of this. Keeps its buffers.
-  void build(const linalg::HilbertCurves& curves, std::uint64_t key);
+  void build(const HilbertCurves& curves, std::uint64_t key);
   std::span<const std::uint32_t> order(std::size_t pattern) const { return patterns_[pattern].order; }
 
   // For every row its neighbours among the first `count` of an order. Remembered until the next build().
@@ -30,11 +30,11 @@ class SamplePatterns {
   struct Pattern {
     std::vector<std::uint32_t> order;
     std::vector<std::uint32_t> counts, next_counts;  // of the tables
-    std::vector<std::unique_ptr<linalg::SampledNeighbours>> tables;
+    std::vector<std::unique_ptr<SampledNeighbours>> tables;
     std::vector<std::vector<Few>> next_tables;
   };
 
-  const linalg::HilbertCurves* curves_ = nullptr;
+  const HilbertCurves* curves_ = nullptr;
   std::vector<Pattern> patterns_;
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint8_t> sampled_;

@@ -4,15 +4,15 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "methods/known_rows.h"
+#include "methods/common/exact_rows.h"
+#include "methods/common/row_group_pass.h"
+#include "methods/common/slices/slice_lights.h"
+#include "methods/common/slices/slice_pass.h"
+#include "methods/common/slices/slices.h"
+#include "methods/common/turns.h"
 #include "methods/sampling_recovery/automatic.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_recovery.h"
-#include "methods/slices/slice_lights.h"
-#include "methods/slices/slice_pass.h"
-#include "methods/slices/slices.h"
-#include "methods/turns.h"
-#include "methods/unit_pass.h"
 
 namespace lumirank::methods {
 

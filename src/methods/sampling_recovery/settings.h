@@ -6,8 +6,8 @@
 #pragma once
 
 #include "linalg/separation.h"
+#include "methods/common/turns.h"
 #include "methods/parameters.h"
-#include "methods/turns.h"
 
 namespace lumirank::methods {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "matrix/entry_bounds.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_entries.h"
 

@@ -53,7 +53,7 @@ std::size_t SliceEntries::add(const matrix::ScaledColumn& column) {
   slots_.push_back({column.column,
                     static_cast<std::uint32_t>(bits(column.column) % SamplePatterns::kPatterns), 0, 0,
                     layer(column.column), false});
-  std::ranges::fill(seen(s), linalg::seen::kUnknown);
+  std::ranges::fill(seen(s), seen::kUnknown);
   Slot& slot = slots_[s];
   const auto out = std::span(scalars_).subspan(s * rows, rows);
   layers_[slot.layer]->unoccluded_scalars(column.column, weights(column.scale), out);
@@ -70,7 +70,7 @@ void SliceEntries::look_whole(std::size_t s) {
   for (std::size_t i = 0; i < answers_.size(); ++i) {
     if (!(reach[i] > 0)) continue;
     const bool visible = answers_[i].r > 0.5f;
-    known[i] = visible ? linalg::seen::kVisible : linalg::seen::kHidden;
+    known[i] = visible ? seen::kVisible : seen::kHidden;
     slot.any_visible |= visible;
     ++looked_;
   }
@@ -109,7 +109,7 @@ void SliceEntries::look() {
   reader_->entries_at(asked_places_, asked_columns_, answers_, Part::visibility);
   for (std::size_t k = 0; k < requests_.size(); ++k) {
     const bool visible = answers_[k].r > 0.5f;
-    seen(requests_[k].slot)[requests_[k].row] = visible ? linalg::seen::kVisible : linalg::seen::kHidden;
+    seen(requests_[k].slot)[requests_[k].row] = visible ? seen::kVisible : seen::kHidden;
     slots_[requests_[k].slot].any_visible |= visible;
   }
   looked_ += requests_.size();

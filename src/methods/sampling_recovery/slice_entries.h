@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/random.h"
-#include "linalg/visibility_predictors.h"
 #include "matrix/entry_reader.h"
+#include "methods/common/visibility_predictors.h"
 #include "methods/sampling_recovery/sample_patterns.h"
 #include "methods/sampling_recovery/slice_rows.h"
 
@@ -57,7 +57,7 @@ class SliceEntries {
   std::span<const float> scalars(std::size_t s) const {
     return std::span(scalars_).subspan(s * rows_.size(), rows_.size());
   }
-  // Per row: linalg::seen.
+  // Per row: seen.
   std::span<std::uint8_t> seen(std::size_t s) {
     return std::span(seen_).subspan(s * rows_.size(), rows_.size());
   }

@@ -10,7 +10,6 @@ namespace lumirank::methods {
 
 using linalg::Entry;
 using matrix::Index;
-namespace seen = linalg::seen;
 
 RecoveryTally& RecoveryTally::operator+=(const RecoveryTally& o) {
   for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k] += o.seconds[k];

@@ -69,7 +69,7 @@ void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index
       static_cast<float>(std::sqrt(std::max(spread, 1e-30) / std::max(static_cast<double>(rows), 1.0)));
   for (Vec3f& p : group_points_) p = p / unit;
   plane_.resize(rows);
-  linalg::tangent_coordinates(group_points_, normal, plane_);
+  tangent_coordinates(group_points_, normal, plane_);
   curves_.build(plane_);
 
   receivers_.clear();

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "linalg/hilbert.h"
 #include "matrix/lighting_matrix.h"
+#include "methods/common/hilbert_neighbours.h"
 
 namespace lumirank::methods {
 
@@ -27,7 +27,7 @@ class SliceRows {
   std::uint32_t end(std::size_t row) const { return first_[row + 1]; }
   // Mean place of a row's receivers, in units in which the rows spread about 1 around 0.
   std::span<const Vec3f> points() const { return points_; }
-  const linalg::HilbertCurves& curves() const { return curves_; }
+  const HilbertCurves& curves() const { return curves_; }
 
  private:
   struct Placed {
@@ -41,7 +41,7 @@ class SliceRows {
   std::vector<matrix::Index> receivers_;
   std::vector<Vec3f> group_points_, points_;
   std::vector<Vec2f> plane_, ordered_plane_;
-  linalg::HilbertCurves curves_;
+  HilbertCurves curves_;
 };
 
 }  // namespace lumirank::methods

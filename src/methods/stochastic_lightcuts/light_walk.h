@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "matrix/entry_bounds.h"
-#include "methods/light_tree/light_tree.h"
+#include "methods/common/light_tree/light_tree.h"
 
 namespace lumirank::methods {
 

@@ -13,10 +13,10 @@
 
 #include "base/random.h"
 #include "matrix/entry_reader.h"
-#include "methods/known_rows.h"
+#include "methods/common/exact_rows.h"
+#include "methods/common/turns.h"
 #include "methods/parameters.h"
 #include "methods/stochastic_lightcuts/light_walk.h"
-#include "methods/turns.h"
 
 namespace lumirank::methods {
 

@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "base/timer.h"
 #include "matrix/entry_reader.h"
-#include "methods/slices/slice_pass.h"
+#include "methods/common/slices/slice_pass.h"
 #include "methods/visibility_completion/completion.h"
 
 namespace lumirank::methods {

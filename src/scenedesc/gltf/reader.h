@@ -13,7 +13,7 @@
 #include "scenedesc/gltf/buffers.h"
 #include "scenedesc/gltf/element.h"
 #include "scenedesc/readers.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::gltf {
 

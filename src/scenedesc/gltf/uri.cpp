@@ -4,7 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "scenedesc/files.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {

@@ -2,9 +2,9 @@
 #include <cctype>
 #include <filesystem>
 
-#include "scenedesc/files.h"
 #include "scenedesc/ies/ies.h"
 #include "scenedesc/ies/number_stream.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "scenedesc/files.h"
 #include "scenedesc/meshes/mesh_parts.h"
 #include "scenedesc/meshes/scan.h"
 #include "scenedesc/readers.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scenedesc/mesh.h"
+#include "scenedesc/schema/mesh.h"
 
 namespace lumirank::scenedesc {
 

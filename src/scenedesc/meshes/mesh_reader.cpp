@@ -1,8 +1,8 @@
 // Opens mesh files and applies what the scene says about them.
 #include "base/error.h"
-#include "scenedesc/files.h"
 #include "scenedesc/meshes/mesh_parts.h"
 #include "scenedesc/readers.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {
 

@@ -1,6 +1,6 @@
 // Meshes far from their file's origin keep what its numbers say.
 #include "base/near_origin.h"
-#include "scenedesc/mesh.h"
+#include "scenedesc/schema/mesh.h"
 
 namespace lumirank::scenedesc {
 

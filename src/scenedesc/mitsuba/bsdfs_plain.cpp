@@ -1,8 +1,8 @@
 // BSDFs that hold no others.
 #include <cmath>
 
+#include "scenedesc/data/ior.h"
 #include "scenedesc/mitsuba/bsdf_kinds.h"
-#include "scenedesc/mitsuba/ior.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

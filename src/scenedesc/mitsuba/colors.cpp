@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "base/spectrum.h"
-#include "scenedesc/files.h"
 #include "scenedesc/mitsuba/values.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

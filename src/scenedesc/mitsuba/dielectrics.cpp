@@ -2,7 +2,7 @@
 #include <cctype>
 #include <utility>
 
-#include "scenedesc/mitsuba/ior.h"
+#include "scenedesc/data/ior.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

@@ -5,8 +5,8 @@
 #include <pugixml.hpp>
 #include <set>
 
-#include "scenedesc/files.h"
 #include "scenedesc/mitsuba/element.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

@@ -2,7 +2,7 @@
 
 #include "scenedesc/mitsuba/plugin.h"
 #include "scenedesc/mitsuba/solar.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

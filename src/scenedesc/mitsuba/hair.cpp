@@ -1,13 +1,13 @@
 // Curves and hair: Mitsuba 3's curve shapes and its "hair" BSDF, 0.6's "hair" shape, and the BSDF
 // "kajiyakay", which only Lumirank has.
-#include "scenedesc/hair.h"
+#include "scenedesc/schema/hair.h"
 
 #include <cmath>
 #include <cstdio>
 
+#include "scenedesc/data/ior.h"
 #include "scenedesc/mitsuba/bsdf_kinds.h"
 #include "scenedesc/mitsuba/curves.h"
-#include "scenedesc/mitsuba/ior.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "scenedesc/files.h"
 #include "scenedesc/mitsuba/plugin.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/files.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

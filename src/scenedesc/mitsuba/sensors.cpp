@@ -1,8 +1,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "scenedesc/film_size.h"
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/schema/film_size.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

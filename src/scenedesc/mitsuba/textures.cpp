@@ -1,5 +1,5 @@
 #include "scenedesc/mitsuba/plugin.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

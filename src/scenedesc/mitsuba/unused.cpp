@@ -1,6 +1,6 @@
 // What is said of properties and nested objects that nothing asked for.
-#include "scenedesc/close_name.h"
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/schema/close_name.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

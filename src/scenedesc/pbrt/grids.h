@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "scenedesc/mesh.h"
+#include "scenedesc/schema/mesh.h"
 
 namespace lumirank::scenedesc::pbrt {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "scenedesc/pbrt/reader.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 

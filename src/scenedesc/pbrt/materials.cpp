@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenedesc/hair.h"
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/schema/hair.h"
 
 namespace lumirank::scenedesc::pbrt {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "scenedesc/close_name.h"
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/schema/close_name.h"
 
 namespace lumirank::scenedesc::pbrt {
 

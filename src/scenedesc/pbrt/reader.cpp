@@ -4,8 +4,8 @@
 #include <cctype>
 #include <filesystem>
 
-#include "scenedesc/files.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/files.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 

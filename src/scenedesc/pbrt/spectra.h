@@ -13,7 +13,7 @@
 #include "base/rgb.h"
 #include "base/spectrum.h"
 #include "scenedesc/pbrt/params.h"
-#include "scenedesc/scene_desc.h"
+#include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::scenedesc::pbrt {
 

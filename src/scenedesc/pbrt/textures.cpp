@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "scenedesc/pbrt/reader.h"
-#include "scenedesc/warnings.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 

@@ -1,0 +1,7 @@
+#include "base/version.h"
+
+namespace lumirank {
+
+std::string program_version() { return LUMIRANK_VERSION; }
+
+}  // namespace lumirank

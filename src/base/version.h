@@ -1,0 +1,11 @@
+// The program's version, as reports and pages state it.
+#pragma once
+
+#include <string>
+
+namespace lumirank {
+
+// "0.1.0"
+std::string program_version();
+
+}  // namespace lumirank

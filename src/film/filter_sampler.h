@@ -1,0 +1,33 @@
+// Film positions drawn from the reconstruction filter itself (filter importance sampling, Ernst et al. 2006):
+// every pixel is then an independent mean, with weights ±1 for filters that go negative.
+#pragma once
+
+#include <vector>
+
+#include "base/distribution.h"
+#include "film/filter.h"
+
+namespace lumirank::film {
+
+class FilterSampler {
+ public:
+  explicit FilterSampler(const Filter& filter);
+
+  struct Sample {
+    Vec2f offset;  // from the pixel's centre, in pixels
+    float weight;  // expectation 1
+  };
+  Sample sample(Vec2f u) const;
+
+ private:
+  struct Axis {
+    float offset, weight;
+  };
+  Axis axis(float u) const;
+
+  Filter filter_;
+  Distribution1D table_;
+  double scale_ = 1;  // ∫|f| / ∫f
+};
+
+}  // namespace lumirank::film

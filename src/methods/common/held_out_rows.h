@@ -1,0 +1,32 @@
+// Rows that the clustering does not see: they tell how large an error to expect where it has not looked.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linalg/sampled_rows.h"
+#include "methods/common/exact_rows.h"
+
+namespace lumirank::methods {
+
+class HeldOutRows {
+ public:
+  explicit HeldOutRows(const matrix::LightingMatrix& matrix) : entries_(matrix.columns()), known_(matrix) {}
+
+  // Evaluates the row into `values` (one per column) and keeps its scalar entries, times the row's weight.
+  void read(const SampledRow& row, std::span<Rgb> values);
+
+  const linalg::SampledRows& entries() const { return entries_; }
+  std::size_t rows() const { return known_.size(); }
+  // What is exact there.
+  const KnownRows& known() const { return known_; }
+  // Σ over the rows of share × Σ_j scalar entry: the light of an image.
+  double image_sum() const { return image_sum_; }
+
+ private:
+  linalg::SampledRows entries_;
+  KnownRows known_;
+  double image_sum_ = 0;
+};
+
+}  // namespace lumirank::methods

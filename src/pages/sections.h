@@ -1,0 +1,23 @@
+// The parts of the compare page, each one HTML element, or nothing where there is nothing to say.
+#pragma once
+
+#include <string>
+
+#include "pages/results.h"
+#include "pages/summary.h"
+
+namespace lumirank::pages {
+
+// What was compared, against what, and how good that is.
+std::string header_section(const CompareResults& results, const CompareSummary& summary);
+// Error against time and against rays.
+std::string error_section(const CompareResults& results, const CompareSummary& summary);
+// Any two images side by side.
+std::string image_section(const CompareResults& results, const CompareSummary& summary);
+// Every group of runs, and their seconds per phase.
+std::string table_section(const CompareSummary& summary);
+std::string phase_section(const CompareSummary& summary);
+// Hašan, Pellacini, Bala 2007, Figure 3.
+std::string singular_value_section(const CompareResults& results);
+
+}  // namespace lumirank::pages

@@ -1,0 +1,174 @@
+#include "pathtrace/light_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "base/rgb.h"
+#include "emitters/area.h"
+
+namespace lumirank::pathtrace {
+namespace {
+
+// The least part of all samples that near and far lights get where both shine: the power of an environment
+// says little about what of it enters through a window.
+constexpr float kGroupFloor = 0.25f;
+
+using emitters::LightBound;
+
+LightBound bound_of(const emitters::AreaEmitter::Triangle& t, float intensity) {
+  LightBound b;
+  for (const Vec3f corner : {t.p0, t.p0 + t.e1, t.p0 + t.e2}) b.bounds.extend(corner);
+  b.axis = t.normal;
+  b.intensity = intensity;
+  return b;
+}
+
+LightBound bound_of(const emitters::PointEmitter& e) {
+  LightBound b;
+  b.bounds.extend(e.position);
+  b.spread = kPi;
+  b.intensity = luminance(e.intensity);
+  return b;
+}
+
+// The fall-off is full up to some angle, then below a line that reaches zero at the cut-off; over a quarter
+// turn or less the cosine lies above that line.
+LightBound bound_of(const emitters::SpotEmitter& e) {
+  LightBound b;
+  b.bounds.extend(e.position);
+  b.axis = e.frame.n;
+  b.spread = std::max(e.beam, e.cutoff - kPi / 2);
+  b.reach = e.cutoff - b.spread;
+  b.intensity = luminance(e.intensity);
+  return b;
+}
+
+// Full within the polar angles that are not dark, about whichever pole is nearer; nothing beyond.
+LightBound bound_of(const emitters::ProfileEmitter& e) {
+  LightBound b;
+  b.bounds.extend(e.position);
+  const float down = e.profile->greatest_theta(), up = kPi - e.profile->least_theta();
+  b.axis = down <= up ? e.frame.n : -e.frame.n;
+  b.spread = std::min(down, up);
+  b.reach = std::min(0.01f, kPi - b.spread);
+  b.intensity = luminance(e.scale) * e.profile->highest();
+  return b;
+}
+
+}  // namespace
+
+emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Vec3f wo) {
+  if (closure.is_fibre()) return {position, Vec3f{}, true};
+  bool both_sides = false;
+  for (int k = 0; k < closure.count; ++k) both_sides |= scatter::shines_through(closure.lobes[k].kind);
+  const Vec3f n = closure.frame.n;
+  return {position, dot(n, wo) < 0 ? -n : n, both_sides};
+}
+
+LightSampler::LightSampler(const world::World& world) : world_(world) {
+  const auto& all = world.emitters();
+  std::vector<LightBound> bounds;
+  std::vector<float> far_weights;
+  double near_power = 0, far_power = 0;
+  const float radius = world.bounds().radius();
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    first_leaf_.push_back(static_cast<std::uint32_t>(leaves_.size()));
+    const int id = static_cast<int>(e);
+    const float power = mean(emitters::power(all[e], radius));
+    if (const auto* area = std::get_if<emitters::AreaEmitter>(&all[e].kind)) {
+      const double total = area->by_power.total();
+      for (std::size_t k = 0; k < area->triangles.size(); ++k) {
+        leaves_.push_back({id, static_cast<std::uint32_t>(k)});
+        bounds.push_back(bound_of(area->triangles[k], static_cast<float>(area->by_power.pmf(k) * total)));
+      }
+      near_power += power;
+    } else if (const auto* point = std::get_if<emitters::PointEmitter>(&all[e].kind)) {
+      leaves_.push_back({id, 0}), bounds.push_back(bound_of(*point));
+      near_power += power;
+    } else if (const auto* spot = std::get_if<emitters::SpotEmitter>(&all[e].kind)) {
+      leaves_.push_back({id, 0}), bounds.push_back(bound_of(*spot));
+      near_power += power;
+    } else if (const auto* profile = std::get_if<emitters::ProfileEmitter>(&all[e].kind)) {
+      leaves_.push_back({id, 0}), bounds.push_back(bound_of(*profile));
+      near_power += power;
+    } else {
+      far_.push_back(id), far_weights.push_back(power);
+      far_power += power;
+    }
+  }
+  tree_ = emitters::LightTree(bounds);
+  far_choice_ = Distribution1D(far_weights);
+  near_share_ = near_power > 0 ? static_cast<float>(near_power / (near_power + far_power)) : 0.0f;
+  if (near_power > 0 && far_power > 0) near_share_ = std::clamp(near_share_, kGroupFloor, 1 - kGroupFloor);
+}
+
+// Where no near light can matter, all samples go to the far ones.
+float LightSampler::near_share(const emitters::LitPoint& at) const {
+  if (!(far_choice_.total() > 0)) return 1;
+  return tree_.reaches(at) ? near_share_ : 0.0f;
+}
+
+LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u_light, Vec2f u) const {
+  Sample s;
+  const float near = near_share(at);
+  if (u_light < near) {
+    const auto pick = tree_.sample(at, u_light / near);
+    if (!(pick.pmf > 0)) return s;
+    const Leaf leaf = leaves_[pick.light];
+    s.emitter = leaf.emitter;
+    const auto& kind = world_.emitters()[static_cast<std::size_t>(leaf.emitter)].kind;
+    if (const auto* area = std::get_if<emitters::AreaEmitter>(&kind)) {
+      s.direct = emitters::sample_direct_triangle(area->triangles[leaf.triangle], at.position, u);
+      s.direct.triangle = leaf.triangle;
+      if (s.direct.pdf > 0)
+        s.direct.radiance = world_.emitted(leaf.emitter, leaf.triangle, s.direct.barycentric);
+    } else {
+      s.direct = world_.sample_direct(leaf.emitter, at.position, 0, u);
+    }
+    s.pdf = s.direct.pdf * near * pick.pmf;
+  } else if (far_choice_.total() > 0) {
+    const auto pick = far_choice_.sample(static_cast<float>((u_light - near) / (1.0 - near)));
+    s.emitter = far_[pick.index];
+    s.direct = world_.sample_direct(s.emitter, at.position, 0, u);
+    s.pdf = s.direct.pdf * (1 - near) * pick.pmf;
+  }
+  return s;
+}
+
+float LightSampler::pdf_hit(const emitters::LitPoint& at, const world::SurfaceHit& hit, Vec3f direction,
+                            float distance) const {
+  if (hit.emitter < 0) return 0;
+  const auto e = static_cast<std::size_t>(hit.emitter);
+  const auto* area = std::get_if<emitters::AreaEmitter>(&world_.emitters()[e].kind);
+  // Triangle t of an area emitter is triangle t of its mesh.
+  if (!area || hit.hit.triangle >= area->triangles.size()) return 0;
+  const float pdf = emitters::pdf_direct_triangle(area->triangles[hit.hit.triangle], direction, distance);
+  if (!(pdf > 0)) return 0;
+  return pdf * near_share(at) * tree_.pmf(at, first_leaf_[e] + hit.hit.triangle);
+}
+
+float LightSampler::pdf_background(const emitters::LitPoint& at, Vec3f direction) const {
+  const int e = world_.environment();
+  if (e < 0) return 0;
+  const auto& environment =
+      std::get<emitters::EnvironmentEmitter>(world_.emitters()[static_cast<std::size_t>(e)].kind);
+  const auto k = static_cast<std::size_t>(std::find(far_.begin(), far_.end(), e) - far_.begin());
+  return (1 - near_share(at)) * far_choice_.pmf(k) * environment.pdf(direction);
+}
+
+Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f direction, float distance,
+                     std::uint64_t key) {
+  const Vec3f origin = world::World::offset_origin(from, ng, direction);
+  geometry::Ray ray{origin, direction, 0, kInfinity};
+  if (std::isfinite(distance)) {
+    // Aimed anew from the moved origin, which may be farther off the surface than the open end is long; the
+    // lamp itself must not block.
+    ray.direction = from + direction * distance - origin;
+    ray.t_max = 1 - 1e-4f;
+  }
+  if (world.rays().occluded(ray, key)) return Rgb{0};
+  return world.rays().has_smooth() ? world.rays().transmittance(ray) : Rgb{1};
+}
+
+}  // namespace lumirank::pathtrace

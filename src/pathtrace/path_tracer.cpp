@@ -1,0 +1,204 @@
+#include "pathtrace/path_tracer.h"
+
+#include "scatter/closure.h"
+
+namespace lumirank::pathtrace {
+
+using scatter::Closure;
+using scatter::LobeKind;
+using scatter::Lobes;
+
+// The state of a path between two vertices.
+struct PathTracer::Walk {
+  SampleStream random;
+  std::uint64_t key;
+  geometry::Ray ray;
+  Rgb throughput{1};
+  int segments = 1;             // traced so far, the current one included; straight passes do not count
+  int smooth_vertices = 0;      // non-specular vertices passed
+  bool after_receiver = false;  // the vertex that comes next is the first one after the receiver
+  bool counts;                  // whether light found now belongs to the wanted paths
+  bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
+  float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
+  emitters::LitPoint from{};    // that vertex
+  float travelled = 0;          // since the last vertex
+  float receiver_term = 0;      // π f_x·cosθx of the step away from the receiver
+  const Reach* near = nullptr;  // what may come next after the receiver, see Departure
+  float eta_scale = 1;          // undoes refraction's scaling for Russian roulette
+  Radiance sum{};
+
+  void add(Rgb value) {
+    if (!counts) return;
+    Rgb& part = smooth_vertices == 0 ? sum.emission : (smooth_vertices == 1 ? sum.direct : sum.indirect);
+    part += value;
+  }
+};
+
+PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
+    : world_(world), lights_(world), settings_(settings) {}
+
+Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
+  Walk walk{.random = SampleStream(settings_.seed, Stage::reference, pixel, sample),
+            .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
+            .ray = ray,
+            .counts = settings_.paths != Paths::rest};
+  finish(walk);
+  return walk.sum;
+}
+
+Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, std::uint64_t key) const {
+  const scatter::BsdfSample& next = departure.next;
+  Walk walk{.random = random,
+            .key = key,
+            .ray = {world::World::offset_origin(departure.position, departure.ng, next.wi), next.wi},
+            .throughput = next.weight,
+            .segments = departure.depth + 1,
+            .smooth_vertices = 1,
+            .after_receiver = true,
+            .counts = true,
+            .specular = false,
+            .bsdf_pdf = next.pdf,
+            .from = departure.from,
+            .near = departure.near,
+            .eta_scale = next.eta * next.eta};
+  finish(walk);
+  return walk.sum.indirect;
+}
+
+void PathTracer::finish(Walk& walk) const {
+  // A bound on straight passes, so that coincident null surfaces cannot hold a path for ever.
+  constexpr int kMaxSteps = 4096;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const auto hit = world_.intersect(walk.ray);
+    if (hit) walk.travelled += hit->hit.t;
+    add_emission(walk, hit ? &*hit : nullptr);
+    if (!hit) break;
+    if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
+      // No further segment may follow, but a straight pass is no segment.
+      if (world_.materials().passage(hit->material) == scatter::MaterialSet::Passage::opaque) break;
+    }
+    Closure closure = world_.materials().closure(hit->material, hit->point, -walk.ray.direction);
+    if (!scatter(walk, *hit, closure)) break;
+  }
+}
+
+// What shines at the end of the current segment, weighted against light sampling (balance heuristic).
+void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
+  const Vec3f direction = walk.ray.direction;
+  Rgb emitted{0};
+  float light_pdf = 0;
+  if (hit) {
+    if (hit->emitter < 0) return;
+    emitted = world_.emitted(*hit, -direction);
+    if (!walk.specular && !is_black(emitted))
+      light_pdf = lights_.pdf_hit(walk.from, *hit, direction, walk.travelled);
+  } else {
+    if (world_.environment() >= 0) {
+      emitted = world_.background(direction);
+      if (!walk.specular) light_pdf = lights_.pdf_background(walk.from, direction);
+    }
+    // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
+    if (walk.specular) emitted += world_.sun_disc(direction);
+  }
+  if (is_black(emitted)) return;
+  const float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + light_pdf);
+  walk.add(walk.throughput * emitted * weight);
+}
+
+void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
+                               double u_light, float connection) const {
+  const Vec3f wo = -walk.ray.direction;
+  walk.from = lit_point(hit.point.position, closure, wo);
+  const auto s = lights_.sample(walk.from, u_light, walk.random.next_2d());
+  if (!(s.pdf > 0)) return;
+  Rgb f = scatter::eval(closure, wo, s.direct.direction);
+  if (connection > 0) f *= missing(connection, closure, wo, s.direct.direction);
+  if (is_black(f)) return;
+  const Rgb visible =
+      visible_fraction(world_, hit.point.position, hit.point.ng, s.direct.direction, s.direct.distance,
+                       mix64(walk.key + static_cast<std::uint64_t>(walk.segments)));
+  if (is_black(visible)) return;
+  const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
+  walk.add(walk.throughput * f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf)));
+}
+
+Rgb PathTracer::missing(float connection, const Closure& closure, Vec3f wo, Vec3f wi) const {
+  const Rgb f = scatter::eval_f(closure, wo, wi);
+  const Rgb light =
+      settings_.carried.diffuse_only ? scatter::eval_f(scatter::broad_part(closure, 1), wo, wi) : f;
+  const float top = connection * kPi * max_component(light);
+  if (!(top > 0)) return Rgb(1);
+  const float share = std::min(1.0f, settings_.carried.bound / top);
+  Rgb part{0};
+  for (int c = 0; c < 3; ++c)
+    if (f[c] > 0) part[c] = std::max(0.0f, 1 - share * light[c] / f[c]);
+  return part;
+}
+
+// Light sampling and the next direction; false ends the path.
+bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& closure) const {
+  const bool may_continue = settings_.max_depth < 0 || walk.segments < settings_.max_depth;
+  const bool first_after_receiver = walk.after_receiver;
+  if (first_after_receiver && settings_.paths != Paths::all) {
+    // Columns carry this vertex's smooth lobes, the rest its specular ones; both pass straight through.
+    const bool keep_specular = settings_.paths == Paths::rest;
+    const Vec3f place = hit.point.position;
+    const bool counts =
+        !walk.near || length_squared(place - walk.from.position) < square((*walk.near)(place));
+    int kept = 0;
+    for (int k = 0; k < closure.count; ++k) {
+      const LobeKind kind = closure.lobes[k].kind;
+      if (kind == LobeKind::delta_pass || (counts && scatter::is_delta(kind) == keep_specular))
+        closure.lobes[kept++] = closure.lobes[k];
+    }
+    closure.count = kept;
+  }
+  float connection = 0;
+  if (first_after_receiver && settings_.carried.bound > 0)
+    connection = walk.receiver_term *
+                 (closure.is_fibre() ? closure.cosine(walk.ray.direction)
+                                     : std::abs(dot(hit.point.ng, walk.ray.direction))) /
+                 square(walk.travelled);
+  const auto [u_light, u_lobe] = walk.random.next_fine();
+  if (closure.has_smooth() && may_continue) {
+    // The vertex itself is non-specular for light that is found here.
+    ++walk.smooth_vertices;
+    sample_lights(walk, hit, closure, u_light, connection);
+    --walk.smooth_vertices;
+  }
+
+  const Vec3f wo = -walk.ray.direction;
+  const auto next = scatter::sample(closure, wo, u_lobe, walk.random.next_2d(), Lobes::all);
+  if (!next || is_black(next->weight)) return false;
+  walk.throughput *= next->weight;
+  const bool pass = next->delta && next->kind == LobeKind::delta_pass;
+  if (!pass) {
+    if (!may_continue) return false;
+    ++walk.segments;
+    walk.travelled = 0;
+    walk.eta_scale *= next->eta * next->eta;
+    walk.specular = next->delta;
+    walk.bsdf_pdf = next->pdf;
+    if (first_after_receiver && next->delta) walk.counts = settings_.paths != Paths::columns;
+    walk.after_receiver = false;
+    if (!next->delta && ++walk.smooth_vertices == 1) {
+      walk.after_receiver = true;
+      if (settings_.carried.bound > 0)
+        walk.receiver_term = kPi * max_component(scatter::eval(closure, wo, next->wi));
+    }
+    if (connection > 0 && !next->delta) {
+      walk.throughput *= missing(connection, closure, wo, next->wi);
+      if (is_black(walk.throughput)) return false;
+    }
+
+    const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
+    if (walk.segments > 5) {
+      if (walk.random.next_float() >= survival) return false;
+      walk.throughput *= 1 / survival;
+    }
+  }
+  walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
+  return true;
+}
+
+}  // namespace lumirank::pathtrace

@@ -1,0 +1,84 @@
+// Ground truth: a unidirectional path tracer with next-event estimation and multiple importance sampling
+// (Veach 1997). It shares no estimator with the methods: no virtual lights, no matrix, its own random
+// numbers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "base/rgb.h"
+#include "pathtrace/light_sampler.h"
+#include "pathtrace/sample_stream.h"
+#include "world/camera.h"
+#include "world/world.h"
+
+namespace lumirank::pathtrace {
+
+// Which paths count. Columns of the matrix end in a surface or emitter hit that the receiver sees without a
+// specular vertex between (docs/conventions.md), so `columns` leaves out what follows a specular vertex right
+// after the receiver, and `rest` is that and nothing else: columns + rest = all.
+enum class Paths { all, columns, rest };
+
+// Light by the number of non-specular vertices between eye and emitter: none, one, more.
+struct Radiance {
+  Rgb emission, direct, indirect;
+  Rgb total() const { return emission + direct + indirect; }
+};
+
+// What the columns of clamped virtual lights hold already. An entry is scaled down so that A·G·(π f_x)(π f_y)
+// ≤ X (docs/conventions.md); where A is the same for all lights, what is left of a path depends on its first
+// three vertices alone, and tracing the paths with the rest of their weight gives back what clamping took
+// (Kollig and Keller 2004).
+struct CarriedByColumns {
+  float bound = 0;            // X / A in 1/area; 0: the columns hold nothing, all paths count in full
+  bool diffuse_only = false;  // f_y of the lights is that of the diffuse lobes alone
+};
+
+struct PathSettings {
+  std::uint64_t seed = 1;
+  int max_depth = -1;  // Mitsuba's count; -1: unlimited
+  Paths paths = Paths::all;
+  CarriedByColumns carried;  // only with Paths::columns; says nothing about direct light
+};
+
+// How near to a place light must come from to count, as a distance.
+using Reach = std::function<float(Vec3f place)>;
+
+class PathTracer {
+ public:
+  PathTracer(const world::World& world, const PathSettings& settings);
+
+  // Radiance arriving along `ray`, one random path keyed by (pixel, sample). Passing straight through null
+  // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth.
+  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
+
+  // A non-specular vertex, and the direction in which a path leaves it.
+  struct Departure {
+    Vec3f position, ng;
+    emitters::LitPoint from;
+    scatter::BsdfSample next;
+    int depth;  // segments from the eye to the vertex
+    // Unless nullptr, light counts only from places that have the vertex within their reach.
+    const Reach* near = nullptr;
+  };
+  // The indirect light that leaves the vertex, one random path with the sample's weight in it; `random` has
+  // chosen the direction. `key` decides cut-outs.
+  Rgb indirect_after(const Departure& departure, SampleStream random, std::uint64_t key) const;
+
+ private:
+  struct Walk;
+  void finish(Walk& walk) const;
+  void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
+  void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
+                     double u_light, float connection) const;
+  // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular
+  // vertices.
+  Rgb missing(float connection, const scatter::Closure& closure, Vec3f wo, Vec3f wi) const;
+  bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
+
+  const world::World& world_;
+  LightSampler lights_;
+  PathSettings settings_;
+};
+
+}  // namespace lumirank::pathtrace

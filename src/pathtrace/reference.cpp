@@ -1,0 +1,173 @@
+#include "pathtrace/reference.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "film/filter_sampler.h"
+#include "pathtrace/sample_stream.h"
+
+namespace lumirank::pathtrace {
+// Members of PathFilm::Impl, so they have names of their own instead of an anonymous namespace.
+// Sums over the samples of one half, in double precision so that long runs lose nothing.
+struct PathFilmHalf {
+  struct Sum {
+    double r = 0, g = 0, b = 0;
+    void add(Rgb c) { r += c.r, g += c.g, b += c.b; }
+    Rgb scaled(double s) const {
+      return {static_cast<float>(r * s), static_cast<float>(g * s), static_cast<float>(b * s)};
+    }
+  };
+  std::vector<Sum> emission, direct, indirect;
+  int count = 0;
+  explicit PathFilmHalf(std::size_t pixels) : emission(pixels), direct(pixels), indirect(pixels) {}
+};
+
+namespace {
+
+struct ImageParts {
+  bool emission, direct, indirect;
+};
+
+image::Image mean_image(const world::View& view, std::span<const PathFilmHalf* const> halves,
+                        ImageParts wanted) {
+  image::Image image(view.width, view.height);
+  int count = 0;
+  for (const PathFilmHalf* h : halves) count += h->count;
+  const double scale = 1.0 / std::max(1, count);
+  for (std::size_t p = 0; p < image.pixels.size(); ++p)
+    for (const PathFilmHalf* h : halves) {
+      if (wanted.emission) image.pixels[p] += h->emission[p].scaled(scale);
+      if (wanted.direct) image.pixels[p] += h->direct[p].scaled(scale);
+      if (wanted.indirect) image.pixels[p] += h->indirect[p].scaled(scale);
+    }
+  return image;
+}
+
+// Relative L1 of the mean of both halves. For the mean of two independent estimates E|mean - truth| is E|A -
+// B|/2.
+double stated_error(const world::View& view, const PathFilmHalf& a, const PathFilmHalf& b,
+                    ImageParts wanted) {
+  if (a.count == 0 || b.count == 0) return std::numeric_limits<double>::infinity();
+  const PathFilmHalf* pa[] = {&a};
+  const PathFilmHalf* pb[] = {&b};
+  const image::Image ia = mean_image(view, pa, wanted), ib = mean_image(view, pb, wanted);
+  double difference = 0, total = 0;
+  for (std::size_t p = 0; p < ia.pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c) {
+      difference += std::abs(static_cast<double>(ia.pixels[p][c]) - ib.pixels[p][c]);
+      total += static_cast<double>(ia.pixels[p][c]) + ib.pixels[p][c];
+    }
+  return total > 0 ? difference / total : 0.0;
+}
+
+}  // namespace
+
+struct PathFilm::Impl {
+  world::View view;
+  ReferenceOptions options;
+  PathTracer tracer;
+  world::Camera camera;
+  film::FilterSampler filter;
+  std::size_t pixels;
+  PathFilmHalf halves[2];
+  ReferenceResult result;
+
+  Impl(const world::World& world, const world::View& v, const ReferenceOptions& o)
+      : view(v),
+        options(o),
+        tracer(world, {o.seed, v.max_depth, o.paths, o.carried}),
+        camera(v.sensor, world.units()),
+        filter(world::make_filter(v.sensor.film.filter)),
+        pixels(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height)),
+        halves{PathFilmHalf(pixels), PathFilmHalf(pixels)} {}
+
+  void trace_pixel(std::size_t p, int begin, int end) {
+    const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
+    const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
+    const std::uint64_t id =
+        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
+        static_cast<std::uint64_t>(x);
+    for (int s = begin; s < end; ++s) {
+      SampleStream random(options.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
+      const auto at = filter.sample(random.next_2d());
+      const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
+                       static_cast<float>(y) + 0.5f + at.offset.y};
+      const Radiance radiance =
+          tracer.trace(camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
+      if (!is_finite(radiance.total()))
+        throw InternalError("the reference met a value that is not finite; replay pixel " +
+                            std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
+      PathFilmHalf& half = halves[s & 1];
+      half.emission[p].add(radiance.emission * at.weight);
+      half.direct[p].add(radiance.direct * at.weight);
+      half.indirect[p].add(radiance.indirect * at.weight);
+    }
+  }
+};
+
+PathFilm::PathFilm(const world::World& world, const world::View& view, const ReferenceOptions& options)
+    : impl_(std::make_unique<Impl>(world, view, options)) {}
+PathFilm::~PathFilm() = default;
+const ReferenceResult& PathFilm::result() const { return impl_->result; }
+
+bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(double)>& progress) {
+  Impl& m = *impl_;
+  const ImageParts wanted{m.options.emission, m.options.direct, m.options.indirect};
+  const int begin_path = m.result.spp, end_path = begin_path + paths;
+  std::atomic<std::size_t> finished{0};
+  parallel_for(m.pixels, 256, [&](std::size_t begin, std::size_t end) {
+    if (sinks.cancelled()) return;
+    for (std::size_t p = begin; p < end; ++p) m.trace_pixel(p, begin_path, end_path);
+    const double fraction = static_cast<double>(finished += end - begin) / static_cast<double>(m.pixels);
+    if (progress) progress(fraction);
+  });
+  if (sinks.cancelled()) {
+    // The pass was left half done: its samples are unevenly spread and cannot be used.
+    m.result.interrupted = true;
+    return false;
+  }
+  for (int s = begin_path; s < end_path; ++s) ++m.halves[s & 1].count;
+  const PathFilmHalf* both[] = {&m.halves[0], &m.halves[1]};
+  m.result.emission = mean_image(m.view, both, {true, false, false});
+  m.result.direct = mean_image(m.view, both, {false, true, false});
+  m.result.indirect = mean_image(m.view, both, {false, false, true});
+  m.result.spp = end_path;
+  m.result.error = stated_error(m.view, m.halves[0], m.halves[1], wanted);
+  m.result.image = mean_image(m.view, both, wanted);
+  return true;
+}
+
+ReferenceResult path_trace(const world::World& world, const world::View& view,
+                           const ReferenceOptions& options, const ReferenceEnd& end, const Sinks& sinks,
+                           const std::function<void(const image::Image&)>& on_pass) {
+  PathFilm film(world, view, options);
+  const int limit = end.spp > 0 ? end.spp : (end.time > 0 || end.error > 0 ? 1 << 20 : 64);
+  const Timer timer;
+  int done = 0;
+  while (done < limit) {
+    // Passes of growing size: the image is whole after each, and the error is not computed too often.
+    const int pass = std::min(limit - done, std::clamp(done / 4, 2, 64));
+    const bool whole = film.add(pass, sinks, [&](double fraction) {
+      double progress = (done + pass * fraction) / limit;
+      if (end.time > 0) progress = std::max(progress, timer.seconds() / end.time);
+      sinks.report("reference", std::min(1.0, progress));
+    });
+    if (!whole) {
+      if (done == 0) throw Cancelled();
+      break;
+    }
+    done += pass;
+    if (on_pass) on_pass(film.result().image);
+    if (end.error > 0 && film.result().error <= end.error) break;
+    // A pass is not begun that would, at the pace so far, end well after the budget.
+    if (end.time > 0) {
+      const double next = std::clamp(done / 4, 2, 64);
+      if (timer.seconds() * (1 + 0.5 * next / done) > end.time) break;
+    }
+  }
+  return film.result();
+}
+
+}  // namespace lumirank::pathtrace

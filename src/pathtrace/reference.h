@@ -1,0 +1,61 @@
+// The path-traced reference: passes over the film until the samples, the time or the error asked for are
+// reached.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "base/sinks.h"
+#include "image/image.h"
+#include "pathtrace/path_tracer.h"
+#include "world/view.h"
+
+namespace lumirank::pathtrace {
+
+struct ReferenceResult {
+  image::Image image, direct, indirect, emission;
+  int spp = 0;
+  // Of the image, relative L1, from the difference of its two independent halves: Σ|A - B| / 2 / ΣI.
+  double error = 0;
+  bool interrupted = false;
+};
+
+struct ReferenceOptions {
+  std::uint64_t seed = 1;
+  Paths paths = Paths::all;
+  // What the image is the sum of.
+  bool emission = true, direct = true, indirect = true;
+  // With a bound the indirect part is only what clamped columns lack; `direct` and `emission` mean nothing
+  // then.
+  CarriedByColumns carried;
+};
+
+// Paths are added in passes; the bits depend on their number alone.
+class PathFilm {
+ public:
+  PathFilm(const world::World& world, const world::View& view, const ReferenceOptions& options);
+  ~PathFilm();
+
+  // So many more paths per pixel. `progress` (may be empty) gets the finished fraction of the pass. False if
+  // it was cancelled: result() is then still that of the passes before, and no more can be added.
+  bool add(int paths, const Sinks& sinks, const std::function<void(double)>& progress = {});
+  const ReferenceResult& result() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// When it is enough; without any of them after 64 paths per pixel.
+struct ReferenceEnd {
+  int spp = 0;
+  double time = 0;   // seconds
+  double error = 0;  // stated relative L1
+};
+
+// `on_pass` (may be empty) gets the image so far.
+ReferenceResult path_trace(const world::World& world, const world::View& view,
+                           const ReferenceOptions& options, const ReferenceEnd& end, const Sinks& sinks,
+                           const std::function<void(const image::Image&)>& on_pass = {});
+
+}  // namespace lumirank::pathtrace

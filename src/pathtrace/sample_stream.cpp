@@ -1,0 +1,49 @@
+#include "pathtrace/sample_stream.h"
+
+#include <algorithm>
+
+namespace lumirank::pathtrace {
+namespace {
+
+std::uint32_t reversed(std::uint32_t x) {
+  x = __builtin_bswap32(x);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+// A permutation of 32-bit numbers in which a bit depends on itself and lower bits only, hence Owen's
+// scrambling of a number whose first digit is its lowest bit. Sums, odd factors, and x ^ (x · even) all are
+// of that kind. The sum makes each result uniform over the keys.
+std::uint32_t scramble_from_lowest(std::uint32_t x, std::uint64_t key) {
+  const auto low = static_cast<std::uint32_t>(key), high = static_cast<std::uint32_t>(key >> 32);
+  x ^= x * 0x3a8f05c6u;
+  x += low;
+  x *= high | 1;
+  x ^= x * 0x9e6b1d34u;
+  x ^= x * 0x51c7a2eau;
+  return x;
+}
+
+// Sobol's second dimension, lowest bit first: bit r is the sum (mod 2) of the index's bits k with C(k, r)
+// odd, which by Lucas are those whose number k has all the ones of r.
+std::uint32_t pascal(std::uint32_t i) {
+  i ^= (i >> 1) & 0x55555555u;
+  i ^= (i >> 2) & 0x33333333u;
+  i ^= (i >> 4) & 0x0f0f0f0fu;
+  i ^= (i >> 8) & 0x00ff00ffu;
+  return i ^ (i >> 16);
+}
+
+}  // namespace
+
+SampleStream::Bits SampleStream::next_pair() {
+  const std::uint64_t key = mix64(key_ + pairs_++);
+  // The order of the points is shuffled within all aligned blocks of 2^k, so that every pair of dimensions
+  // stays even, and two pairs know nothing of each other.
+  const std::uint32_t i = reversed(scramble_from_lowest(reversed(index_), key));
+  return {reversed(scramble_from_lowest(i, mix64(key ^ 1))),
+          reversed(scramble_from_lowest(pascal(i), mix64(key ^ 2)))};
+}
+
+}  // namespace lumirank::pathtrace

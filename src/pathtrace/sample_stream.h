@@ -1,0 +1,56 @@
+// Random numbers of a path, evenly spread over the paths of a pixel: pairs of Owen-scrambled Sobol points
+// (A. B. Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995), each pair of dimensions in an
+// order of its own. The scrambling is by hashing, in the manner of S. Laine, T. Karras, "Stratified Sampling
+// for Stochastic Transparency", 2011, and B. Burley, "Practical Hash-based Owen Scrambling", 2020.
+#pragma once
+
+#include <cstdint>
+
+#include "base/random.h"
+
+namespace lumirank::pathtrace {
+
+class SampleStream {
+ public:
+  // Samples of even and of odd number belong to two independent sets, so that halves of the samples may be
+  // compared. Any one sample alone is as random as from Rng: means are unbiased for every number of samples.
+  SampleStream(std::uint64_t seed, Stage stage, std::uint64_t pixel, std::uint64_t sample)
+      : key_(hash_ids(seed, stage, pixel, sample & 1)),
+        index_(static_cast<std::uint32_t>(sample >> 1)),
+        rng_(seed, stage, ~key_, sample) {}
+
+  // The next pair of dimensions. What a path needs after its first vertices is drawn independently.
+  Vec2f next_2d() {
+    if (pairs_ >= kPairs) return rng_.next_2d();
+    const Bits b = next_pair();
+    return {static_cast<float>(b.x >> 8) * 0x1p-24f, static_cast<float>(b.y >> 8) * 0x1p-24f};
+  }
+  // The same with the bits of a double in x.
+  struct Pair {
+    double x;
+    float y;
+  };
+  Pair next_fine() {
+    if (pairs_ >= kPairs) {
+      const double x = rng_.next_double();
+      return {x, rng_.next_float()};
+    }
+    const Bits b = next_pair();
+    return {(b.x + rng_.next_double()) * 0x1p-32, static_cast<float>(b.y >> 8) * 0x1p-24f};
+  }
+  // Independent of everything.
+  float next_float() { return rng_.next_float(); }
+
+ private:
+  static constexpr std::uint32_t kPairs = 16;
+  struct Bits {
+    std::uint32_t x, y;
+  };
+  Bits next_pair();
+
+  std::uint64_t key_;
+  std::uint32_t index_, pairs_ = 0;
+  Rng rng_;
+};
+
+}  // namespace lumirank::pathtrace

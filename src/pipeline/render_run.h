@@ -1,0 +1,29 @@
+// One render of a world that is built: from the plan of its time to the picture and its report.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/timer.h"
+#include "lumirank/lumirank.h"
+#include "methods/method.h"
+#include "pipeline/pipeline.h"
+
+namespace lumirank::pipeline {
+
+struct RenderTask {
+  const world::World* world = nullptr;
+  View view;
+  const methods::MethodInfo* info = nullptr;
+  std::unique_ptr<methods::Method> method;
+  std::string why;          // it is this method
+  bool by_default = false;  // nobody asked for it: a short time may choose another
+  double lumens_per_unit = 1;
+  Timer timer;  // since the scene was loaded
+  double build_seconds = 0;
+};
+
+RenderResult run_render(RenderTask task, const RenderSettings& settings, const Sinks& sinks,
+                        const PreviewCallback& on_preview);
+
+}  // namespace lumirank::pipeline

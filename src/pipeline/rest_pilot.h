@@ -1,0 +1,40 @@
+// Whether the light that columns cannot carry matters in a view, and how many paths it takes to add it: found
+// by a few thousand paths over the whole film, so that a crop, its size and its samples decide nothing.
+#pragma once
+
+#include "base/sinks.h"
+#include "lumirank/settings.h"
+#include "pipeline/pipeline.h"
+
+namespace lumirank::pipeline {
+
+struct RestPilot {
+  double share = 0;  // of the light that surfaces send to the eye (emission seen directly left out)
+  double without_brightest = 0;  // the same without the brightest of the paths: one path decides nothing
+  double deviation = 0;          // of one path per pixel, over that light: Σ standard deviation / Σ light
+  double path_seconds = 0;       // of one such path, all threads at work
+  bool matters() const { return without_brightest > kLeast; }
+  // pathtrace::Paths per pixel whose noise is as large as the error allowed for it, within reason.
+  int paths() const;
+
+  // Half a percent: a tenth of what the columns' own error is by default (5 % and more on interiors). Below
+  // that the noise of any affordable number of paths is larger than the light that they bring.
+  static constexpr double kLeast = 0.005;
+  // Relative L1 of the picture that the paths' noise may add. In quadrature with 5 % it is a twelfth of that.
+  static constexpr double kNoise = 0.02;
+  static constexpr int kFewestPaths = 16, kMostPaths = 64;
+};
+
+RestPilot pilot_rest(const world::World& world, const View& view, const RenderSettings& settings,
+                     const Sinks& sinks);
+
+// What the settings' `rest` comes to.
+struct RestPlan {
+  int paths = 0;  // per pixel; 0: none are traced
+  bool piloted = false;
+  RestPilot pilot;
+};
+RestPlan plan_rest(const world::World& world, const View& view, const RenderSettings& settings,
+                   const Sinks& sinks);
+
+}  // namespace lumirank::pipeline

@@ -1,0 +1,66 @@
+#include "pipeline/smaller_film.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "scenedesc/schema/film_size.h"
+
+namespace lumirank::pipeline {
+
+bool is_whole_film(const View& view) {
+  const auto& film = view.sensor.film;
+  return view.crop_x == 0 && view.crop_y == 0 && view.width == film.width && view.height == film.height;
+}
+
+View smaller(const View& view, int divisor) {
+  View less = view;
+  const auto part = [divisor](int pixels) {
+    return std::max(1, static_cast<int>(std::lround(static_cast<double>(pixels) / divisor)));
+  };
+  scenedesc::set_film_size(less.sensor, part(view.width), part(view.height));
+  less.sensor.film.crop_width = 0;
+  less.width = less.sensor.film.width, less.height = less.sensor.film.height;
+  return less;
+}
+
+Picture enlarged(const Picture& picture, int width, int height) {
+  Picture larger;
+  larger.width = width, larger.height = height;
+  // The two pixels around a centre of the larger picture, and how near it is to the second.
+  struct Between {
+    std::size_t first, second;
+    float part;
+  };
+  const auto between = [](int at, int to, int from) {
+    const double x = std::clamp((at + 0.5) * from / to - 0.5, 0.0, static_cast<double>(from - 1));
+    const auto first = static_cast<std::size_t>(x);
+    return Between{first, std::min(first + 1, static_cast<std::size_t>(from - 1)),
+                   static_cast<float>(x - static_cast<double>(first))};
+  };
+  const auto row = static_cast<std::size_t>(picture.width);
+  for (const Plane& plane : picture.planes) {
+    Plane out{plane.name,
+              std::vector<float>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y) {
+        const Between v = between(static_cast<int>(y), height, picture.height);
+        for (int x = 0; x < width; ++x) {
+          const Between u = between(x, width, picture.width);
+          for (std::size_t c = 0; c < 3; ++c) {
+            const auto at = [&](std::size_t px, std::size_t py) {
+              return plane.rgb[3 * (py * row + px) + c];
+            };
+            out.rgb[3 * (y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) + c] =
+                std::lerp(std::lerp(at(u.first, v.first), at(u.second, v.first), u.part),
+                          std::lerp(at(u.first, v.second), at(u.second, v.second), u.part), v.part);
+          }
+        }
+      }
+    });
+    larger.planes.push_back(std::move(out));
+  }
+  return larger;
+}
+
+}  // namespace lumirank::pipeline

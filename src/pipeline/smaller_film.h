@@ -1,0 +1,18 @@
+// A film that is rendered smaller than it was asked for, because a budget is short, and enlarged.
+#pragma once
+
+#include "lumirank/lumirank.h"
+#include "pipeline/pipeline.h"
+
+namespace lumirank::pipeline {
+
+// Whether the view is the whole film, which alone can be made smaller.
+bool is_whole_film(const View& view);
+
+// The same view on a film of a divisor-th of the width and height, at least one pixel. Needs the whole film.
+View smaller(const View& view, int divisor);
+
+// The picture at another size, linearly interpolated between centres of pixels.
+Picture enlarged(const Picture& picture, int width, int height);
+
+}  // namespace lumirank::pipeline

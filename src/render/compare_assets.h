@@ -1,9 +1,0 @@
-// The style sheet and the script of the compare page.
-#pragma once
-
-namespace lumirank::rendering {
-
-extern const char* const kCompareStyle;
-extern const char* const kCompareScript;
-
-}  // namespace lumirank::rendering

@@ -1,0 +1,92 @@
+// The state of one conversion. Internal to this folder.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "scenedesc/writer/mitsuba_writer.h"
+#include "scenedesc/writer/xml.h"
+
+namespace lumirank::scenedesc {
+
+class MitsubaWriter {
+ public:
+  MitsubaWriter(const SceneDesc& scene, const std::string& filename, const Painter& painter);
+  WrittenScene write();
+
+ private:
+  // An input as Mitsuba 3 has it: another texture, or a constant.
+  struct Input {
+    Rgb value;
+    int texture = kNone;
+  };
+
+  void warn(const SourceLocation& where, const std::string& what, const std::string& instead);
+  std::string unique_id(const std::string& wanted, const std::string& otherwise);
+  std::string relative(const std::string& file) const;
+  std::string add_file(const std::string& what, const std::string& extension, std::string bytes);
+
+  // textures.cpp
+  Input resolve(int texture);
+  Input resolve(const ColorInput& input);
+  // Whether a picture that is painted takes the place of the texture.
+  bool painted(int index);
+  void bitmap(const BitmapTextureDesc& desc, const SourceLocation& where, const std::string& id);
+  void texture(int index);
+  // The texture by its name, and its definition along with all that are asked for.
+  void reference(int texture, const char* name);
+  std::string asked_textures();
+  void color(const char* name, const ColorInput& input);
+  void scalar(const char* name, const FloatInput& input);
+  // The scalar as a constant where Mitsuba 3 takes no texture.
+  void constant(const char* name, const FloatInput& input, const SourceLocation& where, const char* what);
+  std::string picture_of(const BitmapTextureDesc& bitmap);
+
+  // bsdfs.cpp
+  void bsdf(int index);
+  void kind_of(const BsdfDesc& desc, const std::string& id);
+  void open_bsdf(const char* type, const std::string& id);
+  void roughness(Distribution distribution, const FloatInput& alpha_u, const FloatInput& alpha_v);
+  bool transmits(int index) const;
+  void dull_and_glossy(const std::string& id, const ColorInput& dull, const ColorInput& glossy,
+                       const FloatInput& alpha_u, const FloatInput& alpha_v);
+  void lossless_plastic(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id);
+  void coating(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id);
+  void mixture(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id);
+  void blend_rest(const MixtureDesc& d, std::size_t from, double sum, const std::string& id);
+
+  // shapes.cpp
+  void shape(int index);
+  void mesh(const MeshFileDesc& file, const std::string& id);
+  // name: of the file, if it has been written.
+  void ply(const MeshData& mesh, const std::string& id, std::string name);
+  void curves(const ShapeDesc& shape, const CurvesDesc& curves, const std::string& id);
+  void open_shape(const char* type, const std::string& id);
+
+  // lights.cpp
+  static bool is_map(const EmitterDesc& emitter);
+  // Writes the one map that stands for all that surrounds the scene; false if they are written as they are.
+  bool environment();
+  void emitter(const EmitterDesc& emitter);
+  void sky(const SunSkyDesc& d, const EmitterDesc& from, const std::string& id);
+  void sensor(const SensorDesc& sensor);
+  void filter(const FilterDesc& filter, const SourceLocation& where);
+
+  const SceneDesc& scene_;
+  std::filesystem::path filename_;
+  Xml xml_;
+  WrittenScene out_;
+  std::vector<std::string> texture_ids_, bsdf_ids_, shape_ids_;
+  std::set<std::string> taken_, warned_;
+  const Painter& painter_;
+  std::map<int, std::optional<BitmapTextureDesc>> painted_;
+  std::vector<int> asked_;                     // textures that something reads
+  std::set<int> written_;                      // of these
+  Vec3d origin_;                               // of the positions of the mesh or curves written last
+  std::map<const void*, std::string> stored_;  // meshes and pictures that are used more than once
+};
+
+}  // namespace lumirank::scenedesc

@@ -1,0 +1,423 @@
+// Runs the plan of a comparison on one prepared scene, and writes every result as soon as it exists.
+#include "study/comparison.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/timer.h"
+#include "base/version.h"
+#include "image/atomic_file.h"
+#include "image/file_identity.h"
+#include "image/image_io.h"
+#include "image/metrics.h"
+#include "linalg/svd.h"
+#include "pages/html_text.h"
+#include "pages/page.h"
+#include "pathtrace/reference.h"
+#include "pipeline/aovs.h"
+#include "pipeline/error_advice.h"
+#include "pipeline/memory.h"
+#include "pipeline/pipeline.h"
+#include "pipeline/sound_pixels.h"
+#include "study/run_plan.h"
+#include "study/sampled_truth.h"
+
+namespace lumirank::study {
+namespace {
+
+using namespace pipeline;
+using namespace pages;
+namespace fs = std::filesystem;
+
+class Comparison {
+ public:
+  Comparison(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
+             const Sinks& sinks)
+      : settings_(settings),
+        folder_(folder),
+        sinks_(sinks),
+        plan_(plan_runs(settings)),
+        world_(world::World::build(scene.desc, {scene.strict}, warnings_, sinks)) {
+    setup_.world = &world_;
+    setup_.view = make_view(scene.desc, settings.base);
+    const fs::path file = fs::absolute(scene.desc.source_file);
+    results_.scene = (file.parent_path().filename() / file.filename()).string();
+    results_.version = program_version();
+    results_.width = setup_.view.width, results_.height = setup_.view.height;
+    require_memory_of_runs();
+    if (is_file()) read_reference();
+    require_receivers();
+    require_outputs(scene.files);
+  }
+
+  bool run() {
+    prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    // Not before: a comparison that is refused leaves nothing behind.
+    std::error_code code;
+    const bool made = fs::create_directories(folder_, code);
+    if (code)
+      throw InputError({folder_, 0}, "the folder cannot be made: " + code.message(), "choose another place");
+    warn_of_errors();
+    try {
+      return run_all();
+    } catch (const InputError& error) {  // a full disk
+      if (written_) throw InputError(error.what(), "what was finished before is in " + folder_);
+      if (made) fs::remove(folder_, code);
+      throw;
+    }
+  }
+
+ private:
+  bool run_all() {
+    try {
+      make_reference();
+      for (std::size_t k = 0; k < plan_.size(); ++k) {
+        sinks_.report("compare", static_cast<double>(k) / static_cast<double>(plan_.size()));
+        if (!run_one(plan_[k])) return finish(false);
+        write_results_json(folder_, results_);
+      }
+      if (settings_.singular_values) find_singular_values();
+    } catch (const Cancelled&) {
+      return finish(false);
+    }
+    return finish(true);
+  }
+
+  // Of methods that --error does not steer, once each.
+  void warn_of_errors() const {
+    std::set<std::string> warned;
+    for (const PlannedRun& run : plan_)
+      if (const auto& info = methods::find_method(run.method); warned.insert(run.method).second)
+        if (const std::string text = error_not_aimed_at(info, settings_.base.error); !text.empty())
+          sinks_.warn(text);
+  }
+
+  std::string path(const std::string& name) const { return (fs::path(folder_) / name).string(); }
+
+  // Receivers and lights for a run; kept while the next run wants the same.
+  void prepare(std::size_t lights, int spp, std::uint64_t seed) {
+    RenderSettings s = settings_.base;
+    s.spp = spp;
+    s.seed = settings_.base.seed;
+    if (spp != spp_) {
+      make_receivers(setup_, s, sinks_);
+      spp_ = spp, lights_ = 0;
+    }
+    s.seed = seed;
+    if (lights != lights_ || seed != lights_seed_) {
+      make_matrix(setup_, s, lights, sinks_);
+      lights_ = lights, lights_seed_ = seed;
+    }
+  }
+
+  image::Image image_of(std::span<const Rgb> sums) const {
+    return develop(setup_, sample_values(setup_, sums, wanted_parts(settings_.base)));
+  }
+
+  void save(const std::string& name, const image::Image& image) const {
+    check_pixels(image);
+    image::LayeredImage layers;
+    layers.color = image;
+    image::write_image(path(name), layers);
+  }
+
+  // The reference's file may be the one that an earlier comparison left here.
+  bool reference_is_kept() const {
+    return is_file() &&
+           image::file_identity(settings_.reference) == image::file_identity(path("reference.exr"));
+  }
+
+  static std::string stem_of(std::size_t run) { return "run_" + std::to_string(run); }
+
+  // Before any work: none of them is a file that is read, or one that cannot be written.
+  void require_outputs(std::vector<std::string> inputs) const {
+    std::vector<std::string> outputs = {path("results.json"), path("results.csv"), path("index.html")};
+    if (sampled_receivers() == 0) {
+      outputs.push_back(path("reference.png"));
+      if (!reference_is_kept()) outputs.push_back(path("reference.exr"));
+    }
+    for (std::size_t k = 0; k < plan_.size(); ++k)
+      for (const char* ending : {".png", "_error.png"}) outputs.push_back(path(stem_of(k) + ending));
+    if (is_file()) inputs.push_back(settings_.reference);
+    image::require_distinct(outputs, inputs);
+    if (std::error_code error; !fs::is_directory(folder_, error)) {
+      fs::path there = fs::absolute(folder_, error).lexically_normal();
+      while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+      if (!fs::is_directory(there, error))
+        throw InputError({folder_, 0}, "the folder cannot be made: " + there.string() + " is not a folder",
+                         "choose another place");
+      return;
+    }
+    for (const std::string& output : outputs) const image::AtomicFile probe(output);
+  }
+
+  // The largest of the runs, as far as it is known before them.
+  void require_memory_of_runs() const {
+    double most = 0;
+    for (const PlannedRun& run : plan_) {
+      const double samples =
+          static_cast<double>(setup_.view.width) * static_cast<double>(setup_.view.height) * run.spp;
+      require_countable(samples);
+      most = std::max(most, memory_of_picture(samples, static_cast<double>(run.lights), false));
+    }
+    require_memory(most, kSmallerPicture);
+  }
+
+  // What a reference at some receivers can have at most.
+  void require_receivers() const {
+    const auto most = static_cast<std::size_t>(setup_.view.width) *
+                      static_cast<std::size_t>(setup_.view.height) *
+                      static_cast<std::size_t>(settings_.base.spp);
+    if (sampled_receivers() > most)
+      throw InputError("'" + settings_.reference + "' asks for more receivers than the " +
+                           std::to_string(most) + " film samples of this render",
+                       "write brute-force for all of them, or a smaller number");
+  }
+
+  void make_reference() {
+    const Timer timer;
+    if (const std::size_t count = sampled_receivers(); count > 0) {
+      const SampledTruth::Film film{setup_.receivers.weight, setup_.receivers.sample,
+                                    static_cast<std::size_t>(settings_.base.spp)};
+      truth_ = std::make_unique<SampledTruth>(*setup_.matrix, film, count, settings_.base.seed, sinks_);
+      results_.reference_kind = "all " + std::to_string(setup_.matrix->columns()) + " columns at " +
+                                std::to_string(truth_->rows()) + " receivers of " +
+                                std::to_string(truth_->pixels()) + " stratified pixels";
+      results_.reference_seconds = timer.seconds();
+      return;
+    }
+    if (settings_.reference == "brute-force") {
+      std::vector<matrix::ScaledColumn> columns(setup_.matrix->columns());
+      for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
+      std::vector<Rgb> sums(setup_.matrix->rows());
+      setup_.matrix->accumulate(columns, sums, sinks_);
+      if (sinks_.cancelled()) throw Cancelled();
+      reference_ = image_of(sums);
+      results_.reference_kind = "all " + std::to_string(columns.size()) + " columns";
+    } else if (settings_.reference == "path") {
+      const auto traced =
+          pathtrace::path_trace(world_, setup_.view, reference_options(settings_.base, "columns"),
+                                {.time = settings_.reference_time}, sinks_);
+      if (traced.interrupted) throw Cancelled();
+      reference_ = traced.image;
+      results_.reference_error = traced.error;
+      results_.reference_kind =
+          "path tracing, " + std::to_string(traced.spp) + " paths per pixel, paths that columns carry";
+    } else {
+      results_.reference_kind = fs::path(settings_.reference).filename().string();
+    }
+    results_.reference_seconds = timer.seconds();
+    results_.reference_image = "reference.png";
+    image::FilesTogether together;
+    save("reference.png", reference_);
+    if (!reference_is_kept()) save("reference.exr", reference_);
+    together.commit();
+    written_ = true;
+  }
+
+  bool is_file() const {
+    return settings_.reference != "path" && settings_.reference != "brute-force" && sampled_receivers() == 0;
+  }
+
+  void read_reference() {
+    reference_ = image::read_image(settings_.reference).color;
+    if (reference_.width != setup_.view.width || reference_.height != setup_.view.height)
+      throw InputError({settings_.reference, 0},
+                       "the reference has " + std::to_string(reference_.width) + "x" +
+                           std::to_string(reference_.height) + " pixels, the render " +
+                           std::to_string(setup_.view.width) + "x" + std::to_string(setup_.view.height),
+                       "give --size or another reference");
+  }
+
+  // "brute-force:4096": exact sums at so many receivers of the full-size render; 0 for other references.
+  std::size_t sampled_receivers() const {
+    constexpr std::string_view kPrefix = "brute-force:";
+    if (!settings_.reference.starts_with(kPrefix)) return 0;
+    const std::string text = settings_.reference.substr(kPrefix.size());
+    std::size_t count = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (status != std::errc{} || end != text.data() + text.size() || count < 64)
+      throw InputError("'" + settings_.reference + "' is not a reference",
+                       "write brute-force:N with N at least 64");
+    return count;
+  }
+
+  // Methods without a clock of their own get as many columns as fit into the budget, by the pace of a few.
+  void fit_to_time(PlannedRun& run, std::map<std::string, std::string>& method_settings) {
+    if (run.time <= 0 || (run.method != "instant-radiosity" && run.method != "power-sampling")) return;
+    if (columns_per_second_ <= 0) {
+      std::vector<matrix::ScaledColumn> few;
+      for (std::uint64_t k = 0; k < 48; ++k)
+        few.push_back(
+            {static_cast<matrix::Index>(
+                 Rng(settings_.base.seed, Stage::benchmark, k).next_below(setup_.matrix->columns())),
+             Rgb(1)});
+      std::vector<Rgb> sums(setup_.matrix->rows());
+      const Timer timer;
+      setup_.matrix->accumulate(few, sums, sinks_);
+      columns_per_second_ = 48 / timer.seconds();
+    }
+    const auto fitting = static_cast<std::size_t>(std::max(1.0, columns_per_second_ * run.time));
+    method_settings[run.method == "instant-radiosity" ? "lights" : "columns"] = std::to_string(fitting);
+  }
+
+  bool run_one(PlannedRun run) {
+    const methods::MethodInfo& info = methods::find_method(run.method);
+    const bool new_lights =
+        !settings_.reference.starts_with("brute-force");  // else all runs sample the reference's own matrix
+    prepare(run.lights, run.spp, new_lights ? run.seed : settings_.base.seed);
+    auto method_settings = run.method_settings;
+    fit_to_time(run, method_settings);
+    if (info.lights_wanted)
+      if (const std::size_t wanted = info.lights_wanted(method_settings); wanted > 0)
+        prepare(wanted, run.spp, run.seed);
+
+    auto& counters = setup_.matrix->counters();
+    counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;
+    methods::RunOptions options;
+    options.seed = run.seed;
+    options.time_seconds = run.time;
+    options.target_error = settings_.base.error;
+    options.sinks = sinks_;
+    options.sinks.progress = {};
+    const Timer timer;
+    const methods::Estimate estimate = info.make(method_settings)->run(*setup_.matrix, options);
+    if (estimate.interrupted) return false;
+
+    CompareRun result;
+    result.seconds = timer.seconds();
+    result.setup_seconds = setup_.seconds["receivers"] + setup_.seconds["traced_direct"] +
+                           setup_.seconds["traced_indirect"] + setup_.seconds["lights"] +
+                           setup_.seconds["matrix"];
+    result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
+    result.settings = method_settings;
+    result.settings["lights"] = std::to_string(setup_.lights.size());
+    result.settings["spp"] = std::to_string(run.spp);
+    result.rays = static_cast<double>(counters.rays_shadow.load());
+    result.entries = static_cast<double>(counters.entries_evaluated.load());
+    result.sampling_rate = result.entries / (static_cast<double>(setup_.matrix->rows()) *
+                                             static_cast<double>(setup_.matrix->columns()));
+    result.numbers = estimate.trace.numbers;
+    for (const auto& [key, value] : estimate.trace.numbers)
+      if (key.starts_with("seconds."))
+        result.phases[key.substr(8)] = value;
+      else if (key == "rows" || key == "columns")
+        result.settings[key] = std::to_string(static_cast<long long>(value));
+
+    const image::Image image = image_of(estimate.sums);
+    const std::string stem = stem_of(results_.runs.size());
+    image::FilesTogether together;
+    result.image_file = stem + ".png";
+    save(result.image_file, image);
+    if (truth_) {
+      const auto sampled = truth_->error_of(estimate.sums);
+      result.error = sampled.metrics;
+      result.settings["relative_l2 ±95 %"] = std::to_string(sampled.l2_half_width);
+    } else {
+      result.error = image::compare(image, reference_);
+      result.error_image_file = stem + "_error.png";
+      save(result.error_image_file, image::false_color_error(image, reference_));
+    }
+    together.commit();
+    written_ = true;
+    results_.runs.push_back(std::move(result));
+    return true;
+  }
+
+  // Hašan 2007, Figure 3: of a small matrix of evenly drawn receivers and lights, scalar entries.
+  void find_singular_values() {
+    constexpr std::size_t kRows = 1200, kColumns = 1000;
+    prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    const auto pick = [](std::size_t count, std::size_t of, std::uint64_t seed, std::uint64_t stream) {
+      count = std::min(count, of);
+      std::vector<matrix::Index> chosen(count);
+      Rng rng(seed, Stage::benchmark, stream);
+      for (std::size_t k = 0; k < count; ++k)  // one from each of `count` strata
+        chosen[k] = static_cast<matrix::Index>((static_cast<double>(k) + rng.next_double()) *
+                                               static_cast<double>(of) / static_cast<double>(count));
+      return chosen;
+    };
+    const auto rows = pick(kRows, setup_.matrix->rows(), settings_.base.seed, 1);
+    const auto columns = pick(kColumns, setup_.matrix->columns(), settings_.base.seed, 2);
+    std::vector<Rgb> block(rows.size() * columns.size());
+    setup_.matrix->block(rows, columns, block, matrix::Part::value);
+    std::vector<float> scalar(block.size());
+    for (std::size_t k = 0; k < block.size(); ++k) scalar[k] = norm2(block[k]);
+    results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
+  }
+
+  bool finish(bool whole) {
+    if (!whole)
+      results_.notes.push_back("Interrupted: " + std::to_string(results_.runs.size()) + " of " +
+                               std::to_string(plan_.size()) + " runs were finished.");
+    mark_equal();
+    write_results_json(folder_, results_);
+    write_results_csv(folder_, results_);
+    write_compare_page(folder_, results_);
+    return whole;
+  }
+
+  // --equal: for every other method, the run nearest to the best run of the first one.
+  void mark_equal() {
+    if (settings_.equal.empty() || results_.runs.empty()) return;
+    const auto cost = [&](const CompareRun& r) {
+      if (settings_.equal == "time") return r.seconds;
+      return settings_.equal == "rays" ? r.rays : r.error.relative_l2;
+    };
+    const CompareRun* anchor = nullptr;
+    for (const auto& r : results_.runs)
+      if (r.method == settings_.methods.front() &&
+          (!anchor || r.error.relative_l2 < anchor->error.relative_l2))
+        anchor = &r;
+    if (!anchor) return;
+    results_.notes.push_back("At equal " + settings_.equal + " to " + anchor->label + ":");
+    for (const auto& method : settings_.methods) {
+      const CompareRun* nearest = nullptr;
+      for (const auto& r : results_.runs)
+        if (r.method == method && (!nearest || std::abs(std::log(cost(r) / cost(*anchor))) <
+                                                   std::abs(std::log(cost(*nearest) / cost(*anchor)))))
+          nearest = &r;
+      if (nearest)
+        results_.notes.push_back(nearest->label + ": " + show_seconds(nearest->seconds) + ", " +
+                                 show_count(nearest->rays) + " rays, relative L2 " +
+                                 show_percent(nearest->error.relative_l2));
+    }
+  }
+
+  const CompareSettings& settings_;
+  std::string folder_;
+  Sinks sinks_;
+  std::vector<PlannedRun> plan_;
+  std::vector<scenedesc::Warning> warnings_;
+  world::World world_;
+  Setup setup_;
+  int spp_ = 0;
+  std::size_t lights_ = 0;
+  std::uint64_t lights_seed_ = 0;
+  double columns_per_second_ = 0;
+  image::Image reference_;
+  std::unique_ptr<SampledTruth> truth_;  // instead of reference_
+  bool written_ = false;                 // something is in the folder
+  CompareResults results_;
+};
+
+}  // namespace
+
+bool compare(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
+             const Sinks& sinks) {
+  if (settings.base.compensate > 0)
+    throw InputError("a comparison cannot compensate for clamping", "leave out 'compensate'");
+  bool whole = false;
+  within_memory(kSmallerPicture, [&] {
+    with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
+  });
+  return whole;
+}
+
+}  // namespace lumirank::study

@@ -1,0 +1,179 @@
+// E of many pairs at once, in tiles; the survivors' shadow rays are packed in the order of the pairs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/ray_scene.h"
+#include "matrix/lighting_matrix.h"
+#include "transport/pairs/groups.h"
+#include "transport/pairs/pair_kernel.h"
+#include "transport/pairs/scatter_group.h"
+#include "transport/pairs/sphere_kernel.h"
+
+namespace lumirank::transport {
+
+// What all blocks of one matrix share.
+struct PairContext {
+  const RowStore* rows;
+  const ColumnStore* columns;
+  ScatterSide row_scatter, column_scatter;
+  const VirtualLights* lights;
+  const geometry::RayScene* rays;
+  std::uint64_t pair_seed;  // hashed once: with the two ids it decides cut-outs
+  float clamp;              // X; infinite: off
+  bool has_cutouts;         // rays need keys
+  bool has_spheres;         // surface lights are spherical
+  SphereBackground spheres;
+  bool has_smooth;  // rays need transmittances
+  bool has_directional;
+  bool has_two_sided;  // some surface shines through or is a fibre, see GroupStore::two_sided
+};
+
+// What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.
+struct Tally {
+  std::uint64_t evaluated = 0, culled = 0, rays = 0;
+  double value = 0, removed = 0;  // Σ over visible entries of r + g + b, after clamping and taken away by it
+  Tally& operator+=(const Tally& o) {
+    evaluated += o.evaluated, culled += o.culled, rays += o.rays;
+    value += o.value, removed += o.removed;
+    return *this;
+  }
+  friend Tally operator+(Tally a, const Tally& b) { return a += b; }
+};
+
+// The pairs of a block in one of three shapes. Places count from 0 within the block, 16 to a group.
+enum class BlockShape {
+  column,  // a tile of receivers × one light
+  row,     // one receiver × a tile of lights
+  list,    // listed slots on both sides
+};
+
+// Use: a shape, then one partner after another, each followed by trace() or skip_visibility(), after which E
+// and visibility can be read. Rays come before E: most pairs are hidden, and E of a glossy pair costs more
+// than its ray.
+class PairBlock {
+ public:
+  explicit PairBlock(const PairContext& context) : context_(context) {}
+
+  void set_row_tile(std::size_t tile);
+  void set_column_tile(std::size_t tile);
+  // After set_row_tile. bound: of a_j·G·(π f_x)(π f_y) beside X, where the column stands for others as well.
+  void set_column(std::uint32_t column_slot, float bound = kInfinity);
+  void set_row(std::uint32_t row_slot);  // after set_column_tile
+  // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbour; `used`: a
+  // bit per lane that is not padding, by group. The spans must last until E has been read.
+  void set_list(std::span<const std::uint32_t> row_slots, std::span<const std::uint32_t> column_slots,
+                std::span<const std::uint16_t> used);
+
+  // Shoots the survivors' rays and evaluates what they reach: afterwards visible(group) tells which lanes are
+  // unblocked and not zero, and e is theirs, transmittance of smooth surfaces included. Without `values`, e
+  // is not to be read, and what can be told without it is not evaluated.
+  void trace(bool values = true);
+  // Takes all survivors as visible.
+  void skip_visibility();
+
+  std::size_t groups() const { return groups_; }
+  // Only where lanes are visible.
+  Lane3 e(std::size_t group) const { return {e_[3 * group], e_[3 * group + 1], e_[3 * group + 2]}; }
+  std::uint32_t visible(std::size_t group) const { return visible_[group]; }
+  std::size_t survivors() const { return survivors_; }
+  std::uint32_t first_slot() const { return first_slot_; }
+  // Σ r + g + b of visible entries, and what clamping took away from them; in the order of places.
+  double visible_energy() const;
+  double removed_energy() const;
+
+  // Σ weight · E over the channels, 0 where it is not visible: use(group, 16 floats).
+  template <typename Use>
+  void scalars(Rgb weights, Use&& use) const {
+    for (std::size_t g = 0; g < groups_; ++g) {
+      const Lane sum = select(mask_from_bits(visible_[g]), dot(splat(weights), e(g)), Lane{});
+      float lanes[kLanes];
+      store(lanes, sum);
+      use(g, lanes);
+    }
+  }
+  // sums += scale · shares[of[place]] · E; sums: 16 × r, g, b by group.
+  void add_shares(Rgb scale, std::span<const float> shares, std::span<const std::uint32_t> of,
+                  std::span<float> sums) const;
+
+  // Running sums of the receivers of a row tile, in registers' order: sums += scale · E · V, column by
+  // column.
+  void load_sums(std::span<const Rgb> sums);
+  double add_to_sums(Rgb scale);                 // returns the energy that clamping took away
+  double store_sums(std::span<Rgb> sums) const;  // returns Σ r + g + b of what was added since load_sums
+
+ private:
+  friend struct PairBlockKernels;
+  void resize(std::size_t groups);
+  const SpotShape* spot_of(std::uint32_t light) const;
+  PairExtras extras(std::uint16_t row_kind, std::uint16_t column_kind) const;
+  // Which pairs a group of a tile holds, for kernels that draw random numbers.
+  void name_column_pairs(PairExtras& extras, std::size_t group) const;
+  void name_row_pairs(PairExtras& extras, std::size_t group) const;
+  void keep(std::size_t group, const PairResult& result);
+  void collect_survivors();
+  template <typename Store>
+  void collect(const Store& store, int field);
+  bool to_infinity(std::uint32_t column_slot) const;
+  std::uint32_t row_slot(std::uint32_t place) const;
+  std::uint32_t column_slot(std::uint32_t place) const;
+  void turn_ends(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const;
+  // The rays of survivors first … first + count - 1.
+  void fill(geometry::ShadowPacket& packet, std::size_t first, int count) const;
+  void note_transmittance(const geometry::ShadowPacket& packet, std::size_t first, int count);
+  void shade();
+  void shade_through();  // with what smooth surfaces let pass
+
+  const PairContext& context_;
+  BlockShape shape_ = BlockShape::column;
+  std::size_t tile_ = 0, groups_ = 0, survivors_ = 0;
+  std::uint32_t first_slot_ = 0, fixed_slot_ = 0;
+  std::span<const std::uint32_t> row_list_, column_list_;
+  // The partner of a tile.
+  RowGroup fixed_row_;
+  ColumnGroup fixed_column_;
+  std::array<const SpotShape*, 16> fixed_spots_;
+  std::uint16_t fixed_kind_ = 0;
+  std::array<std::uint32_t, 16> fixed_items_, fixed_keys_;  // spherical lights only
+  bool values_wanted_ = true;
+  float bound_ = kInfinity;  // of the pairs at hand, beside X
+  ScatterArena tile_arena_, partner_arena_;
+  std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
+  std::vector<const SpotShape*> tile_spots_;
+  std::vector<Lane> e_, excess_, sums_;
+  std::vector<std::uint16_t> alive_, visible_, clamped_;
+  std::vector<std::uint32_t> places_;
+  // Of a tile's survivors, in the order of places_: where their rays start (column) or end (row), and the
+  // key there. After the last there are 15 copies of it.
+  std::vector<float> end_x_, end_y_, end_z_;
+  std::vector<std::uint32_t> end_key_;
+  std::vector<std::uint16_t> packet_bits_;
+  struct Attenuation {
+    std::uint32_t place;
+    Rgb through;
+  };
+  std::vector<Attenuation> attenuations_;
+};
+
+// Finishes an evaluated block: rays where they are needed, and the cost. `pairs`: without padding.
+Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs);
+
+// Copies what was asked for to out(items[place]), leaving out the places of kNoItem.
+template <typename Out>
+void copy_out(const PairBlock& block, matrix::Part part, std::span<const std::uint32_t> items, Out&& out) {
+  for (std::size_t g = 0; g < block.groups(); ++g) {
+    const Lane3 e = block.e(g);
+    const std::uint32_t seen = block.visible(g);
+    for (int k = 0; k < kLanes; ++k) {
+      const std::uint32_t item = items[16 * g + static_cast<std::size_t>(k)];
+      if (item == kNoItem) continue;
+      const bool lit = seen >> k & 1;
+      out(item) = !lit ? Rgb(0) : part == matrix::Part::visibility ? Rgb(1) : Rgb(e.x[k], e.y[k], e.z[k]);
+    }
+  }
+}
+
+}  // namespace lumirank::transport

@@ -1,0 +1,26 @@
+// Direct columns: virtual lights that stand for the emitters themselves.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "transport/lights/emitter_choice.h"
+#include "transport/lights/light_record.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+// How many direct columns a world needs at least: one per emitter that shines (16 for a sun with a disc).
+// Area and environment light can use any number.
+struct DirectNeed {
+  std::size_t least = 0;
+  bool sampled = false;  // some emitter can use more
+};
+DirectNeed direct_need(const world::World& world, const EmitterChoice& choice);
+
+// About `count` lights for all emitters together. If there are more emitters than half of `count`, a
+// stratified choice of them by power stands for all; otherwise every one gets its own, the larger ones more.
+LightBatch emitter_lights(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
+                          std::size_t count);
+
+}  // namespace lumirank::transport

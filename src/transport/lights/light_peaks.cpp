@@ -1,0 +1,35 @@
+#include "transport/lights/light_peaks.h"
+
+#include "base/parallel.h"
+#include "scatter/lobe_bound.h"
+
+namespace lumirank::transport {
+
+std::vector<LightPeak> light_peaks(const VirtualLights& lights) {
+  std::vector<LightPeak> peaks(lights.closures.size());
+  parallel_for(lights.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      if (lights.kind[j] != LightKind::surface || lights.closure[j] == VirtualLights::kLambertian) continue;
+      const std::uint32_t c = lights.closure[j];
+      const auto lobes = lights.closures.lobes(lights.closures.recipe(c));
+      const Vec3f n = lights.normal[j], wo = lights.incoming[j];
+      const bool outside = dot(n, wo) * lights.closures.side(c) > 0;
+      const scatter::ClosureBound bound(lobes, lights.closures.colors(c), n, lights.closures.tangent(c), wo,
+                                        outside, true);
+      LightPeak& peak = peaks[c];
+      peak.one_sided = true;
+      bool fibre = false;
+      for (const scatter::Lobe& lobe : lobes) {
+        fibre = fibre || scatter::is_hair(lobe.kind);
+        peak.one_sided = peak.one_sided && !fibre && !scatter::shines_through(lobe.kind);
+      }
+      peak.alone = bound.anywhere(scatter::Slant::none);
+      peak.slanted = bound.anywhere(scatter::Slant::cosine);
+      // The two normals' cosines differ by no more than the normals do.
+      if (!fibre) peak.slanted += peak.alone * length(n - lights.ng[j]);
+    }
+  });
+  return peaks;
+}
+
+}  // namespace lumirank::transport

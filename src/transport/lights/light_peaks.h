@@ -1,0 +1,20 @@
+// How bright surface lights that are not lambertian are where they are brightest.
+#pragma once
+
+#include <vector>
+
+#include "base/rgb.h"
+#include "transport/lights/virtual_lights.h"
+
+namespace lumirank::transport {
+
+// At least f_y towards any receiver, for light from `incoming`: alone, and times the cosine with the
+// geometric normal (of a fibre: the sine).
+struct LightPeak {
+  Rgb alone, slanted;
+  bool one_sided;  // nothing comes out behind the geometric normal
+};
+// By index into lights.closures.
+std::vector<LightPeak> light_peaks(const VirtualLights& lights);
+
+}  // namespace lumirank::transport

@@ -1,0 +1,55 @@
+// What pilots tell of a scene's light before any virtual light is made, and how many of which sort follow.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "transport/lights/emitter_choice.h"
+#include "transport/lights/emitter_lights.h"
+#include "transport/lights/guide_pilot.h"
+#include "transport/lights/virtual_lights.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+// Which light is wanted, by the settings.
+struct LightParts {
+  bool direct = false, indirect = false;
+  int deepest = -1;  // depth of a particle's light; -1: unlimited
+};
+
+// The same for any number of lights, so it can be made once for several (LightSettings::survey).
+struct LightSurvey {
+  LightParts parts;
+  DirectNeed need;
+  bool aimed = false;
+  Aim aim;  // where particles start, and where their lights are of use
+  double lights_per_path = 0;
+  double emitter_share = 0;  // of all lights
+  // Of the pilot's lights, times the number of its paths; empty where none is of any use.
+  std::vector<double> uses;
+};
+LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice,
+                          const LightSettings& settings);
+
+struct LightPlan {
+  std::size_t emitter_samples = 0;
+  std::size_t paths = 0;  // of particles
+  double level = 0;       // LightRoulette's
+};
+
+// With receivers, the number of paths is that from which on lights of unequal use are worth most of
+// settings.count equal ones: (Σ use)²/Σ use² after roulette. Where the guide knows well where light comes in
+// that is about one path for each few lights; where it does not, up to sixteen paths for each light are
+// traced so that none stands for much more light than the others.
+LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
+                      const LightSurvey& survey);
+
+// Paths and level for lights of the given uses (times the number of paths), met on `pilot_paths`, so that
+// `wanted` are kept. In any order.
+struct RoulettePlan {
+  double paths = 0, level = 0;
+};
+RoulettePlan plan_roulette(std::vector<double> uses, std::size_t pilot_paths, double wanted);
+
+}  // namespace lumirank::transport

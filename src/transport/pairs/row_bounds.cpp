@@ -1,0 +1,197 @@
+#include "transport/pairs/row_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lumirank::transport {
+
+using matrix::ColumnSet;
+using matrix::Emission;
+using matrix::Index;
+using scatter::DirectionCone;
+using scatter::Slant;
+
+namespace {
+
+// Entries are products of some ten floats.
+constexpr float kRounding = 1 + 4e-6f;
+// Of cosines, absolutely: they are sums of three products.
+constexpr float kCosineSlack = 3e-7f;
+
+// The box of all differences from a row to a light.
+struct Differences {
+  Vec3f center, half;
+  float distance2;  // least
+};
+Differences differences(const Bounds3f& rows, const Bounds3f& lights) {
+  Differences d;
+  const Vec3f lo = lights.lo - rows.hi, hi = lights.hi - rows.lo;
+  d.distance2 = length_squared(max(max(lo, -hi), Vec3f{}));
+  d.center = (lo + hi) * 0.5f;
+  // Of a single pair the box is a point, whose place is exact; else there are roundings.
+  d.half = (hi - lo) * 0.500001f;
+  return d;
+}
+
+// At least the cosine between `axis` and any w in the box of differences. Turned so that the axis is z, w has
+// z of at most that of the box, and is off the axis by at least, or where all z are negative by at most, what
+// the box is in the direction across in which its centre lies. If all z are negative and `front`, no more is
+// said.
+float greatest_cosine(Vec3f axis, const Differences& d, bool front) {
+  const auto extent = [&](Vec3f v) {
+    return std::abs(v.x) * d.half.x + std::abs(v.y) * d.half.y + std::abs(v.z) * d.half.z;
+  };
+  const float z = dot(axis, d.center);
+  const float top =
+      z + extent(axis) + kCosineSlack * (std::abs(d.center.x) + std::abs(d.center.y) + std::abs(d.center.z));
+  if (top <= 0 && front) return -1;
+  const Vec3f across = d.center - axis * z;
+  const float off2 = length_squared(across);
+  if (top > 0) {
+    const float least = off2 - extent(across);  // times off
+    return least > 0 ? top / std::sqrt(top * top + least * least / off2) : 1.0f;
+  }
+  const float most = std::sqrt(off2) + length(d.half);
+  return most > 0 ? top / std::sqrt(top * top + most * most) : -1.0f;
+}
+
+// cos(max(0, angle - spread)).
+float towards(float cosine, float cos_spread, float sin_spread) {
+  if (cos_spread >= 1) return cosine;
+  if (cosine >= cos_spread) return 1;
+  return cosine * cos_spread + std::sqrt(std::max(0.0f, 1 - cosine * cosine)) * sin_spread;
+}
+float sine_of(float cosine) { return std::sqrt(std::max(0.0f, 1 - cosine * cosine)); }
+
+// Solid angle of a sphere over π times its radius squared, where it is largest; from inside, a hemisphere's.
+float sphere_geometry(float distance2, float radius, float least_radius, float beyond) {
+  distance2 = std::max(distance2, square(beyond * least_radius));
+  if (distance2 <= radius * radius) return 2 / std::max(distance2, least_radius * least_radius);
+  return 2 / (distance2 * (1 + std::sqrt(1 - radius * radius / distance2)));
+}
+
+Rgb greater(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
+
+}  // namespace
+
+scatter::ClosureBound SceneRowBounds::closure_bound(Index i) const {
+  const scatter::ClosurePool& pool = receivers_.closures;
+  const std::uint32_t c = receivers_.closure[i];
+  const Vec3f n = receivers_.normal[i], wo = receivers_.wo[i];
+  return {pool.lobes(pool.recipe(c)), pool.colors(c), n, pool.tangent(c), wo, dot(n, wo) * pool.side(c) > 0};
+}
+
+void SceneRowBounds::set_rows(std::span<const Index> rows) {
+  box_ = {};
+  matt_ = most_ = most_direct_ = Rgb(0);
+  closures_.clear();
+  behind_ = sharp_ = false;
+  std::size_t closures = 0;
+  Vec3f axis;
+  for (const Index i : rows) {
+    box_.extend(receivers_.position[i]);
+    const Vec3f n = receivers_.normal[i];
+    axis += dot(n, receivers_.wo[i]) < 0 ? -n : n;
+    closures += receivers_.closure[i] != Receivers::kLambertian;
+  }
+  many_ = closures > kMostClosures;
+  const float size = length(axis);
+  normals_ = {size > 0 ? axis / size : Vec3f{0, 0, 1}, size > 0 ? 1.0f : -1.0f};
+  for (const Index i : rows) {
+    const Vec3f n = receivers_.normal[i];
+    // Of one row the axis is its normal.
+    if (rows.size() == 1) {
+      normals_.axis = dot(n, receivers_.wo[i]) < 0 ? -n : n;
+    } else {
+      normals_.cosine = std::min(normals_.cosine, std::abs(dot(n, normals_.axis)) - kCosineSlack);
+      if (dot(n, normals_.axis) * dot(n, receivers_.wo[i]) < 0) normals_.cosine = -1;
+    }
+    if (receivers_.closure[i] == Receivers::kLambertian) {
+      matt_ = greater(matt_, receivers_.albedo[i] * kInvPi);
+      continue;
+    }
+    const auto lobes = receivers_.closures.lobes(receivers_.closures.recipe(receivers_.closure[i]));
+    for (const scatter::Lobe& lobe : lobes) {
+      behind_ = behind_ || scatter::shines_through(lobe.kind) || scatter::is_hair(lobe.kind);
+      sharp_ = sharp_ || scatter::lobe_roughness(lobe) < 0.5f;
+    }
+    if (many_) {
+      const scatter::ClosureBound bound = closure_bound(i);
+      most_ = greater(most_, bound.anywhere(Slant::cosine));
+      most_direct_ = greater(most_direct_, bound.anywhere(Slant::cosine, rules_.traced_direct_below));
+    } else {
+      closures_.push_back(closure_bound(i));
+    }
+  }
+  normals_sine_ = sine_of(normals_.cosine);
+}
+
+// f times the cosine for light from a cone of directions that make at most this cosine with a normal.
+Rgb SceneRowBounds::scattered(const DirectionCone& cone, float cosine, bool direct) const {
+  Rgb most = cosine > 0 ? matt_ * cosine : Rgb(0);
+  if (many_) return cosine > 0 || behind_ ? greater(most, direct ? most_direct_ : most_) : most;
+  for (const scatter::ClosureBound& closure : closures_)
+    most = greater(most, closure.within(cone, Slant::cosine, direct ? rules_.traced_direct_below : 0));
+  return most;
+}
+
+matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
+  matrix::BoundParts parts{Rgb(0)};
+  // Lobes have a roughness of 1 at most: above it, all direct light is traced.
+  if (box_.empty() || (set.direct && rules_.traced_direct_below > 1)) return parts;
+  DirectionCone cone;
+  float cosine, factor = kRounding;
+  if (set.emission == Emission::directional) {
+    cone.axis = set.cone.axis;
+    if (!closures_.empty())
+      cone.angle = set.cone.cosine >= 1 ? 0.0f : std::acos(std::max(-1.0f, set.cone.cosine)) + 1e-3f;
+    cosine =
+        towards(dot(normals_.axis, set.cone.axis) + kCosineSlack, set.cone.cosine, sine_of(set.cone.cosine));
+    cosine = towards(std::min(cosine, 1.0f), normals_.cosine, normals_sine_);
+  } else {
+    Differences d = differences(box_, set.box);
+    const Vec3f farthest{std::abs(d.center.x) + d.half.x, std::abs(d.center.y) + d.half.y,
+                         std::abs(d.center.z) + d.half.z};
+    parts.far = 1 / std::max({length_squared(farthest), d.distance2, 1e-30f});
+    // A sphere sends light from all of its box.
+    if (set.spherical) d.half += Vec3f{set.radius, set.radius, set.radius};
+    cosine = towards(greatest_cosine(normals_.axis, d, normals_.cosine >= 1), normals_.cosine, normals_sine_);
+    if (cosine <= 0 && closures_.empty() && !behind_) return {Rgb(0)};
+    if (!closures_.empty()) {
+      const float radius = length(d.half), far = length(d.center);
+      if (far > 0) cone.axis = d.center / far;
+      if (radius < far) cone.angle = radius > 0 ? std::asin(radius / far) : 0.0f;
+    }
+    bool slanted = set.emission == Emission::oriented;
+    if (!set.spherical) {
+      parts.near = d.distance2 > 0 ? 1 / d.distance2 : kInfinity;
+    } else {
+      parts.near = sphere_geometry(d.distance2, set.radius, set.least_radius, rules_.spheres.beyond);
+      parts.far = std::min(parts.near, parts.far);
+      const bool near = d.distance2 < square(kDiscReach * set.radius) * 1.00001f;
+      if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) slanted = false;
+      // The centre's distance alone says whether a row is inside, where light comes from everywhere.
+      if (d.distance2 <= set.radius * set.radius * 1.00001f) cone.angle = kPi, cosine = 1;
+      if (sharp_) factor *= 3.5f;  // see SceneMatrix::column_set()
+    }
+    if (slanted) {
+      d.center = -d.center;
+      const float cos_y = towards(greatest_cosine(set.cone.axis, d, set.cone.cosine >= 1), set.cone.cosine,
+                                  sine_of(set.cone.cosine));
+      if (cos_y <= 0) return {Rgb(0)};
+      factor *= cos_y;
+    }
+  }
+  parts.reflected = scattered(cone, std::min(cosine, 1.0f), set.direct) * set.intensity * factor;
+  return parts;
+}
+
+Rgb SceneRowBounds::bound(const ColumnSet& set) const {
+  const matrix::BoundParts at = parts(set);
+  Rgb bound;
+  for (int c = 0; c < 3; ++c)
+    bound[c] = at.reflected[c] > 0 ? std::min(at.reflected[c] * at.near, set.ceiling[c] * kRounding) : 0.0f;
+  return bound;
+}
+
+}  // namespace lumirank::transport

@@ -1,0 +1,78 @@
+#include "transport/pairs/scatter_forms.h"
+
+#include <algorithm>
+
+namespace lumirank::transport {
+namespace {
+
+using scatter::LobeKind;
+
+bool has_lane_code(const scatter::Lobe& lobe) {
+  if (lobe.veil) return false;
+  if (lobe.coat && scatter::shines_through(lobe.kind)) return false;
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+    case LobeKind::interfaced_diffuse:
+    case LobeKind::oren_nayar:
+    case LobeKind::phong:
+    case LobeKind::ward:
+    case LobeKind::sheen:
+    case LobeKind::disney_diffuse:
+    case LobeKind::clearcoat:
+    case LobeKind::diffuse_transmit:
+    case LobeKind::thin_transmit:
+      return true;
+    case LobeKind::microfacet_reflect:
+      return lobe.variant == 0;
+    default:
+      return false;
+  }
+}
+
+bool needs_half_vector(LobeKind kind) {
+  return kind == LobeKind::microfacet_reflect || kind == LobeKind::ward || kind == LobeKind::sheen ||
+         kind == LobeKind::disney_diffuse || kind == LobeKind::clearcoat;
+}
+
+bool is_anisotropic(const scatter::Lobe& lobe) {
+  return (lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::ward ||
+          lobe.kind == LobeKind::thin_transmit) &&
+         lobe.alpha_u != lobe.alpha_v;
+}
+
+ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
+  ScatterForm form;
+  form.in_lanes = std::all_of(lobes.begin(), lobes.end(), has_lane_code);
+  for (const scatter::Lobe& lobe : lobes) {
+    if (scatter::shines_through(lobe.kind)) form.sides = Sides::both;
+    if (scatter::is_hair(lobe.kind)) form.sides = Sides::fibre;
+    const bool coated = static_cast<bool>(lobe.coat);
+    form.microfacets = form.microfacets || (needs_half_vector(lobe.kind) && !coated);
+    form.anisotropic = form.anisotropic || is_anisotropic(lobe);
+    form.coated = form.coated || coated;
+    if (form.in_lanes)
+      form.lobes.push_back({lobe.kind, lobe.fresnel, lobe.distribution, lobe.variant, coated});
+  }
+  // One form for all that goes lane by lane, but for the side on which rays start.
+  if (!form.in_lanes) form.lobes.clear(), form.microfacets = form.anisotropic = form.coated = false;
+  return form;
+}
+
+}  // namespace
+
+ScatterForms::ScatterForms(const scatter::ClosurePool& pool) {
+  form_of_recipe_.reserve(pool.recipes());
+  for (std::uint32_t recipe = 0; recipe < pool.recipes(); ++recipe) {
+    const ScatterForm form = form_of(pool.lobes(recipe));
+    const auto found = std::find(forms_.begin(), forms_.end(), form);
+    form_of_recipe_.push_back(static_cast<std::uint16_t>(found - forms_.begin()));
+    if (found == forms_.end()) forms_.push_back(form);
+  }
+}
+
+bool ScatterForms::some_two_sided() const {
+  return std::any_of(forms_.begin(), forms_.end(),
+                     [](const ScatterForm& form) { return form.sides != Sides::front; });
+}
+
+}  // namespace lumirank::transport

@@ -1,0 +1,118 @@
+#include "transport/rows/eye_chain.h"
+
+#include <algorithm>
+
+#include "transport/rows/receivers.h"
+
+namespace lumirank::transport {
+namespace {
+
+using scatter::Closure;
+using scatter::LobeKind;
+
+// Chains lighter than this survive in proportion to their weight, so that dense glass does not fill the
+// matrix with rows that nobody can see.
+constexpr float kFaint = 1e-3f;
+// From this many surfaces on, a chain survives with the probability below: two mirrors may face each other.
+constexpr int kLong = 16;
+constexpr float kLongSurvival = 0.75f;
+
+// True if the chain goes on; its weight then makes up for those that do not.
+bool roulette(Rgb& weight, int vertices, Rng& rng) {
+  float survival = std::min(1.0f, max_component(weight) / kFaint);
+  if (vertices >= kLong) survival = std::min(survival, kLongSurvival);
+  if (survival >= 1) return true;
+  if (rng.next_float() >= survival) return false;
+  weight *= 1 / survival;
+  return true;
+}
+
+}  // namespace
+
+void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure, const Segment& s,
+                            std::uint32_t sample, std::vector<EyeVertex>& out,
+                            scatter::ClosurePool& pool) const {
+  EyeVertex v;
+  v.position = hit.point.position;
+  v.wo = -s.ray.direction;
+  const float side = dot(closure.frame.n, v.wo) < 0 ? -1.0f : 1.0f;
+  v.normal = closure.frame.n * side;
+  v.ng = closure.ng * side;
+  v.weight = s.weight;
+  v.sample = sample;
+  v.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
+  v.closure = Receivers::kLambertian;
+  if (closure.is_lambertian()) {
+    v.albedo = closure.diffuse_color();
+  } else {
+    v.closure = pool.add(closure, v.normal);
+  }
+  out.push_back(v);
+}
+
+void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closure, const Segment& s,
+                             Rng& rng) {
+  scatter::DeltaContinuation next[scatter::kMaxLobes + 1];
+  int count = scatter::delta_continuations(closure, -s.ray.direction, next);
+  const auto out_of_depth = [&](const scatter::DeltaContinuation& c) {
+    return is_black(c.weight) ||
+           (c.kind != LobeKind::delta_pass && settings_.max_depth >= 0 && s.depth + 1 > settings_.max_depth);
+  };
+  count = static_cast<int>(std::remove_if(next, next + count, out_of_depth) - next);
+  if (count == 0) return;
+
+  int splits = s.splits;
+  if (count > 1 && splits >= settings_.max_splits) {
+    float total = 0;
+    for (int k = 0; k < count; ++k) total += max_component(next[k].weight);
+    float u = rng.next_float() * total;
+    int drawn = 0;
+    while (drawn + 1 < count && u >= max_component(next[drawn].weight))
+      u -= max_component(next[drawn++].weight);
+    next[0] = next[drawn];
+    next[0].weight *= total / max_component(next[0].weight);
+    count = 1;
+  } else if (count > 1) {
+    ++splits;
+  }
+  for (int k = 0; k < count; ++k) {
+    Rgb weight = s.weight * next[k].weight;
+    if (!roulette(weight, s.vertices + 1, rng)) continue;
+    const int depth = s.depth + (next[k].kind == LobeKind::delta_pass ? 0 : 1);
+    const Vec3f origin = world::World::offset_origin(hit.point.position, hit.point.ng, next[k].wi);
+    pending_.push_back({{origin, next[k].wi}, weight, depth, splits, s.vertices + 1});
+  }
+}
+
+Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, std::vector<EyeVertex>& out,
+                     scatter::ClosurePool& pool, FirstHit* first) {
+  Rgb emission{0};
+  pending_.clear();
+  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0});
+  for (bool from_eye = true; !pending_.empty(); from_eye = false) {
+    const Segment s = pending_.back();
+    pending_.pop_back();
+    const auto hit = world_.intersect(s.ray);
+    if (!hit) {
+      emission += s.weight * (world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
+      continue;
+    }
+    const Vec3f wo = -s.ray.direction;
+    if (hit->emitter >= 0) emission += s.weight * world_.emitted(*hit, wo);
+    const Closure closure = world_.materials().closure(hit->material, hit->point, wo);
+    if (from_eye && first) {
+      const float side = dot(closure.frame.n, wo) < 0 ? -1.0f : 1.0f;
+      const float ng_side = dot(closure.ng, wo) < 0 ? -1.0f : 1.0f;
+      *first = {scatter::albedo(closure, wo), closure.frame.n * side, closure.ng * ng_side,
+                hit->point.position, hit->hit.t};
+    }
+    const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
+    // Where the two normals disagree about the side of wo, the smooth lobes are 0 (scatter::eval).
+    if (light_may_follow && closure.sides_agree(wo) && closure.has_smooth())
+      add_receiver(*hit, closure, s, sample, out, pool);
+    if (closure.has_delta()) continue_from(*hit, closure, s, rng);
+  }
+  return emission;
+}
+
+}  // namespace lumirank::transport

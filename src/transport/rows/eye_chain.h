@@ -1,0 +1,62 @@
+// From one film sample along all its specular chains to the receivers at their ends.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/random.h"
+#include "scatter/closure.h"
+#include "scatter/closure_pool.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+// One receiver before it is laid out; see Receivers for the fields.
+struct EyeVertex {
+  Vec3f position, normal, ng, wo;
+  Rgb weight, albedo;
+  std::uint32_t sample = 0, closure = 0;
+  std::uint16_t depth = 0;
+};
+
+struct FirstHit {
+  Rgb albedo;
+  Vec3f normal, ng, position;  // normals on the eye's side
+  float distance = kInfinity;
+};
+
+struct ChainSettings {
+  int max_depth = -1;
+  int max_splits = 3;
+};
+
+// Light that passes straight through (null surfaces, cut-outs, thin glass) meets no vertex: it counts neither
+// for the depth nor as a specular vertex, as in the reference.
+class EyeChain {
+ public:
+  EyeChain(const world::World& world, const ChainSettings& settings) : world_(world), settings_(settings) {}
+
+  // Appends the receivers of `sample` to `out`, their closures to `pool`; returns the emission that is seen.
+  // `first`: what the AOVs want to know, or nullptr (the albedo of glossy surfaces is not cheap).
+  Rgb follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, std::vector<EyeVertex>& out,
+             scatter::ClosurePool& pool, FirstHit* first);
+
+ private:
+  struct Segment {
+    geometry::Ray ray;
+    Rgb weight;
+    int depth;     // segments up to and including this one
+    int splits;    // vertices so far at which more than one continuation was followed
+    int vertices;  // surfaces met so far, straight passes included
+  };
+  void add_receiver(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
+                    std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool& pool) const;
+  void continue_from(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
+                     Rng& rng);
+
+  const world::World& world_;
+  ChainSettings settings_;
+  std::vector<Segment> pending_;  // reused between samples
+};
+
+}  // namespace lumirank::transport

@@ -1,0 +1,276 @@
+#include "transport/rows/receivers.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "transport/rows/eye_chain.h"
+#include "transport/rows/film_order.h"
+
+namespace lumirank::transport {
+namespace {
+
+constexpr std::size_t kTilesPerPiece = 64;
+
+struct Crop {
+  int x, y, width, height;
+};
+
+Crop crop_of(const world::Camera& camera, const ReceiverSettings& s) {
+  if (s.crop_width == 0 && s.crop_height == 0) return {0, 0, camera.width(), camera.height()};
+  const bool inside = s.crop_x >= 0 && s.crop_y >= 0 && s.crop_width > 0 && s.crop_height > 0 &&
+                      s.crop_x <= camera.width() - s.crop_width &&
+                      s.crop_y <= camera.height() - s.crop_height;
+  if (!inside)
+    throw InputError("the crop window (" + std::to_string(s.crop_x) + ", " + std::to_string(s.crop_y) + ", " +
+                         std::to_string(s.crop_width) + " × " + std::to_string(s.crop_height) +
+                         ") does not lie on the film of " + std::to_string(camera.width()) + " × " +
+                         std::to_string(camera.height()) + " pixels",
+                     "give a window with positive size inside the film");
+  return {s.crop_x, s.crop_y, s.crop_width, s.crop_height};
+}
+
+// What one piece of tiles found, receivers already in their final order.
+struct Piece {
+  std::vector<EyeVertex> vertices;
+  scatter::ClosurePool pool;
+};
+
+// pixel + u, kept below pixel + 1 whatever the rounding.
+float within(int pixel, float u) {
+  const auto p = static_cast<float>(pixel);
+  return std::min(p + u, std::nextafter(p + 1, 0.0f));
+}
+
+// Which of the six faces of a cube around the origin `n` points at.
+int face(Vec3f n) {
+  const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  const int axis = x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
+  return 2 * axis + (n[axis] < 0 ? 1 : 0);
+}
+
+// Within a tile, receivers that are shaded alike stand together: same sort of material, directly seen or
+// mirrored, and facing the same way.
+void sort_tile(std::vector<EyeVertex>::iterator begin, std::vector<EyeVertex>::iterator end) {
+  const auto key = [](const EyeVertex& v) {
+    return std::array<int, 3>{v.closure == Receivers::kLambertian ? 0 : 1, v.depth, face(v.normal)};
+  };
+  std::stable_sort(begin, end, [&](const EyeVertex& a, const EyeVertex& b) { return key(a) < key(b); });
+}
+
+class ReceiverTracer {
+ public:
+  ReceiverTracer(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings)
+      : world_(world),
+        camera_(camera),
+        settings_(settings),
+        crop_(crop_of(camera, settings)),
+        order_(crop_.width, crop_.height) {}
+
+  Receivers run(const Sinks& sinks) {
+    const std::size_t samples =
+        static_cast<std::size_t>(crop_.width) * static_cast<std::size_t>(crop_.height) * spp();
+    if (samples >= 0xffffffffull)
+      throw InputError("the film has " + std::to_string(samples) + " samples; at most 2^32 - 1 are possible",
+                       "lower the samples per pixel or the size of the film");
+    result_.width = crop_.width, result_.height = crop_.height;
+    result_.film.resize(samples);
+    result_.emission.resize(samples);
+    if (settings_.first_hits) {
+      result_.first_albedo.resize(samples);
+      result_.first_normal.resize(samples);
+      result_.first_ng.resize(samples);
+      result_.first_position.resize(samples);
+      result_.first_distance.resize(samples);
+    }
+    pieces_.resize((order_.tiles.size() + kTilesPerPiece - 1) / kTilesPerPiece);
+    std::atomic<std::size_t> done{0};
+    parallel_for(order_.tiles.size(), kTilesPerPiece, [&](std::size_t begin, std::size_t end) {
+      if (sinks.cancelled()) return;
+      trace_piece(begin, end);
+      done += end - begin;
+      sinks.report("receivers", static_cast<double>(done) / static_cast<double>(order_.tiles.size()));
+    });
+    if (sinks.cancelled()) throw Cancelled();
+    gather();
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t spp() const { return static_cast<std::size_t>(settings_.spp); }
+
+  void trace_piece(std::size_t begin, std::size_t end) {
+    Piece& piece = pieces_[begin / kTilesPerPiece];
+    EyeChain chain(world_, {settings_.max_depth, settings_.max_splits});
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto first_of_tile = static_cast<std::ptrdiff_t>(piece.vertices.size());
+      std::size_t sample = order_.tiles[t].first_pixel * spp();
+      for (const Vec2i pixel : order_.pixels(order_.tiles[t]))
+        trace_pixel(pixel, sample, chain, piece), sample += spp();
+      sort_tile(piece.vertices.begin() + first_of_tile, piece.vertices.end());
+    }
+    piece.vertices.shrink_to_fit();
+  }
+
+  // Random numbers belong to the pixel of the whole film, so a crop shows the same picture.
+  void trace_pixel(Vec2i pixel, std::size_t sample, EyeChain& chain, Piece& piece) {
+    const int x = crop_.x + pixel.x, y = crop_.y + pixel.y;
+    const std::uint64_t id = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera_.width()) +
+                             static_cast<std::uint64_t>(x);
+    const PixelPattern pattern(settings_.spp, hash_ids(settings_.seed, Stage::receivers, id, ~0ull));
+    for (int k = 0; k < settings_.spp; ++k, ++sample) {
+      Rng rng(settings_.seed, Stage::receivers, id, static_cast<std::uint64_t>(k));
+      const Vec2f film_jitter = rng.next_2d();
+      const auto place = pattern.place(k, film_jitter, rng.next_2d());
+      const Vec2f on_film{within(x, place.film.x), within(y, place.film.y)};
+      result_.film[sample] = on_film;
+      FirstHit first;
+      result_.emission[sample] =
+          chain.follow(camera_.ray(on_film, place.lens), static_cast<std::uint32_t>(sample), rng,
+                       piece.vertices, piece.pool, settings_.first_hits ? &first : nullptr);
+      if (!settings_.first_hits) continue;
+      result_.first_albedo[sample] = first.albedo;
+      result_.first_normal[sample] = first.normal;
+      result_.first_ng[sample] = first.ng;
+      result_.first_position[sample] = first.position;
+      result_.first_distance[sample] = first.distance;
+    }
+  }
+
+  void gather() {
+    std::vector<std::size_t> first(pieces_.size() + 1, 0);
+    std::vector<std::uint32_t> first_closure(pieces_.size());
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      first[p + 1] = first[p] + pieces_[p].vertices.size();
+      first_closure[p] = result_.closures.append(pieces_[p].pool);
+      pieces_[p].pool = {};
+    }
+    result_.closures.shrink();
+    const std::size_t count = first.back();
+    if (count >= 0xffffffffull)
+      throw InputError("the film has " + std::to_string(count) + " receivers; at most 2^32 - 1 are possible",
+                       "lower the samples per pixel or the size of the film");
+    result_.position.resize(count), result_.normal.resize(count), result_.ng.resize(count),
+        result_.wo.resize(count);
+    result_.weight.resize(count), result_.albedo.resize(count);
+    result_.sample.resize(count), result_.closure.resize(count), result_.depth.resize(count);
+    parallel_for(pieces_.size(), 1, [&](std::size_t p, std::size_t) {
+      std::size_t i = first[p];
+      for (const EyeVertex& v : pieces_[p].vertices) {
+        result_.position[i] = v.position, result_.normal[i] = v.normal, result_.ng[i] = v.ng,
+        result_.wo[i] = v.wo;
+        result_.weight[i] = v.weight, result_.albedo[i] = v.albedo;
+        result_.sample[i] = v.sample, result_.depth[i] = v.depth;
+        result_.closure[i] = v.closure == Receivers::kLambertian ? v.closure : first_closure[p] + v.closure;
+        ++i;
+      }
+      pieces_[p] = Piece();
+    });
+  }
+
+  const world::World& world_;
+  const world::Camera& camera_;
+  ReceiverSettings settings_;
+  Crop crop_;
+  FilmOrder order_;
+  std::vector<Piece> pieces_;
+  Receivers result_;
+};
+
+}  // namespace
+
+Receivers trace_receivers(const world::World& world, const world::Camera& camera,
+                          const ReceiverSettings& settings, const Sinks& sinks) {
+  if (settings.spp < 1)
+    throw InputError("samples per pixel: " + std::to_string(settings.spp) + " is too few", "give at least 1");
+  return ReceiverTracer(world, camera, settings).run(sinks);
+}
+
+scatter::Closure Receivers::closure_at(std::size_t i) const {
+  if (closure[i] != kLambertian) return closures.get(closure[i], normal[i], ng[i]);
+  scatter::Closure c;
+  c.frame = Frame::from_normal(normal[i]);
+  c.ng = ng[i];
+  scatter::Lobe lobe;
+  lobe.kind = scatter::LobeKind::diffuse;
+  lobe.color = albedo[i];
+  c.add(lobe);
+  return c;
+}
+
+std::uint32_t Receivers::key(std::size_t i) const {
+  // A sample's place on the film is its own; the receiver's place tells apart those of one sample.
+  const auto both = [](float a, float b) {
+    return static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(a)) << 32 |
+           std::bit_cast<std::uint32_t>(b);
+  };
+  const Vec2f f = film[sample[i]];
+  const Vec3f p = position[i];
+  return static_cast<std::uint32_t>(mix64(mix64(mix64(both(f.x, f.y)) ^ both(p.x, p.y)) ^ both(p.z, 0)) >>
+                                    32);
+}
+
+std::size_t Receivers::memory_bytes() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return bytes(position) + bytes(normal) + bytes(ng) + bytes(wo) + bytes(weight) + bytes(sample) +
+         bytes(depth) + bytes(closure) + bytes(albedo) + closures.memory_bytes() + bytes(film) +
+         bytes(emission) + bytes(first_albedo) + bytes(first_normal) + bytes(first_position) +
+         bytes(first_distance);
+}
+
+Receivers white_receivers(const Receivers& seen) {
+  Receivers out;
+  out.film = seen.film;
+  out.emission.assign(seen.samples(), Rgb(0));
+  out.width = seen.width, out.height = seen.height;
+  for (std::size_t k = 0; k < seen.samples(); ++k) {
+    if (!std::isfinite(seen.first_distance[k])) continue;
+    out.position.push_back(seen.first_position[k]);
+    out.normal.push_back(seen.first_normal[k]), out.ng.push_back(seen.first_ng[k]);
+    // Light is received from above the surface, at whatever angle it is looked at: even where a shading
+    // normal turns away from the eye, wo must lie on the side of both.
+    out.wo.push_back(normalize(seen.first_normal[k] + seen.first_ng[k]));
+    out.weight.push_back(Rgb(1)), out.albedo.push_back(Rgb(1));
+    out.sample.push_back(static_cast<std::uint32_t>(k));
+    out.depth.push_back(1);
+    out.closure.push_back(Receivers::kLambertian);
+  }
+  return out;
+}
+
+Receivers broad_receivers(Receivers all, float limit) {
+  Receivers out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::uint32_t closure = all.closure[i];
+    Rgb albedo = all.albedo[i];
+    if (closure != Receivers::kLambertian) {
+      const scatter::Closure broad = scatter::broad_part(all.closure_at(i), limit);
+      if (broad.count == 0) continue;
+      closure = Receivers::kLambertian;
+      if (broad.is_lambertian())
+        albedo = broad.diffuse_color();
+      else
+        closure = out.closures.add(broad, all.normal[i]);
+    }
+    out.position.push_back(all.position[i]);
+    out.normal.push_back(all.normal[i]), out.ng.push_back(all.ng[i]);
+    out.wo.push_back(all.wo[i]);
+    out.weight.push_back(all.weight[i]), out.albedo.push_back(albedo);
+    out.sample.push_back(all.sample[i]), out.depth.push_back(all.depth[i]);
+    out.closure.push_back(closure);
+  }
+  out.closures.shrink();
+  out.film = std::move(all.film), out.emission = std::move(all.emission);
+  out.first_albedo = std::move(all.first_albedo);
+  out.first_normal = std::move(all.first_normal), out.first_ng = std::move(all.first_ng);
+  out.first_position = std::move(all.first_position), out.first_distance = std::move(all.first_distance);
+  out.width = all.width, out.height = all.height;
+  return out;
+}
+
+}  // namespace lumirank::transport

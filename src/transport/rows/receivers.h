@@ -1,0 +1,78 @@
+// Rows: the points that the film sees, at the end of specular chains from the eye.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/sinks.h"
+#include "base/vec.h"
+#include "scatter/closure.h"
+#include "scatter/closure_pool.h"
+#include "world/camera.h"
+#include "world/world.h"
+
+namespace lumirank::transport {
+
+struct ReceiverSettings {
+  std::uint64_t seed = 1;
+  int spp = 4;         // film samples per pixel, stratified √spp × √spp when square
+  int max_depth = -1;  // Mitsuba's count
+  // What is traced, 0: the whole film. A picture of a window needs as much around it as its filter reaches.
+  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;
+  bool first_hits = true;  // keep the first_… arrays, for AOVs: 40 B and some µs per sample
+  // Specular vertices at which both reflection and refraction are followed; at later ones, one is drawn.
+  int max_splits = 3;
+};
+
+// Sorted in Morton order of 4×4-pixel tiles, so that neighbours in the image are neighbours in memory.
+// A film sample may have several receivers (glass, smooth coatings) or none (it sees only emitters or the
+// background).
+struct Receivers {
+  std::vector<Vec3f> position;
+  // Shading and geometric, in the hemisphere of wo where they agree. On a fibre ng is zero
+  // (Closure::is_fibre()).
+  std::vector<Vec3f> normal, ng;
+  std::vector<Vec3f> wo;               // unit, back along the eye path
+  std::vector<Rgb> weight;             // throughput of the specular chain
+  std::vector<std::uint32_t> sample;   // film sample that it belongs to
+  std::vector<std::uint16_t> depth;    // path segments from the eye to here (1: seen directly)
+  std::vector<std::uint32_t> closure;  // index into closures (not lambertian), or kLambertian
+  std::vector<Rgb> albedo;             // of lambertian receivers: diffuse reflectance
+  scatter::ClosurePool closures;       // smooth lobes only
+  // The closure of any receiver, lambertian or not, without its delta lobes.
+  scatter::Closure closure_at(std::size_t i) const;
+
+  static constexpr std::uint32_t kLambertian = 0xffffffffu;
+
+  // Film samples: position on the whole film in pixels, and the emission that is seen directly or through the
+  // chain.
+  std::vector<Vec2f> film;
+  std::vector<Rgb> emission;
+  // First hit of each sample, for AOVs: zero (distance: infinite) where the background is seen. Empty if not
+  // asked for.
+  std::vector<Rgb> first_albedo;
+  std::vector<Vec3f> first_normal, first_ng, first_position;  // normals on the eye's side
+  std::vector<float> first_distance;
+  int width = 0, height = 0;  // of the cropped film
+
+  // Whose random numbers a receiver uses: the same in every window of the film that shows it.
+  std::uint32_t key(std::size_t i) const;
+
+  std::size_t size() const { return position.size(); }
+  std::size_t samples() const { return film.size(); }
+  std::size_t memory_bytes() const;
+};
+
+// A white diffuse receiver (albedo 1) at every first hit, for the irradiance there: E = π times its radiance.
+// Weights are 1, depths 1; film samples stay those of `seen`, which has its first hits.
+Receivers white_receivers(const Receivers& seen);
+
+// What is left to columns where lobes with a roughness below `limit` take their light elsewhere: receivers
+// without those lobes, and only where one is left. Film samples stay those of `all`.
+Receivers broad_receivers(Receivers all, float limit);
+
+Receivers trace_receivers(const world::World& world, const world::Camera& camera,
+                          const ReceiverSettings& settings, const Sinks& sinks = {});
+
+}  // namespace lumirank::transport

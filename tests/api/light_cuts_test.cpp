@@ -1,0 +1,107 @@
+// Light cuts on the matrices of scenes, whose bounds come from geometry and materials.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "api/scene.h"
+#include "lumirank/lumirank.h"
+#include "methods/common/column_pass.h"
+#include "methods/common/row_group_pass.h"
+#include "methods/statistics.h"
+#include "pipeline/pipeline.h"
+
+namespace lumirank {
+namespace {
+
+// 300 lights in an example scene, seen by 24×16 pixels of two samples.
+class LightCutsInScenes : public testing::TestWithParam<const char*> {
+ protected:
+  LightCutsInScenes() : scene_(Scene::load(std::string(LUMIRANK_EXAMPLES) + "/" + GetParam())) {
+    settings_.width = 24, settings_.height = 16, settings_.spp = 2;
+    std::vector<scenedesc::Warning> warnings;
+    world_ = std::make_unique<world::World>(world::World::build(scene_.impl().desc, {}, warnings));
+    setup_.view = pipeline::make_view(scene_.impl().desc, settings_);
+    setup_.world = world_.get();
+    pipeline::make_receivers(setup_, settings_, {});
+    transport::LightSettings ls;
+    ls.seed = 1, ls.count = 300, ls.max_depth = setup_.view.max_depth;
+    lights_ = transport::trace_virtual_lights(*world_, ls);
+    transport::SceneMatrixSettings ms;
+    ms.max_depth = setup_.view.max_depth;
+    matrix_ = std::make_unique<transport::SceneMatrix>(*world_, setup_.receivers, lights_, ms);
+  }
+
+  std::vector<Rgb> sums(const char* method, const std::map<std::string, std::string>& settings = {}) const {
+    return methods::find_method(method).make(settings)->run(*matrix_, {}).sums;
+  }
+  // What the picture shows of them.
+  std::vector<Rgb> pixels(std::span<const Rgb> sums) const {
+    const auto weight = matrix_->row_features().weight;
+    const methods::UnitRows units = methods::UnitRows::pixels(*matrix_);
+    std::vector<Rgb> out(units.size());
+    for (std::size_t u = 0; u < units.size(); ++u)
+      for (const matrix::Index i : units[u]) out[u] += sums[i] * weight[i];
+    return out;
+  }
+
+  Scene scene_;
+  RenderSettings settings_;
+  std::unique_ptr<world::World> world_;
+  pipeline::Setup setup_;
+  transport::VirtualLights lights_;
+  std::unique_ptr<transport::SceneMatrix> matrix_;
+};
+
+TEST_P(LightCutsInScenes, WithoutBoundAndLimitEqualBruteForce) {
+  const auto truth = sums("brute-force");
+  // Sums of 300 floats in another order; what a bound of 0 leaves out is 0.
+  EXPECT_LT(
+      methods::relative_difference(
+          sums("lightcuts", {{"error-bound", "0"}, {"most-nodes", "1000000"}, {"reconstruction", "off"}}),
+          truth),
+      1e-6);
+  EXPECT_LT(methods::relative_difference(
+                pixels(sums("multidimensional-lightcuts", {{"error-bound", "0"}, {"most-pairs", "1000000"}})),
+                pixels(truth)),
+            1e-6);
+}
+
+TEST_P(LightCutsInScenes, StochasticOnesAreUnbiased) {
+  const auto truth = sums("brute-force");
+  EXPECT_LT(methods::relative_difference(sums("stochastic-lightcuts", {{"nodes", "1000000"}}), truth), 1e-6);
+  // 11 two-sided t-tests at a joint confidence of 99.9 %.
+  using SettingsMap = std::map<std::string, std::string>;
+  const SettingsMap fixed{{"nodes", "10"}}, bounded{{"nodes", "60"}, {"error-bound", "0.1"}};
+  for (const SettingsMap& some : {fixed, bounded}) {
+    methods::test::UnbiasednessTest t(truth, 10);
+    const auto method = methods::find_method("stochastic-lightcuts").make(some);
+    for (std::uint64_t seed = 1; seed <= methods::test::runs(150); ++seed) {
+      methods::RunOptions options;
+      options.seed = seed;
+      t.add(method->run(*matrix_, options).sums);
+    }
+    EXPECT_LT(t.largest_t(), t.limit());
+  }
+}
+
+// A cut's nodes are each below a share of the total, so the smaller the share the smaller the error.
+TEST_P(LightCutsInScenes, ErrorFallsWithTheBound) {
+  const auto truth = pixels(sums("brute-force"));
+  for (const char* method : {"lightcuts", "multidimensional-lightcuts"}) {
+    std::vector<double> errors;
+    for (const char* bound : {"0.2", "0.02", "0.0005"})
+      errors.push_back(methods::relative_l1_difference(
+          pixels(sums(method, {{"error-bound", bound},
+                               {method[0] == 'l' ? "reconstruction" : "most-pairs",
+                                method[0] == 'l' ? "off" : "100000"}})),
+          truth));
+    EXPECT_GT(errors[0], errors[1]) << method;
+    EXPECT_GT(errors[1], errors[2]) << method;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, LightCutsInScenes, testing::Values("box.xml", "interior.xml"),
+                         [](const auto& p) { return std::string(p.param, std::strchr(p.param, '.')); });
+
+}  // namespace
+}  // namespace lumirank

@@ -1,0 +1,181 @@
+// Light sampling: densities agree with the samples, and no light is lost by the choice among thousands.
+#include "pathtrace/light_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "base/warp.h"
+#include "scenedesc/readers.h"
+#include "support/statistics.h"
+
+namespace lumirank::pathtrace {
+namespace {
+
+using emitters::LitPoint;
+using test::mean_of;
+using test::student_quantile;
+
+world::World build(const scenedesc::SceneDesc& desc) {
+  std::vector<scenedesc::Warning> warnings;
+  return world::World::build(desc, {}, warnings);
+}
+
+world::World example(const std::string& name) {
+  return build(scenedesc::read_mitsuba(std::string(LUMIRANK_EXAMPLES) + "/" + name + ".xml"));
+}
+
+// Every kind of emitter, the near ones around a floor.
+world::World every_emitter() {
+  return build(scenedesc::parse_mitsuba(R"(<scene version="3.0.0">
+    <sensor type="perspective"/>
+    <shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform></shape>
+    <shape type="sphere"><point name="center" x="1" y="2" z="0"/><float name="radius" value="0.5"/>
+      <emitter type="area"><rgb name="radiance" value="3, 2, 1"/></emitter></shape>
+    <shape type="rectangle"><transform name="to_world"><rotate x="1" angle="90"/><translate x="-2" y="3"/></transform>
+      <emitter type="area"><texture type="checkerboard" name="radiance"><rgb name="color0" value="0"/><rgb name="color1" value="4"/>
+      </texture></emitter></shape>
+    <emitter type="point"><point name="position" x="0" y="1" z="2"/><rgb name="intensity" value="2"/></emitter>
+    <emitter type="spot"><transform name="to_world"><lookat origin="0,2,-3" target="0,0,-2" up="1,0,0"/></transform>
+      <rgb name="intensity" value="9"/></emitter>
+    <emitter type="ies"><string name="filename" value=")" LUMIRANK_TEST_DATA
+                                        R"(/ies/downlight.ies"/><float name="scale" value="100"/>
+      <transform name="to_world"><lookat origin="-2,2,1" target="-1,0,1" up="1,0,0"/></transform></emitter>
+    <emitter type="directional"><vector name="direction" x="1" y="-2" z="0"/><rgb name="irradiance" value="0.5"/></emitter>
+    <emitter type="constant"><rgb name="radiance" value="0.3"/></emitter>
+    </scene>)",
+                                        "every_emitter.xml"));
+}
+
+LitPoint random_point(const world::World& world, Rng& rng) {
+  const Vec3f size = world.bounds().diagonal();
+  const float x = rng.next_float(), y = rng.next_float(), z = rng.next_float();
+  const Vec3f position = world.bounds().lo + Vec3f{size.x * x, size.y * y, size.z * z};
+  const Vec3f normal = warp_sphere(rng.next_2d());
+  return {position, normal, rng.next_below(4) == 0};
+}
+
+TEST(LightSampler, AHitHasTheDensityOfItsSample) {
+  for (const char* name : {"lamps", "interior", ""}) {
+    const world::World world = *name ? example(name) : every_emitter();
+    const LightSampler lights(world);
+    int hits = 0, skies = 0;
+    for (std::uint64_t i = 0; i < 4000; ++i) {
+      Rng rng(1, Stage::test, i);
+      const LitPoint at = random_point(world, rng);
+      const double u = rng.next_double();
+      const auto s = lights.sample(at, u, rng.next_2d());
+      if (!(s.pdf > 0) || s.direct.delta) continue;
+      if (!std::isfinite(s.direct.distance)) {
+        ++skies;
+        EXPECT_NEAR(lights.pdf_background(at, s.direct.direction) / s.pdf, 1, 1e-4) << name << " " << i;
+        continue;
+      }
+      const auto hit = world.intersect({at.position, s.direct.direction});
+      if (!hit || hit->emitter != s.emitter || hit->hit.triangle != s.direct.triangle) continue;
+      // The sample's own direction and distance are exact; the ray's distance would differ by its rounding.
+      EXPECT_NEAR(lights.pdf_hit(at, *hit, s.direct.direction, s.direct.distance) / s.pdf, 1, 1e-4)
+          << name << " " << i;
+      ++hits;
+    }
+    EXPECT_GT(hits, 100) << name;
+    if (!*name) {
+      EXPECT_GT(skies, 200);
+    }
+  }
+}
+
+// Light through a horizontal or vertical surface at a point, as one sample finds it.
+double received(const world::World& world, const LitPoint& at, const emitters::DirectSample& s, double pdf) {
+  const float cosine = dot(at.normal, s.direction);
+  if (!(pdf > 0) || !(cosine > 0)) return 0;
+  const Rgb visible = visible_fraction(world, at.position, at.normal, s.direction, s.distance, 0);
+  return luminance(s.radiance * visible) * cosine / pdf;
+}
+
+// The sum over all emitters, each sampled on its own `each` times, against the sampler's choice: equal means
+// at a confidence of 99.9 % for all points together. One emitter left out, or one probability wrong, is a
+// bias here.
+void expect_no_light_lost(const world::World& world, int each, int samples, const char* what) {
+  const LightSampler lights(world);
+  constexpr std::uint64_t kPoints = 8, kSeeds = 24;
+  for (std::uint64_t p = 0; p < kPoints; ++p) {
+    // A surface point seen from the middle of the scene.
+    Rng where(2, Stage::test, p);
+    const Vec3f middle = world.bounds().center();
+    const Vec3f direction = warp_sphere(where.next_2d());
+    const auto hit = world.intersect({middle, direction});
+    if (!hit) continue;
+    const Vec3f ng = dot(hit->point.ng, direction) < 0 ? hit->point.ng : -hit->point.ng;
+    const LitPoint at{hit->point.position, ng, false};
+    std::vector<double> all, chosen;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      Rng rng(3, Stage::test, p, seed);
+      double sum = 0;
+      for (int e = 0; e < static_cast<int>(world.emitters().size()); ++e) {
+        for (int k = 0; k < each; ++k) {
+          const float u1 = rng.next_float();
+          const auto s = world.sample_direct(e, at.position, u1, rng.next_2d());
+          sum += received(world, at, s, s.pdf) / each;
+        }
+      }
+      all.push_back(sum);
+      sum = 0;
+      for (int k = 0; k < samples; ++k) {
+        const double u = rng.next_double();
+        const auto s = lights.sample(at, u, rng.next_2d());
+        sum += received(world, at, s.direct, s.pdf);
+      }
+      chosen.push_back(sum / samples);
+    }
+    const auto a = mean_of(all), b = mean_of(chosen);
+    const double allowed =
+        student_quantile(1e-3, kPoints, kSeeds - 1) * std::hypot(a.standard_error, b.standard_error);
+    EXPECT_NEAR(a.mean, b.mean, allowed + 1e-5 * a.mean) << what << ", point " << p;
+    EXPECT_LE(allowed, 0.1 * a.mean) << what << ", point " << p << ": the test has lost its teeth";
+  }
+}
+
+TEST(LightSampler, TheSumOverTwoThousandLamps) { expect_no_light_lost(example("lamps"), 1, 2000, "lamps"); }
+TEST(LightSampler, TheSumOverLampsInRecesses) {
+  expect_no_light_lost(example("recesses"), 1, 2000, "recesses");
+}
+TEST(LightSampler, TheSumOverEveryKindOfEmitter) {
+  expect_no_light_lost(every_emitter(), 1000, 4000, "every kind");
+}
+
+TEST(LightSampler, LightMattersOnTheSideOfTheEyeOrOnBothIfASurfaceTransmits) {
+  scatter::Closure closure;
+  closure.frame = Frame::from_normal({0, 0, 1});
+  scatter::Lobe lobe;
+  lobe.color = Rgb(0.5f);
+  closure.add(lobe);
+  const Vec3f above = normalize(Vec3f{1, 0, 1}), below = normalize(Vec3f{1, 0, -1});
+  EXPECT_EQ(lit_point({}, closure, above).normal, (Vec3f{0, 0, 1}));
+  EXPECT_EQ(lit_point({}, closure, below).normal, (Vec3f{0, 0, -1}));
+  EXPECT_FALSE(lit_point({}, closure, above).both_sides);
+  lobe.kind = scatter::LobeKind::microfacet_transmit;
+  closure.add(lobe);
+  EXPECT_TRUE(lit_point({}, closure, above).both_sides);
+}
+
+TEST(LightSampler, NearAndFarLightsBothGetAQuarter) {
+  // Whatever the powers, which for a sky are measured over the disc of the whole scene.
+  const world::World world = every_emitter();
+  const LightSampler lights(world);
+  const LitPoint floor{{0, 0, 0}, {0, 1, 0}, false};
+  int far = 0;
+  constexpr int kCount = 1000;
+  for (int k = 0; k < kCount; ++k)
+    if (!std::isfinite(lights.sample(floor, (k + 0.5) / kCount, {0.3f, 0.6f}).direct.distance)) ++far;
+  EXPECT_GE(far, kCount / 4 - 1);
+  EXPECT_LE(far, 3 * kCount / 4 + 1);
+  // Below the floor, facing down, no near light can matter: all samples go to the far ones.
+  const LitPoint below{{0, -1, 0}, {0, -1, 0}, false};
+  EXPECT_FALSE(std::isfinite(lights.sample(below, 0.01, {0.3f, 0.6f}).direct.distance));
+}
+
+}  // namespace
+}  // namespace lumirank::pathtrace
