@@ -66,8 +66,8 @@ void run(const Options& options) {
   std::vector<scenedesc::Warning> warnings;
   const world::World world = world::World::build(desc, {}, warnings);
   RenderSettings settings;
-  settings.width = options.width, settings.height = options.height;
-  settings.spp = 1, settings.seed = options.seed;
+  settings.view.width = options.width, settings.view.height = options.height;
+  settings.view.spp = 1, settings.seed = options.seed;
   pipeline::Setup setup;
   setup.world = &world;
   setup.view = pipeline::make_view(desc, settings);

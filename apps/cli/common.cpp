@@ -50,7 +50,7 @@ RenderSettings CommonOptions::render_settings() const {
   for (const auto& [key, value] : fields) set_field(settings, key, value);
   for (const auto& text : method_settings) {
     const auto [key, value] = split_assignment(text, "--set");
-    settings.method_settings[key] = value;
+    settings.method.parameters[key] = value;
   }
   return settings;
 }

@@ -43,7 +43,7 @@ std::vector<std::string> illuminance_files(const OutputOptions& outputs) {
 // All that will be written.
 std::vector<std::string> files_of(const OutputOptions& outputs, const RenderSettings& settings) {
   std::vector<std::string> files = outputs.images;
-  if (std::count(settings.aovs.begin(), settings.aovs.end(), "illuminance") > 0)
+  if (std::count(settings.layers.begin(), settings.layers.end(), "illuminance") > 0)
     for (auto& file : illuminance_files(outputs)) files.push_back(std::move(file));
   for (const auto& file : {outputs.preview, outputs.report})
     if (!file.empty()) files.push_back(file);
@@ -60,7 +60,7 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
   command.add_option("--preview", outputs.preview, "PNG file that is rewritten while the estimate improves");
   add_number(command, "--exposure", outputs.display.exposure, {-100, 100, false, "stops"},
              "stops, for PNG (default 0)");
-  add_choice(command, "--tonemap", outputs.display.tonemap, {"none", "reinhard", "agx"},
+  add_choice(command, "--tonemap", [&outputs](const std::string& name) { outputs.display.tonemap = tone_map(name); }, {"none", "reinhard", "agx"},
              "for PNG: none, reinhard or agx (default none)");
   command.add_option_function<std::string>(
       "--illuminance-range", [&outputs](const std::string& text) { read_range(text, outputs.display); },
@@ -69,7 +69,7 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
 
 void check_outputs(const OutputOptions& outputs, const RenderSettings& settings) {
   for (const auto& file : outputs.images) check_writable(file);
-  if (std::count(settings.aovs.begin(), settings.aovs.end(), "illuminance") > 0)
+  if (std::count(settings.layers.begin(), settings.layers.end(), "illuminance") > 0)
     for (const auto& file : illuminance_files(outputs)) check_writable(file);
   if (!outputs.preview.empty()) {
     if (lower_extension(outputs.preview) != ".png")
@@ -109,7 +109,7 @@ int write_outputs(const OutputOptions& outputs, const RenderResult& result, Cons
     for (const auto& file : illuminance_files(outputs))
       write_illuminance(file, result.picture, outputs.display), written.push_back(file);
   if (!outputs.preview.empty()) write_picture(outputs.preview, result.picture, outputs.display);
-  if (!outputs.report.empty()) write_text(outputs.report, result.report_json);
+  if (!outputs.report.empty()) write_text(outputs.report, result.report.json());
   together.commit();
   console.clear();
   if (result.interrupted)

@@ -62,16 +62,17 @@ CLI::Option* add_count(CLI::App& command, const std::string& option, int& value,
       ->type_name("N");
 }
 
-CLI::Option* add_choice(CLI::App& command, const std::string& option, std::string& value,
+CLI::Option* add_choice(CLI::App& command, const std::string& option,
+                        const std::function<void(const std::string&)>& take,
                         const std::vector<std::string>& choices, const std::string& help) {
   return command.add_option_function<std::string>(
       option,
-      [&value, option, choices](const std::string& text) {
+      [take, option, choices](const std::string& text) {
         std::string list;
         for (const auto& choice : choices) list += (list.empty() ? "" : ", ") + choice;
         if (std::find(choices.begin(), choices.end(), text) == choices.end())
           throw InputError("'" + text + "' is not a value of " + option, "choose one of " + list);
-        value = text;
+        take(text);
       },
       help);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,9 @@ CLI::Option* add_number(CLI::App& command, const std::string& option, double& va
 CLI::Option* add_count(CLI::App& command, const std::string& option, int& value, int low, int high,
                        const std::string& help);
 
-CLI::Option* add_choice(CLI::App& command, const std::string& option, std::string& value,
+// `take` gets one of the choices.
+CLI::Option* add_choice(CLI::App& command, const std::string& option,
+                        const std::function<void(const std::string&)>& take,
                         const std::vector<std::string>& choices, const std::string& help);
 
 // "a,b,c" with no empty part, or an InputError that names the option.

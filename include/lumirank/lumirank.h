@@ -2,7 +2,7 @@
 // values.
 //
 //   auto scene = lumirank::Scene::load("room.xml");
-//   auto result = lumirank::render(scene, {.lights = 50000});
+//   auto result = lumirank::render(scene, {.lights = {.count = 50000}});
 //   lumirank::write_picture("room.exr", result.picture);
 #pragma once
 
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lumirank/error.h"
+#include "lumirank/report.h"
 #include "lumirank/settings.h"
 #include "lumirank/sinks.h"
 
@@ -52,7 +53,7 @@ struct Picture {
 
 struct RenderResult {
   Picture picture;
-  std::string report_json;
+  Report report;
   std::string summary;       // one line for a person
   bool interrupted = false;  // cancelled: the picture is the best finished estimate
 };
@@ -64,8 +65,7 @@ using PreviewCallback = std::function<void(const Picture&)>;
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
                     const PreviewCallback& on_preview = {});
 
-// Ground truth by path tracing. Of `settings` it reads size, depth, only, seed, threads, camera, crop and
-// aovs.
+// Ground truth by path tracing. Of `settings` it reads view, seed, threads and layers.
 RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
                        const Sinks& sinks = {}, const PreviewCallback& on_preview = {});
 

@@ -2,8 +2,10 @@
 // once, in render_fields(), from which the command line, JSON and the documentation are made.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,61 +18,103 @@ struct LoadOptions {
   bool allow_missing = false;                  // files that do not exist get a stand-in, with a warning
 };
 
-struct RenderSettings {
-  std::string method = "auto";
-  std::map<std::string, std::string> method_settings;  // --set KEY=VALUE
-  std::uint64_t lights = 100000;
-  bool lights_given = false;  // asked for by hand: a time budget does not lower them, nor any other value
-                              // than the default
-  std::string light_type = "point";  // point, sphere
-  double radius_scale = 0;  // spherical lights: radius over the distance to the 10th nearest; 0: automatic
-  std::string sphere_indicator = "disc";   // disc, cosine
-  std::string sphere_strategies = "all";   // all, cone
-  std::string sphere_samples = "overlap";  // overlap, cone
-  int width = 0, height = 0;               // pixels; 0: as the scene says
-  int spp = 4;                             // receivers per pixel
-  bool spp_given = false;                  // as lights_given
-  int max_depth = 0;         // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
-  double clamp = 0.03;       // X of docs/conventions; 0: off
-  std::string only = "all";  // all, direct, indirect
-  std::uint64_t seed = 1;
-  std::uint64_t method_seed = 0;  // other choices of the method on the same lights and receivers; 0: the seed
-  int threads = 0;                // 0: all
-  double time = 0;                // seconds; 0: no limit
-  double error = 0;               // estimated relative error to stop at; 0: the method's default
-  std::string backend = "cpu";
-  std::string direct =
-      "auto";  // matrix, traced, auto: traced where the receiver is glossier than a measured roughness
+// Which of the light is wanted: what reaches a surface straight from an emitter, or all else.
+enum class LightPart { all, direct, indirect };
+// Virtual lights of indirect light: points; points that send on by the diffuse lobes of their surface alone
+// (2009, section 2); spheres (2009, section 4).
+enum class LightType { point, diffuse_point, sphere };
+enum class SphereIndicator { disc, cosine };    // what is taken for the lit surface close by; cosine: 2009
+enum class SphereStrategies { all, cone };      // sample cone and both BSDFs, or the cone alone
+enum class SphereSamples { overlap, cone };     // by the overlap of lobes and cone, or the cone alone: 2009
+// Direct light at receivers: by columns; traced with multiple importance sampling; automatic: traced where a
+// lobe is sharper than a measured roughness.
+enum class DirectLight { automatic, matrix, traced };
+// Paths that columns cannot carry; automatic: traced where a pilot finds that they matter.
+enum class RestOfPaths { automatic, skip, trace };
+// Which paths a reference has: all, those that columns carry, or the others.
+enum class ReferencePaths { all, columns, rest };
+enum class ToneMap { none, reinhard, agx };
+
+// What is looked at, and how finely.
+struct ViewSettings {
+  std::string camera;                 // id; "": the scene's first
+  int width = 0, height = 0;          // pixels; 0: as the scene says
+  std::array<int, 4> crop{};          // x, y, width, height in pixels; width 0: none
+  std::optional<int> spp;             // receivers per pixel; unset: 4, or what a time budget holds
+  int max_depth = 0;                  // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
+  LightPart only = LightPart::all;
+
+  static constexpr int kDefaultSpp = 4;
+  int spp_or_default() const { return spp.value_or(kDefaultSpp); }
+};
+
+// The columns of the matrix.
+struct VirtualLightSettings {
+  std::optional<std::uint64_t> count;  // unset: 100,000, or what a time budget holds
+  LightType type = LightType::point;
+  double clamp = 0.03;      // X of docs/conventions.md; 0: off
+  double radius_scale = 0;  // spheres: radius over the distance to the 10th nearest; 0: automatic
+  SphereIndicator sphere_indicator = SphereIndicator::disc;
+  SphereStrategies sphere_strategies = SphereStrategies::all;
+  SphereSamples sphere_samples = SphereSamples::overlap;
+
+  static constexpr std::uint64_t kDefaultCount = 100000;
+  std::uint64_t count_or_default() const { return count.value_or(kDefaultCount); }
+};
+
+// How row sums are estimated.
+struct MethodSettings {
+  std::string name = "auto";
+  std::map<std::string, std::string> parameters;  // by key; methods_text() lists them
+  std::uint64_t seed = 0;    // other choices on the same lights and receivers; 0: the render's seed
+  double target_error = 0;   // estimated relative error to stop at; 0: the method's default
+};
+
+// Light that is traced beside the matrix.
+struct TracedLightSettings {
+  DirectLight direct = DirectLight::automatic;
+  RestOfPaths rest = RestOfPaths::automatic;
+  int compensate = 0;  // paths per pixel that give back what clamping took from indirect light; 0: none
   // Local compensation: paths per receiver for the light that virtual lights would blur or lose; 0: none. It
   // takes all light of lobes with a roughness below local_sharp and, where lights are spherical, what comes
   // from closer than local_near of their radii; columns then have none of it.
   int local_paths = 0;
   double local_sharp = 0.3;
   double local_near = 4;
-  std::string rest = "auto";  // auto: where a pilot finds that it matters; skip, trace
-  int compensate = 0;  // paths per pixel that give back what clamping took from indirect light; 0: none
-  std::string visibility = "exact";
-  std::string camera;          // "": the scene's first
-  int crop[4] = {0, 0, 0, 0};  // x, y, width, height; width 0: none
-  std::vector<std::string> aovs;
+};
+
+struct RenderSettings {
+  ViewSettings view;
+  VirtualLightSettings lights;
+  MethodSettings method;
+  TracedLightSettings traced;
+  std::vector<std::string> layers;  // further layers of the picture by name: see render_fields(), "aov"
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all
+  double time = 0;  // seconds from the loaded scene on; 0: no limit
   // What the clock decided in an earlier run under `time`, from its report: repeated instead of timed anew,
   // so that the picture has the same bits. Empty: the clock decides.
   std::map<std::string, std::vector<std::int64_t>> choices;
 };
 
 struct ReferenceSettings {
-  int spp = 0;                // 0: until time or error, or 64 if neither is given
-  double time = 0;            // seconds
-  double error = 0;           // stop when the stated relative L1 error is below
-  std::string paths = "all";  // all, columns, rest
+  int spp = 0;       // paths per pixel; 0: until time or error, or 64 if neither is given
+  double time = 0;   // seconds
+  double error = 0;  // stop when the stated relative L1 error is below
+  ReferencePaths paths = ReferencePaths::all;
 };
 
 struct DisplaySettings {
-  double exposure = 0;           // stops
-  std::string tonemap = "none";  // none, reinhard, agx
+  double exposure = 0;  // stops
+  ToneMap tonemap = ToneMap::none;
   // Ends of the scale of false-colour pictures of the illuminance, in lux; high 0: from 0 to a round number.
   double lux_low = 0, lux_high = 0;
 };
+
+// The names that the command line uses. Throw InputError that lists the valid ones.
+ReferencePaths reference_paths(const std::string& name);
+std::string to_text(ReferencePaths paths);
+ToneMap tone_map(const std::string& name);
 
 // One row of the table of settings.
 struct Field {

@@ -5,17 +5,14 @@
 
 #include "image/image.h"
 #include "methods/method.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/prepared.h"
 
 namespace lumirank::pipeline {
-
-bool wants_illuminance(const RenderSettings& settings);
 
 // A second matrix: the same lights, and a white diffuse receiver at each first hit, whose radiance is E/π.
 // The method runs on it as on the first. The three channels are equal: π · lumens_per_unit · luminance.
 // Nothing if it was cancelled.
-std::optional<image::Image> render_illuminance(Setup& setup, const RenderSettings& settings,
-                                               const methods::Method& method, const methods::RunOptions& run,
-                                               double lumens_per_unit);
+std::optional<image::Image> render_illuminance(const Prepared& prepared, const methods::Method& method,
+                                               const methods::RunOptions& run, double lumens_per_unit);
 
 }  // namespace lumirank::pipeline

@@ -7,12 +7,12 @@
 #include "base/timer.h"
 #include "lumirank/lumirank.h"
 #include "methods/method.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/prepared.h"
 
 namespace lumirank::pipeline {
 
 struct RenderTask {
-  const world::World* world = nullptr;
+  SharedWorld world;
   View view;
   const methods::MethodInfo* info = nullptr;
   std::unique_ptr<methods::Method> method;

@@ -2,10 +2,60 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
-#include "lumirank/lumirank.h"
+
+namespace lumirank {
+
+std::optional<double> Report::stated_error() const {
+  for (const char* key : {"error.estimate", "error.relative_l1"})
+    if (const auto found = numbers.find(key); found != numbers.end()) return found->second;
+  return {};
+}
+
+std::string Report::json() const {
+  nlohmann::ordered_json json;
+  json["method"] = method;
+  json["version"] = version;
+  json["seed"] = seed;
+  for (const auto& [stage, value] : seconds) json["seconds." + stage] = value;
+  for (const auto& [key, value] : numbers) {
+    // Whole numbers as such.
+    if (std::abs(value) < 1e15 && value == std::floor(value) && !key.starts_with("seconds."))
+      json[key] = static_cast<std::int64_t>(value);
+    else
+      json[key] = value;
+  }
+  for (const auto& [key, value] : notes) json[key] = value;
+  if (cost) {
+    json["entries.evaluated"] = cost->entries;
+    json["entries.culled"] = cost->culled;
+    json["rays.shadow"] = cost->shadow_rays;
+    json["sampling_rate"] = cost->sampling_rate;
+  }
+  if (sizes) {
+    if (cost) json["rays.per_pixel"] = static_cast<double>(cost->shadow_rays) / static_cast<double>(sizes->pixels);
+    json["virtual_lights"] = sizes->lights;
+    json["virtual_lights.asked"] = sizes->lights_asked;
+    json["virtual_lights.direct"] = sizes->direct_lights;
+    json["virtual_lights.indirect"] = sizes->lights - sizes->direct_lights;
+    json["virtual_lights.paths"] = sizes->light_paths;
+    json["receivers"] = sizes->receivers;
+    json["pixels"] = sizes->pixels;
+    json["memory.scene_bytes"] = memory.scene;
+    json["memory.receivers_bytes"] = memory.receivers;
+    json["memory.lights_bytes"] = memory.lights;
+    json["memory.matrix_bytes"] = memory.matrix;
+  }
+  json["memory.peak_bytes"] = memory.peak;
+  json["parameters"] = nlohmann::ordered_json::parse(to_json(settings));
+  if (!choices.empty()) json["choices"] = choices;
+  return json.dump(1) + "\n";
+}
+
+}  // namespace lumirank
 
 namespace lumirank::pipeline {
 
@@ -15,53 +65,51 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-std::string make_report(const Setup& setup, const RenderSettings& settings, const methods::MethodInfo& method,
-                        const methods::Estimate& estimate, const methods::TimedChoices::Lists& choices,
-                        double total_seconds, std::size_t lights_asked) {
-  nlohmann::ordered_json json;
-  json["method"] = method.name;
-  json["version"] = program_version();
-  json["seed"] = settings.seed;
-  json["seconds.total"] = total_seconds;
-  for (const auto& [phase, seconds] : setup.seconds) json["seconds." + phase] = seconds;
-  for (const auto& [key, value] : estimate.trace.numbers) json[key] = value;
-  for (const auto& [key, value] : estimate.trace.notes) json[key] = value;
-  if (json.contains("error.estimate")) json["error.of"] = "the light that columns carry";
+Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
+                   const methods::MethodInfo& method, const methods::Estimate& estimate,
+                   const methods::TimedChoices::Lists& choices) {
+  Report report;
+  report.method = method.name;
+  report.version = program_version();
+  report.seed = settings.seed;
+  report.seconds = prepared.seconds;
+  report.numbers = estimate.trace.numbers;
+  report.notes = estimate.trace.notes;
+  auto& numbers = report.numbers;
+  if (numbers.contains("error.estimate")) report.notes["error.of"] = "the light that columns carry";
 
-  const auto& counters = setup.matrix->counters();
-  const double entries =
-      static_cast<double>(setup.matrix->rows()) * static_cast<double>(setup.matrix->columns());
-  const double pixels = static_cast<double>(setup.view.width) * static_cast<double>(setup.view.height);
-  json["entries.evaluated"] = counters.entries_evaluated.load();
-  json["entries.culled"] = counters.entries_culled.load();
-  json["rays.shadow"] = counters.rays_shadow.load();
-  json["rays.per_pixel"] = static_cast<double>(counters.rays_shadow.load()) / pixels;
+  const auto& matrix = *prepared.matrix;
+  const auto& counters = matrix.counters();
+  const double all = static_cast<double>(matrix.rows()) * static_cast<double>(matrix.columns());
+  Report::Cost cost{counters.entries_evaluated.load(), counters.entries_culled.load(),
+                    counters.rays_shadow.load(), 0};
   // Some methods know a better one: of their reduced matrices.
-  if (!json.contains("sampling_rate"))
-    json["sampling_rate"] =
-        entries > 0 ? static_cast<double>(counters.entries_evaluated.load()) / entries : 0.0;
+  if (const auto own = numbers.find("sampling_rate"); own != numbers.end())
+    cost.sampling_rate = own->second, numbers.erase(own);
+  else
+    cost.sampling_rate = all > 0 ? static_cast<double>(cost.entries) / all : 0;
+  report.cost = cost;
 
-  json["virtual_lights"] = setup.lights.size();
-  json["virtual_lights.asked"] = lights_asked;
-  json["virtual_lights.direct"] = setup.lights.direct_count;
-  json["virtual_lights.indirect"] = setup.lights.size() - setup.lights.direct_count;
-  json["virtual_lights.paths"] = setup.lights.paths;
-  json["receivers"] = setup.receivers.size();
-  json["pixels"] = pixels;
-  if (setup.radius_scale > 0) json["virtual_lights.radius_scale"] = setup.radius_scale;
-  json["clamp.removed_fraction"] = setup.matrix->clamped_fraction();
-  json["traced_direct.samples"] = setup.direct_samples;
-  json["traced_direct.below_roughness"] = setup.traced_direct.empty() ? 0.0 : setup.traced_below;
-
-  json["meshes.left_out"] = setup.world->info().meshes_left_out;
-  json["memory.peak_bytes"] = peak_memory_bytes();
-  json["memory.scene_bytes"] = setup.world->info().memory_bytes;
-  json["memory.receivers_bytes"] = setup.receivers.memory_bytes();
-  json["memory.lights_bytes"] = setup.lights.memory_bytes();
-  json["memory.matrix_bytes"] = setup.matrix->memory_bytes();
-  json["parameters"] = nlohmann::ordered_json::parse(to_json(settings));
-  if (!choices.empty()) json["choices"] = choices;
-  return json.dump(1) + "\n";
+  const auto& lights = prepared.lights();
+  report.sizes = Report::Sizes{static_cast<std::uint64_t>(prepared.view.width) *
+                                   static_cast<std::uint64_t>(prepared.view.height),
+                               prepared.receivers().size(),
+                               lights.size(),
+                               prepared.columns.asked,
+                               lights.direct_count,
+                               lights.paths};
+  if (prepared.columns.radius_scale > 0)
+    numbers["virtual_lights.radius_scale"] = prepared.columns.radius_scale;
+  numbers["clamp.removed_fraction"] = matrix.clamped_fraction();
+  numbers["traced_direct.samples"] = traced.direct_samples;
+  numbers["traced_direct.below_roughness"] =
+      traced.direct.empty() ? 0.0 : static_cast<double>(prepared.recipe.traced_below);
+  numbers["meshes.left_out"] = static_cast<double>(prepared.world->info().meshes_left_out);
+  report.memory = {peak_memory_bytes(), prepared.world->info().memory_bytes,
+                   prepared.receivers().memory_bytes(), lights.memory_bytes(), matrix.memory_bytes()};
+  report.settings = settings;
+  report.choices = choices;
+  return report;
 }
 
 }  // namespace lumirank::pipeline

@@ -21,10 +21,10 @@ struct PilotSums {
   }
 };
 
-double wanted_light(const pathtrace::Radiance& r, const std::string& only) {
+double wanted_light(const pathtrace::Radiance& r, LightPart only) {
   double y = 0;
-  if (only != "indirect") y += static_cast<double>(luminance(r.direct));
-  if (only != "direct") y += static_cast<double>(luminance(r.indirect));
+  if (only != LightPart::indirect) y += static_cast<double>(luminance(r.direct));
+  if (only != LightPart::direct) y += static_cast<double>(luminance(r.indirect));
   return y;
 }
 
@@ -58,7 +58,7 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
           const Vec2f film{static_cast<float>(p % width) + jitter.x,
                            static_cast<float>(p / width) + jitter.y};
           const double y =
-              wanted_light(tracer.trace(camera.ray(film, random.next_2d()), p, number), settings.only);
+              wanted_light(tracer.trace(camera.ray(film, random.next_2d()), p, number), settings.view.only);
           sum += y, squares += y * y;
           if (is_rest) sums.brightest = std::max(sums.brightest, y / paths);
         }
@@ -93,13 +93,13 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
 RestPlan plan_rest(const world::World& world, const View& view, const RenderSettings& settings,
                    const Sinks& sinks) {
   RestPlan plan;
-  if (settings.rest == "skip") return plan;
-  if (settings.rest == "auto") {
+  if (settings.traced.rest == RestOfPaths::skip) return plan;
+  if (settings.traced.rest == RestOfPaths::automatic) {
     plan.pilot = pilot_rest(world, view, settings, sinks);
     plan.piloted = true;
   }
-  if (settings.rest == "trace")
-    plan.paths = std::max(16, settings.spp);
+  if (settings.traced.rest == RestOfPaths::trace)
+    plan.paths = std::max(16, settings.view.spp_or_default());
   else if (plan.pilot.matters())
     plan.paths = plan.pilot.paths();
   return plan;

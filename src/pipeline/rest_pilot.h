@@ -4,7 +4,8 @@
 
 #include "base/sinks.h"
 #include "lumirank/settings.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/recipe.h"
+#include "world/world.h"
 
 namespace lumirank::pipeline {
 

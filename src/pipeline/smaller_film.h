@@ -2,9 +2,11 @@
 #pragma once
 
 #include "lumirank/lumirank.h"
-#include "pipeline/pipeline.h"
+#include "world/view.h"
 
 namespace lumirank::pipeline {
+
+using world::View;
 
 // Whether the view is the whole film, which alone can be made smaller.
 bool is_whole_film(const View& view);

@@ -3,12 +3,13 @@
 
 #include <string>
 
-#include "pipeline/pipeline.h"
+#include "world/view.h"
+#include "world/world.h"
 
 namespace lumirank::pipeline {
 
 // "" if an eye ray of a coarse grid over the picture meets a surface, or the background shines and no
 // clipping plane hides a surface; else what is the matter, and the remedy.
-std::string empty_view(const world::World& world, const View& view);
+std::string empty_view(const world::World& world, const world::View& view);
 
 }  // namespace lumirank::pipeline

@@ -20,10 +20,10 @@
 #include "pages/html_text.h"
 #include "pages/page.h"
 #include "pathtrace/reference.h"
-#include "pipeline/aovs.h"
 #include "pipeline/error_advice.h"
 #include "pipeline/memory.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/develop.h"
+#include "pipeline/prepared.h"
 #include "pipeline/sound_pixels.h"
 #include "study/run_plan.h"
 #include "study/sampled_truth.h"
@@ -43,13 +43,12 @@ class Comparison {
         folder_(folder),
         sinks_(sinks),
         plan_(plan_runs(settings)),
-        world_(world::World::build(scene.desc, {scene.strict}, warnings_, sinks)) {
-    setup_.world = &world_;
-    setup_.view = make_view(scene.desc, settings.base);
+        world_(std::make_shared<world::World>(world::World::build(scene.desc, {scene.strict}, warnings_, sinks))),
+        view_(make_view(scene.desc, settings.base.view)) {
     const fs::path file = fs::absolute(scene.desc.source_file);
     results_.scene = (file.parent_path().filename() / file.filename()).string();
     results_.version = program_version();
-    results_.width = setup_.view.width, results_.height = setup_.view.height;
+    results_.width = view_.width, results_.height = view_.height;
     require_memory_of_runs();
     if (is_file()) read_reference();
     require_receivers();
@@ -57,7 +56,7 @@ class Comparison {
   }
 
   bool run() {
-    prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    prepare_as_asked();
     // Not before: a comparison that is refused leaves nothing behind.
     std::error_code code;
     const bool made = fs::create_directories(folder_, code);
@@ -94,30 +93,27 @@ class Comparison {
     std::set<std::string> warned;
     for (const PlannedRun& run : plan_)
       if (const auto& info = methods::find_method(run.method); warned.insert(run.method).second)
-        if (const std::string text = error_not_aimed_at(info, settings_.base.error); !text.empty())
+        if (const std::string text = error_not_aimed_at(info, settings_.base.method.target_error); !text.empty())
           sinks_.warn(text);
   }
 
   std::string path(const std::string& name) const { return (fs::path(folder_) / name).string(); }
 
   // Receivers and lights for a run; kept while the next run wants the same.
-  void prepare(std::size_t lights, int spp, std::uint64_t seed) {
-    RenderSettings s = settings_.base;
-    s.spp = spp;
-    s.seed = settings_.base.seed;
-    if (spp != spp_) {
-      make_receivers(setup_, s, sinks_);
-      spp_ = spp, lights_ = 0;
-    }
-    s.seed = seed;
-    if (lights != lights_ || seed != lights_seed_) {
-      make_matrix(setup_, s, lights, sinks_);
-      lights_ = lights, lights_seed_ = seed;
-    }
+  void prepare(std::size_t lights, int spp, std::uint64_t light_seed) {
+    Recipe recipe = make_recipe(settings_.base, view_);
+    recipe.spp = spp;
+    recipe.light_seed = light_seed;
+    prepared_ = pipeline::prepare(world_, view_, recipe, lights, prepared_, sinks_);
+  }
+  void prepare_as_asked() {
+    prepare(settings_.base.lights.count_or_default(), settings_.base.view.spp_or_default(), settings_.base.seed);
   }
 
   image::Image image_of(std::span<const Rgb> sums) const {
-    return develop(setup_, sample_values(setup_, sums, wanted_parts(settings_.base)));
+    return develop(view_, prepared_->receivers(),
+                   sample_values(prepared_->receivers(), prepared_->traced, sums,
+                                 wanted_parts(settings_.base.view.only)));
   }
 
   void save(const std::string& name, const image::Image& image) const {
@@ -162,7 +158,7 @@ class Comparison {
     double most = 0;
     for (const PlannedRun& run : plan_) {
       const double samples =
-          static_cast<double>(setup_.view.width) * static_cast<double>(setup_.view.height) * run.spp;
+          static_cast<double>(view_.width) * static_cast<double>(view_.height) * run.spp;
       require_countable(samples);
       most = std::max(most, memory_of_picture(samples, static_cast<double>(run.lights), false));
     }
@@ -171,9 +167,9 @@ class Comparison {
 
   // What a reference at some receivers can have at most.
   void require_receivers() const {
-    const auto most = static_cast<std::size_t>(setup_.view.width) *
-                      static_cast<std::size_t>(setup_.view.height) *
-                      static_cast<std::size_t>(settings_.base.spp);
+    const auto most = static_cast<std::size_t>(view_.width) *
+                      static_cast<std::size_t>(view_.height) *
+                      static_cast<std::size_t>(settings_.base.view.spp_or_default());
     if (sampled_receivers() > most)
       throw InputError("'" + settings_.reference + "' asks for more receivers than the " +
                            std::to_string(most) + " film samples of this render",
@@ -183,26 +179,26 @@ class Comparison {
   void make_reference() {
     const Timer timer;
     if (const std::size_t count = sampled_receivers(); count > 0) {
-      const SampledTruth::Film film{setup_.receivers.weight, setup_.receivers.sample,
-                                    static_cast<std::size_t>(settings_.base.spp)};
-      truth_ = std::make_unique<SampledTruth>(*setup_.matrix, film, count, settings_.base.seed, sinks_);
-      results_.reference_kind = "all " + std::to_string(setup_.matrix->columns()) + " columns at " +
+      const SampledTruth::Film film{prepared_->receivers().weight, prepared_->receivers().sample,
+                                    static_cast<std::size_t>(settings_.base.view.spp_or_default())};
+      truth_ = std::make_unique<SampledTruth>(*prepared_->matrix, film, count, settings_.base.seed, sinks_);
+      results_.reference_kind = "all " + std::to_string(prepared_->matrix->columns()) + " columns at " +
                                 std::to_string(truth_->rows()) + " receivers of " +
                                 std::to_string(truth_->pixels()) + " stratified pixels";
       results_.reference_seconds = timer.seconds();
       return;
     }
     if (settings_.reference == "brute-force") {
-      std::vector<matrix::ScaledColumn> columns(setup_.matrix->columns());
+      std::vector<matrix::ScaledColumn> columns(prepared_->matrix->columns());
       for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
-      std::vector<Rgb> sums(setup_.matrix->rows());
-      setup_.matrix->accumulate(columns, sums, sinks_);
+      std::vector<Rgb> sums(prepared_->matrix->rows());
+      prepared_->matrix->accumulate(columns, sums, sinks_);
       if (sinks_.cancelled()) throw Cancelled();
       reference_ = image_of(sums);
       results_.reference_kind = "all " + std::to_string(columns.size()) + " columns";
     } else if (settings_.reference == "path") {
       const auto traced =
-          pathtrace::path_trace(world_, setup_.view, reference_options(settings_.base, "columns"),
+          pathtrace::path_trace(*world_, view_, reference_options(settings_.base.view.only, settings_.base.seed, ReferencePaths::columns),
                                 {.time = settings_.reference_time}, sinks_);
       if (traced.interrupted) throw Cancelled();
       reference_ = traced.image;
@@ -227,11 +223,11 @@ class Comparison {
 
   void read_reference() {
     reference_ = image::read_image(settings_.reference).color;
-    if (reference_.width != setup_.view.width || reference_.height != setup_.view.height)
+    if (reference_.width != view_.width || reference_.height != view_.height)
       throw InputError({settings_.reference, 0},
                        "the reference has " + std::to_string(reference_.width) + "x" +
                            std::to_string(reference_.height) + " pixels, the render " +
-                           std::to_string(setup_.view.width) + "x" + std::to_string(setup_.view.height),
+                           std::to_string(view_.width) + "x" + std::to_string(view_.height),
                        "give --size or another reference");
   }
 
@@ -256,11 +252,11 @@ class Comparison {
       for (std::uint64_t k = 0; k < 48; ++k)
         few.push_back(
             {static_cast<matrix::Index>(
-                 Rng(settings_.base.seed, Stage::benchmark, k).next_below(setup_.matrix->columns())),
+                 Rng(settings_.base.seed, Stage::benchmark, k).next_below(prepared_->matrix->columns())),
              Rgb(1)});
-      std::vector<Rgb> sums(setup_.matrix->rows());
+      std::vector<Rgb> sums(prepared_->matrix->rows());
       const Timer timer;
-      setup_.matrix->accumulate(few, sums, sinks_);
+      prepared_->matrix->accumulate(few, sums, sinks_);
       columns_per_second_ = 48 / timer.seconds();
     }
     const auto fitting = static_cast<std::size_t>(std::max(1.0, columns_per_second_ * run.time));
@@ -278,31 +274,29 @@ class Comparison {
       if (const std::size_t wanted = info.lights_wanted(method_settings); wanted > 0)
         prepare(wanted, run.spp, run.seed);
 
-    auto& counters = setup_.matrix->counters();
+    auto& counters = prepared_->matrix->counters();
     counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;
     methods::RunOptions options;
     options.seed = run.seed;
     options.time_seconds = run.time;
-    options.target_error = settings_.base.error;
+    options.target_error = settings_.base.method.target_error;
     options.sinks = sinks_;
     options.sinks.progress = {};
     const Timer timer;
-    const methods::Estimate estimate = info.make(method_settings)->run(*setup_.matrix, options);
+    const methods::Estimate estimate = info.make(method_settings)->run(*prepared_->matrix, options);
     if (estimate.interrupted) return false;
 
     CompareRun result;
     result.seconds = timer.seconds();
-    result.setup_seconds = setup_.seconds["receivers"] + setup_.seconds["traced_direct"] +
-                           setup_.seconds["traced_indirect"] + setup_.seconds["lights"] +
-                           setup_.seconds["matrix"];
+    for (const auto& [stage, seconds] : prepared_->seconds) result.setup_seconds += seconds;
     result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
     result.settings = method_settings;
-    result.settings["lights"] = std::to_string(setup_.lights.size());
+    result.settings["lights"] = std::to_string(prepared_->lights().size());
     result.settings["spp"] = std::to_string(run.spp);
     result.rays = static_cast<double>(counters.rays_shadow.load());
     result.entries = static_cast<double>(counters.entries_evaluated.load());
-    result.sampling_rate = result.entries / (static_cast<double>(setup_.matrix->rows()) *
-                                             static_cast<double>(setup_.matrix->columns()));
+    result.sampling_rate = result.entries / (static_cast<double>(prepared_->matrix->rows()) *
+                                             static_cast<double>(prepared_->matrix->columns()));
     result.numbers = estimate.trace.numbers;
     for (const auto& [key, value] : estimate.trace.numbers)
       if (key.starts_with("seconds."))
@@ -333,7 +327,7 @@ class Comparison {
   // Hašan 2007, Figure 3: of a small matrix of evenly drawn receivers and lights, scalar entries.
   void find_singular_values() {
     constexpr std::size_t kRows = 1200, kColumns = 1000;
-    prepare(settings_.base.lights, settings_.base.spp, settings_.base.seed);
+    prepare_as_asked();
     const auto pick = [](std::size_t count, std::size_t of, std::uint64_t seed, std::uint64_t stream) {
       count = std::min(count, of);
       std::vector<matrix::Index> chosen(count);
@@ -343,10 +337,10 @@ class Comparison {
                                                static_cast<double>(of) / static_cast<double>(count));
       return chosen;
     };
-    const auto rows = pick(kRows, setup_.matrix->rows(), settings_.base.seed, 1);
-    const auto columns = pick(kColumns, setup_.matrix->columns(), settings_.base.seed, 2);
+    const auto rows = pick(kRows, prepared_->matrix->rows(), settings_.base.seed, 1);
+    const auto columns = pick(kColumns, prepared_->matrix->columns(), settings_.base.seed, 2);
     std::vector<Rgb> block(rows.size() * columns.size());
-    setup_.matrix->block(rows, columns, block, matrix::Part::value);
+    prepared_->matrix->block(rows, columns, block, matrix::Part::value);
     std::vector<float> scalar(block.size());
     for (std::size_t k = 0; k < block.size(); ++k) scalar[k] = norm2(block[k]);
     results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
@@ -395,11 +389,9 @@ class Comparison {
   Sinks sinks_;
   std::vector<PlannedRun> plan_;
   std::vector<scenedesc::Warning> warnings_;
-  world::World world_;
-  Setup setup_;
-  int spp_ = 0;
-  std::size_t lights_ = 0;
-  std::uint64_t lights_seed_ = 0;
+  SharedWorld world_;
+  View view_;
+  SharedPrepared prepared_;
   double columns_per_second_ = 0;
   image::Image reference_;
   std::unique_ptr<SampledTruth> truth_;  // instead of reference_
@@ -411,7 +403,7 @@ class Comparison {
 
 bool compare(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
              const Sinks& sinks) {
-  if (settings.base.compensate > 0)
+  if (settings.base.traced.compensate > 0)
     throw InputError("a comparison cannot compensate for clamping", "leave out 'compensate'");
   bool whole = false;
   within_memory(kSmallerPicture, [&] {

@@ -43,9 +43,9 @@ void apply(PlannedRun& run, const SweepKey& key, const std::string& value) {
       RenderSettings checked;
       set_field(checked, name, values[k]);
       if (name == "lights")
-        run.lights = checked.lights;
+        run.lights = checked.lights.count_or_default();
       else
-        run.spp = checked.spp;
+        run.spp = checked.view.spp_or_default();
     } else {
       run.method_settings[name] = values[k];
     }
@@ -60,7 +60,7 @@ bool has_parameter(const methods::MethodInfo& info, const std::string& key) {
 
 // --set is for the methods that have the parameter; one that none of them has is a mistake.
 void require_known_settings(const CompareSettings& settings) {
-  for (const auto& setting : settings.base.method_settings) {
+  for (const auto& setting : settings.base.method.parameters) {
     std::string valid;
     bool known = false;
     for (const std::string& name : settings.methods) {
@@ -97,9 +97,9 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
     const methods::MethodInfo& info = methods::find_method(name);
     PlannedRun base;
     base.method = base.label = base.series = name;
-    base.lights = settings.base.lights;
-    base.spp = settings.base.spp;
-    for (const auto& setting : settings.base.method_settings)
+    base.lights = settings.base.lights.count_or_default();
+    base.spp = settings.base.view.spp_or_default();
+    for (const auto& setting : settings.base.method.parameters)
       if (has_parameter(info, setting.first))
         base.method_settings.insert_or_assign(setting.first, setting.second);
 

@@ -43,14 +43,14 @@ Scene corner() {
 
 RenderSettings settings_for(const std::string& light_type) {
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.only = "indirect";
-  settings.method = "brute-force";
-  settings.max_depth = 5;
-  settings.lights = 1500;
-  settings.spp = 4;
-  settings.clamp = 0.02;
-  settings.light_type = light_type;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.only = LightPart::indirect;
+  settings.method.name = "brute-force";
+  settings.view.max_depth = 5;
+  settings.lights.count = 1500;
+  settings.view.spp = 4;
+  settings.lights.clamp = 0.02;
+  settings.lights.type = light_type;
   return settings;
 }
 
@@ -63,9 +63,9 @@ void expect_whole(const std::string& light_type) {
   std::vector<double> clamped[3], whole[3], paths[3];
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + k;
-    settings.compensate = 0;
+    settings.traced.compensate = 0;
     const auto a = mean_colour(render(scene, settings).picture);
-    settings.compensate = 256;
+    settings.traced.compensate = 256;
     const auto b = mean_colour(render(scene, settings).picture);
     const auto c = mean_colour(reference(scene, settings, how).picture);
     for (std::size_t i = 0; i < 3; ++i)
@@ -89,7 +89,7 @@ TEST(Compensation, IsRefusedWhereItCannotBeWhole) {
   const Scene scene = corner();
   const auto message = [&](auto&& change) {
     RenderSettings settings = settings_for("point");
-    settings.compensate = 1;
+    settings.traced.compensate = 1;
     change(settings);
     try {
       render(scene, settings);
@@ -99,8 +99,8 @@ TEST(Compensation, IsRefusedWhereItCannotBeWhole) {
     return std::string();
   };
   EXPECT_NE(message([](RenderSettings& s) { s.time = 1; }).find("time budget"), std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.clamp = 0; }).find("without clamping"), std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.only = "direct"; }).find("indirect light"), std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.lights.clamp = 0; }).find("without clamping"), std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.view.only = LightPart::direct; }).find("indirect light"), std::string::npos);
 }
 
 }  // namespace

@@ -18,10 +18,10 @@ TEST(Convert, TheConvertedSceneHasTheSamePicture) {
     convert(scene, folder / "out.xml");
     const Scene again = Scene::load(folder / "out.xml", {.defines = {}, .strict = true});
     RenderSettings settings;
-    settings.rest = "skip";
-    settings.width = 24, settings.height = 16, settings.spp = 1;
-    settings.lights = 300;
-    settings.method = "brute-force";
+    settings.traced.rest = RestOfPaths::skip;
+    settings.view.width = 24, settings.view.height = 16, settings.view.spp = 1;
+    settings.lights.count = 300;
+    settings.method.name = "brute-force";
     EXPECT_EQ(render(scene, settings).picture.planes[0].rgb, render(again, settings).picture.planes[0].rgb)
         << name;
   }
@@ -66,8 +66,8 @@ Shape "bilinearmesh" "point3 P" [ 0 -2 3  2 -2 3  0 2 3  2 2 3 ]
   ASSERT_EQ(warnings.size(), 1u) << warnings.back();
   EXPECT_NE(warnings[0].find("photometric"), std::string::npos) << warnings[0];
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.spp = 1, settings.method = "brute-force", settings.max_depth = 2;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.spp = 1, settings.method.name = "brute-force", settings.view.max_depth = 2;
   const auto a = render(scene, settings).picture.planes[0].rgb;
   const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
   ASSERT_EQ(a.size(), b.size());
@@ -108,8 +108,8 @@ Shape "bilinearmesh" "point3 P" [ -2 -2 3  2 -2 3  -2 2 3  2 2 3 ]
   ASSERT_EQ(warnings.size(), 2u) << warnings.back();
   EXPECT_NE(warnings[1].find("goniometric"), std::string::npos) << warnings[1];
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.spp = 1, settings.method = "brute-force", settings.max_depth = 2, settings.lights = 500;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.spp = 1, settings.method.name = "brute-force", settings.view.max_depth = 2, settings.lights.count = 500;
   const auto a = render(scene, settings).picture.planes[0].rgb;
   const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
   ASSERT_EQ(a.size(), b.size());

@@ -41,11 +41,11 @@ std::vector<Rgb> sums_of(const matrix::LightingMatrix& matrix) {
 TEST(StatedError, PartsAreThoseOfTheTrueError) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = settings.height = 64;
-  settings.crop[0] = 26, settings.crop[1] = 12, settings.crop[2] = 12, settings.crop[3] = 8;
-  settings.spp = 1;
-  settings.direct = "matrix";
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = settings.view.height = 64;
+  settings.view.crop[0] = 26, settings.view.crop[1] = 12, settings.view.crop[2] = 12, settings.view.crop[3] = 8;
+  settings.view.spp = 1;
+  settings.traced.direct = DirectLight::matrix;
   std::vector<scenedesc::Warning> warnings;
   const world::World world = world::World::build(scene.impl().desc, {}, warnings);
   pipeline::Setup setup;
@@ -104,10 +104,10 @@ double number(const json& report, const char* key) { return report.at(key).get<d
 TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = 64, settings.height = 48;
-  settings.lights = 10000;
-  settings.error = 0.08;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = 64, settings.view.height = 48;
+  settings.lights.count = 10000;
+  settings.method.target_error = 0.08;
   settings.threads = 1;
   const RenderResult one = render(scene, settings);
   const json report = json::parse(one.report_json);
@@ -130,12 +130,12 @@ TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
 TEST(StatedError, OfEveryMethodThatIsAskedForIt) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = 32, settings.height = 24;
-  settings.lights = 3000;
-  settings.error = 0.3;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = 32, settings.view.height = 24;
+  settings.lights.count = 3000;
+  settings.method.target_error = 0.3;
   for (const char* method : {"brute-force", "instant-radiosity", "power-sampling", "row-column-sampling"}) {
-    settings.method = method;
+    settings.method.name = method;
     const json report = json::parse(render(scene, settings).report_json);
     EXPECT_LE(number(report, "error.estimate"), 0.3) << method;
     EXPECT_GT(number(report, "error.lights"), 0) << method;
@@ -146,23 +146,23 @@ TEST(StatedError, OfEveryMethodThatIsAskedForIt) {
   }
   // Given rows are all clustered by, so that their error says nothing of others: unless one is asked for,
   // none is stated.
-  settings.error = 0;
-  settings.method_settings = {{"rows", "30"}, {"columns", "50"}};
+  settings.method.target_error = 0;
+  settings.method.parameters = {{"rows", "30"}, {"columns", "50"}};
   const json fixed = json::parse(render(scene, settings).report_json);
   EXPECT_TRUE(fixed.contains("error.lights"));
   EXPECT_FALSE(fixed.contains("error.estimate"));
-  settings.error = 0.3;
+  settings.method.target_error = 0.3;
   EXPECT_TRUE(json::parse(render(scene, settings).report_json).contains("error.estimate"));
 }
 
 TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = 32, settings.height = 24;
-  settings.method = "row-column-sampling";
-  settings.lights = 300;
-  settings.error = 0.04;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = 32, settings.view.height = 24;
+  settings.method.name = "row-column-sampling";
+  settings.lights.count = 300;
+  settings.method.target_error = 0.04;
   std::vector<std::string> warnings;
   Sinks sinks;
   sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
@@ -172,8 +172,8 @@ TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(report.at("error.advice"), warnings[0]);
   EXPECT_NE(warnings[0].find("--lights "), std::string::npos) << warnings[0];
-  settings.method = "instant-radiosity";
-  settings.method_settings = {{"lights", "300"}};
+  settings.method.name = "instant-radiosity";
+  settings.method.parameters = {{"lights", "300"}};
   render(scene, settings, sinks);
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_NE(warnings[1].find("--set lights="), std::string::npos) << warnings[1];
@@ -182,16 +182,16 @@ TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
 TEST(StatedError, MethodsThatDoNotAimAtItSaySo) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = 16, settings.height = 12;
-  settings.lights = 300;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = 16, settings.view.height = 12;
+  settings.lights.count = 300;
   std::vector<std::string> warnings;
   Sinks sinks;
   sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
   for (const methods::MethodInfo& info : methods::all_methods()) {
-    settings.method = info.name;
+    settings.method.name = info.name;
     for (const double error : {0.0, 5.0}) {  // of which nobody falls short
-      settings.error = error;
+      settings.method.target_error = error;
       warnings.clear();
       const json report = json::parse(render(scene, settings, sinks).report_json);
       const bool expected = error > 0 && !info.error_decided_by.empty();

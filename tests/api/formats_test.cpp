@@ -80,7 +80,7 @@ Shape "sphere" "float radius" 0.5
 
 Plane picture(const Scene& scene, std::uint64_t seed) {
   RenderSettings settings;
-  settings.rest = "skip";
+  settings.traced.rest = RestOfPaths::skip;
   settings.seed = seed;
   ReferenceSettings how;
   how.spp = 64;

@@ -55,13 +55,13 @@ std::string spot(const char* origin, const char* target, int cutoff) {
 
 RenderSettings unclamped(const char* only) {
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.only = only;
-  settings.max_depth = 3;
-  settings.method = "brute-force";
-  settings.clamp = 0;
-  settings.direct = "matrix";
-  settings.lights = 1500;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.only = only;
+  settings.view.max_depth = 3;
+  settings.method.name = "brute-force";
+  settings.lights.clamp = 0;
+  settings.traced.direct = DirectLight::matrix;
+  settings.lights.count = 1500;
   return settings;
 }
 
@@ -176,9 +176,9 @@ TEST(Hair, RadianceOfOneThreadIsThatOfTheFormula) {
       "name=\"to_world\"><scale value=\"0.2\"/><rotate x=\"1\" angle=\"90\"/><translate "
       "y=\"5\"/></transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"100\"/></emitter></shape>");
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.method = "brute-force";
-  settings.lights = 64;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.method.name = "brute-force";
+  settings.lights.count = 64;
   const double expected = 0.8 / (3.14159265 * 3.14159265) * 100 * 0.16 / 25;
   const auto seen = mean_colour(render(scene, settings).picture);
   EXPECT_NEAR(seen[1], expected, 0.005 * expected);

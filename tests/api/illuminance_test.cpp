@@ -26,10 +26,10 @@ std::vector<float> lux_of(const Picture& picture) {
 
 RenderSettings settings_for(const std::string& method) {
   RenderSettings s;
-  s.rest = "skip";
-  s.method = method;
-  s.lights = 64;
-  s.aovs = {"illuminance"};
+  s.traced.rest = RestOfPaths::skip;
+  s.method.name = method;
+  s.lights.count = 64;
+  s.layers = {"illuminance"};
   return s;
 }
 
@@ -79,8 +79,8 @@ TEST(Illuminance, UnderAnEvenSky) {
                 "angle=\"-90\"/></transform></shape>"
                 "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0.5\"/></emitter>");
   RenderSettings settings = settings_for("brute-force");
-  settings.lights = 20000;
-  settings.only = "direct";
+  settings.lights.count = 20000;
+  settings.view.only = LightPart::direct;
   const auto lux = lux_of(render(scene, settings).picture);
   // 20,000 evenly spread directions over the sphere.
   for (const float l : lux) EXPECT_NEAR(l / (3.14159265358979 * 0.5 * kLumensPerUnit), 1, 0.01);
@@ -96,9 +96,9 @@ TEST(Illuminance, AgreesWithThePathTracerInAGreyRoom) {
       "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf></shape>" +
       lamp());
   RenderSettings settings = settings_for("brute-force");
-  settings.lights = 4000;
-  settings.max_depth = 5;
-  settings.clamp = 0;
+  settings.lights.count = 4000;
+  settings.view.max_depth = 5;
+  settings.lights.clamp = 0;
   ReferenceSettings how;
   how.spp = 128;
   how.paths = "columns";
@@ -106,7 +106,7 @@ TEST(Illuminance, AgreesWithThePathTracerInAGreyRoom) {
   std::vector<double> columns, paths;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 900 + k;
-    settings.aovs = {"illuminance"};
+    settings.layers = {"illuminance"};
     const Picture picture = render(scene, settings).picture;
     const auto lux = lux_of(picture);
     const double factor = 3.14159265358979 * kLumensPerUnit / 0.5;
@@ -116,7 +116,7 @@ TEST(Illuminance, AgreesWithThePathTracerInAGreyRoom) {
       EXPECT_NEAR(lux[p], factor * picture.planes[0].rgb[p], 1e-4 * lux[p]);
     }
     columns.push_back(sum / static_cast<double>(lux.size()));
-    settings.aovs.clear();
+    settings.layers.clear();
     sum = 0;
     const Picture traced = reference(scene, settings, how).picture;
     for (const float x : traced.planes[0].rgb) sum += factor * x;

@@ -17,7 +17,7 @@ namespace {
 class LightCutsInScenes : public testing::TestWithParam<const char*> {
  protected:
   LightCutsInScenes() : scene_(Scene::load(std::string(LUMIRANK_EXAMPLES) + "/" + GetParam())) {
-    settings_.width = 24, settings_.height = 16, settings_.spp = 2;
+    settings_.view.width = 24, settings_.view.height = 16, settings_.view.spp = 2;
     std::vector<scenedesc::Warning> warnings;
     world_ = std::make_unique<world::World>(world::World::build(scene_.impl().desc, {}, warnings));
     setup_.view = pipeline::make_view(scene_.impl().desc, settings_);

@@ -39,12 +39,12 @@ Scene corner(const std::string& floor, const std::string& target) {
 
 RenderSettings brute_force(const std::string& light_type) {
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.method = "brute-force";
-  settings.max_depth = 5;
-  settings.lights = 800;
-  settings.light_type = light_type;
-  settings.clamp = 0;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.method.name = "brute-force";
+  settings.view.max_depth = 5;
+  settings.lights.count = 800;
+  settings.lights.type = light_type;
+  settings.lights.clamp = 0;
   return settings;
 }
 
@@ -67,10 +67,10 @@ void expect_whole(const Scene& scene, RenderSettings settings, double teeth) {
 TEST(LocalCompensation, SharpLobesTakeAllTheirLightFromPaths) {
   const Scene scene = corner(kShining, "0.2,0,0.35");
   RenderSettings settings = brute_force("point");
-  settings.local_paths = 16;
+  settings.traced.local_paths = 16;
   for (const char* only : {"all", "indirect", "direct"}) {
     SCOPED_TRACE(only);
-    settings.only = only;
+    settings.view.only = only;
     expect_whole(scene, settings, 0.06);
   }
 }
@@ -80,12 +80,12 @@ TEST(LocalCompensation, SharpLobesTakeAllTheirLightFromPaths) {
 TEST(LocalCompensation, PathsAndColumnsShareTheLightByDistance) {
   const Scene scene = corner(kMatt, "0,0.1,-0.45");
   RenderSettings settings = brute_force("sphere");
-  settings.only = "indirect";
-  settings.radius_scale = 0.01;
-  settings.local_paths = 64;
+  settings.view.only = LightPart::indirect;
+  settings.lights.radius_scale = 0.01;
+  settings.traced.local_paths = 64;
   for (const double near : {50.0, 200.0}) {
     SCOPED_TRACE(near);
-    settings.local_near = near;
+    settings.traced.local_near = near;
     expect_whole(scene, settings, 0.05);
   }
 }
@@ -93,12 +93,12 @@ TEST(LocalCompensation, PathsAndColumnsShareTheLightByDistance) {
 TEST(LocalCompensation, ColumnsHaveNothingWherePathsHaveAll) {
   const Scene scene = corner(kShining, "0,0.1,-0.45");
   RenderSettings settings = brute_force("sphere");
-  settings.only = "indirect";
-  settings.radius_scale = 1;
-  settings.local_paths = 16;
-  settings.local_near = 1000;
+  settings.view.only = LightPart::indirect;
+  settings.lights.radius_scale = 1;
+  settings.traced.local_paths = 16;
+  settings.traced.local_near = 1000;
   RenderSettings others = settings;
-  others.lights = 300;
+  others.lights.count = 300;
   const auto a = render(scene, settings).picture.planes[0].rgb,
              b = render(scene, others).picture.planes[0].rgb;
   // Reaches are larger than the scene with either number of lights: the same paths, and nothing else.
@@ -109,9 +109,9 @@ TEST(LocalCompensation, ColumnsHaveNothingWherePathsHaveAll) {
 TEST(LocalCompensation, SameBitsForAnyNumberOfThreadsAndLayersAddUp) {
   const Scene scene = corner(kShining, "0,0.1,-0.45");
   RenderSettings settings = brute_force("sphere");
-  settings.method = "auto";
-  settings.local_paths = 8;
-  settings.aovs = {"direct", "indirect", "emission"};
+  settings.method.name = "auto";
+  settings.traced.local_paths = 8;
+  settings.layers = {"direct", "indirect", "emission"};
   settings.threads = 1;
   const Picture one = render(scene, settings).picture;
   for (const int threads : {2, 4}) {
@@ -134,7 +134,7 @@ TEST(LocalCompensation, IsRefusedWhereItCannotBeWhole) {
   const Scene scene = corner(kShining, "0,0.1,-0.45");
   const auto message = [&](auto&& change) {
     RenderSettings settings = brute_force("point");
-    settings.local_paths = 1;
+    settings.traced.local_paths = 1;
     change(settings);
     try {
       render(scene, settings);
@@ -143,10 +143,10 @@ TEST(LocalCompensation, IsRefusedWhereItCannotBeWhole) {
     }
     return std::string();
   };
-  EXPECT_NE(message([](RenderSettings& s) { s.direct = "matrix"; }).find("local-paths"), std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.clamp = 0.1, s.compensate = 4; }).find("leave out one"),
+  EXPECT_NE(message([](RenderSettings& s) { s.traced.direct = DirectLight::matrix; }).find("local-paths"), std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.lights.clamp = 0.1, s.traced.compensate = 4; }).find("leave out one"),
             std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.aovs = {"light:*"}; }).find("--local-paths"),
+  EXPECT_NE(message([](RenderSettings& s) { s.layers = {"light:*"}; }).find("--local-paths"),
             std::string::npos);
 }
 

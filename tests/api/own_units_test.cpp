@@ -187,15 +187,15 @@ using Pixels = std::vector<float>;
 
 Pixels traced(const Scene& scene, std::uint64_t seed) {
   RenderSettings settings;
-  settings.seed = seed, settings.width = 16, settings.height = 12, settings.threads = 1;
+  settings.seed = seed, settings.view.width = 16, settings.view.height = 12, settings.threads = 1;
   ReferenceSettings how;
   how.spp = 32;
   return reference(scene, settings, how).picture.planes[0].rgb;
 }
 Pixels summed(const Scene& scene, std::uint64_t seed) {
   RenderSettings settings;
-  settings.seed = seed, settings.width = 16, settings.height = 12, settings.threads = 1;
-  settings.method = "brute-force", settings.lights = 300, settings.spp = 4;
+  settings.seed = seed, settings.view.width = 16, settings.view.height = 12, settings.threads = 1;
+  settings.method.name = "brute-force", settings.lights.count = 300, settings.view.spp = 4;
   return render(scene, settings).picture.planes[0].rgb;
 }
 
@@ -266,8 +266,8 @@ TEST(OwnUnitsReported, DepthPositionBoundsAndPowersAreInTheFilesUnits) {
         at_place +
         "</transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"2\"/></emitter></shape>");
     RenderSettings settings;
-    settings.method = "brute-force", settings.lights = 20, settings.threads = 1;
-    settings.aovs = {"depth", "position"};
+    settings.method.name = "brute-force", settings.lights.count = 20, settings.threads = 1;
+    settings.layers = {"depth", "position"};
     const Picture picture = render(scene, settings).picture;
     ASSERT_EQ(picture.planes.size(), 3u);
     // Several roundings of 2⁻²⁴ along the ray, which begins at the near plane.
@@ -295,7 +295,7 @@ std::vector<std::string> warnings_of(const std::string& clip) {
   Sinks sinks;
   sinks.warning = [&](const std::string& text) { told.push_back(text); };
   RenderSettings settings;
-  settings.method = "brute-force", settings.lights = 10, settings.threads = 1;
+  settings.method.name = "brute-force", settings.lights.count = 10, settings.threads = 1;
   render(scene, settings, sinks);
   ReferenceSettings how;
   how.spp = 1;

@@ -45,7 +45,7 @@ TEST(Reference, FurnaceOfAShiningBox) {
   // ρ).
   const Scene scene = load_text(point_camera("0,0,0", "0.3,0.2,1", 32, 60) + kClosedBox);
   RenderSettings settings;
-  settings.max_depth = -1;
+  settings.view.max_depth = -1;
   ReferenceSettings how;
   how.spp = 64;
   expect_mean(reference(scene, settings, how).picture, {1 / 0.5, 2 / 0.8, 0.5 / 0.2}, "furnace");
@@ -56,7 +56,7 @@ TEST(Reference, FurnaceStopsAtTheDepthLimit) {
   const Scene scene = load_text(point_camera("0,0,0", "0.3,0.2,1", 32, 60) + kClosedBox);
   for (int depth : {1, 2, 4}) {
     RenderSettings settings;
-    settings.max_depth = depth;
+    settings.view.max_depth = depth;
     ReferenceSettings how;
     how.spp = 32;
     double expected[3];
@@ -71,12 +71,12 @@ TEST(Reference, PartsOfTheFurnace) {
   // Direct light has one bounce, L·ρ; indirect all later ones, L·ρ²/(1 - ρ).
   const Scene scene = load_text(point_camera("0,0,0", "0.3,0.2,1", 32, 60) + kClosedBox);
   RenderSettings settings;
-  settings.max_depth = -1;
+  settings.view.max_depth = -1;
   ReferenceSettings how;
   how.spp = 64;
-  settings.only = "direct";
+  settings.view.only = LightPart::direct;
   expect_mean(reference(scene, settings, how).picture, {0.5, 0.4, 0.4}, "direct");
-  settings.only = "indirect";
+  settings.view.only = LightPart::indirect;
   expect_mean(reference(scene, settings, how).picture, {0.5, 0.1, 1.6}, "indirect");
 }
 
@@ -89,7 +89,7 @@ TEST(Reference, DiffusePlaneUnderTheSky) {
                 "value=\"0.6, 0.3, 0.1\"/></bsdf></shape>"
                 "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2, 1, 3\"/></emitter>");
   RenderSettings settings;
-  settings.max_depth = -1;
+  settings.view.max_depth = -1;
   ReferenceSettings how;
   how.spp = 64;
   expect_mean(reference(scene, settings, how).picture, {1.2, 0.3, 0.3}, "sky");
@@ -116,7 +116,7 @@ TEST(Reference, LampOverAFloor) {
       "20, 30\"/>"
       "</emitter></shape>");
   RenderSettings settings;
-  settings.max_depth = 2;
+  settings.view.max_depth = 2;
   ReferenceSettings how;
   how.spp = 64;
   const double f = parallel_rectangle(0.5, 0.25, 1);
@@ -139,7 +139,7 @@ TEST(Reference, MirrorShowsTheLampAndColumnsLeaveOutItsLightOnTheFloor) {
       "value=\"5\"/></emitter></shape>";
   const Scene scene = load_text(body);
   RenderSettings settings;
-  settings.max_depth = 5;
+  settings.view.max_depth = 5;
   ReferenceSettings how;
   how.spp = 256;
   const auto run = [&](const char* paths, std::uint64_t seed) {
@@ -165,7 +165,7 @@ TEST(Reference, StatesItsErrorHonestly) {
   // relative L1 averages over 24² pixels, so the statement holds within 25 %.
   const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml");
   RenderSettings settings;
-  settings.width = settings.height = 24;
+  settings.view.width = settings.view.height = 24;
   ReferenceSettings how;
   how.spp = 8;
   const RenderResult small = reference(scene, settings, how);

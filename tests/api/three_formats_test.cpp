@@ -157,9 +157,9 @@ std::vector<float> picture(const std::string& file, std::uint64_t seed) {
   LoadOptions strict;
   strict.strict = true;  // nothing is replaced or left out
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = kWidth, settings.height = kHeight;
-  settings.max_depth = 5;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = kWidth, settings.view.height = kHeight;
+  settings.view.max_depth = 5;
   settings.seed = seed;
   ReferenceSettings how;
   how.spp = 64;

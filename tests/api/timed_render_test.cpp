@@ -49,9 +49,9 @@ TEST(TimedRender, EveryStagesChoiceIsRecordedAndRepeatsTheBits) {
   for (const auto [seconds, size] : {Budget{0.01, 16}, Budget{0.25, 16}, Budget{0.02, 200}}) {
     RenderSettings s;
     s.time = seconds;
-    s.width = size + 1, s.height = size;  // no multiple of what a smaller film is divided by
-    s.max_depth = 4;
-    s.rest = "trace";
+    s.view.width = size + 1, s.view.height = size;  // no multiple of what a smaller film is divided by
+    s.view.max_depth = 4;
+    s.traced.rest = RestOfPaths::trace;
     const RenderResult first = render(scene, s);
     const auto report = report_of(first);
     const auto& choices = report["choices"];
@@ -81,7 +81,7 @@ TEST(TimedRender, ABudgetThatIsOverBeforeItBeganGivesAPictureAndSaysSo) {
   Sinks sinks;
   sinks.warning = [&](const std::string& text) { said += text + "\n"; };
   RenderSettings s;
-  s.max_depth = 4;
+  s.view.max_depth = 4;
   s.time = 1e-4;  // the pilots alone take longer
   const RenderResult result = render(room(), s, sinks);
   EXPECT_FALSE(result.interrupted);
@@ -95,13 +95,13 @@ TEST(TimedRender, ABudgetThatIsOverBeforeItBeganGivesAPictureAndSaysSo) {
 
 TEST(TimedRender, WhatIsGivenByHandIsNotLowered) {
   RenderSettings s;
-  s.max_depth = 4;
+  s.view.max_depth = 4;
   s.time = 1e-4;
   set_field(s, "lights", "100000");  // as by default, but asked for
   set_field(s, "spp", "4");
-  s.width = s.height = 2;
-  s.lights = 3000;
-  s.rest = "skip";
+  s.view.width = s.view.height = 2;
+  s.lights.count = 3000;
+  s.traced.rest = RestOfPaths::skip;
   const auto report = report_of(render(room(), s));
   EXPECT_EQ(report["receivers_per_pixel"], 4);
   EXPECT_EQ(report["virtual_lights.asked"], 3000);
@@ -122,19 +122,19 @@ TEST(Auto, IsTheMethodThatTheLayersAllow) {
   };
   RenderSettings s;
   EXPECT_EQ(name_of(s), "slice-cuts");
-  s.aovs = {"albedo", "illuminance"};
+  s.layers = {"albedo", "illuminance"};
   EXPECT_EQ(name_of(s), "slice-cuts");
   for (const char* aov : {"direct", "indirect", "light:*", "light:lamp"}) {
-    s.aovs = {"albedo", aov};
+    s.layers = {"albedo", aov};
     EXPECT_EQ(name_of(s), "row-column-sampling") << aov;
   }
-  s.aovs.clear();
-  s.method_settings = {{"rows", "40"}};
+  s.layers.clear();
+  s.method.parameters = {{"rows", "40"}};
   EXPECT_EQ(name_of(s), "row-column-sampling");
-  s.method_settings = {{"no-such-key", "40"}};
+  s.method.parameters = {{"no-such-key", "40"}};
   EXPECT_EQ(name_of(s), "slice-cuts") << "whose make() lists what there is";
-  s.method_settings.clear();
-  s.method = "power-sampling";
+  s.method.parameters.clear();
+  s.method.name = "power-sampling";
   EXPECT_EQ(name_of(s), "power-sampling");
 }
 
@@ -146,8 +146,8 @@ TEST(Layers, AreRefusedBeforeAnythingIsMadeWhereTheMethodCannotGiveThem) {
   for (const auto& info : methods::all_methods())
     for (const char* aov : {"direct", "indirect", "light:*"}) {
       RenderSettings s;
-      s.method = info.name;
-      s.aovs = {aov};
+      s.method.name = info.name;
+      s.layers = {aov};
       if (info.combination) {
         EXPECT_NO_THROW(pipeline::check_layers(info, s)) << info.name;
         continue;

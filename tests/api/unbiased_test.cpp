@@ -26,15 +26,15 @@ Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
 void expect_equal_means(const char* only) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = settings.height = 64;
-  settings.crop[0] = 26, settings.crop[1] = 12, settings.crop[2] = 12, settings.crop[3] = 8;
-  settings.only = only;
-  settings.max_depth = 6;
-  settings.method = "brute-force";
-  settings.clamp = 0;
-  settings.direct = "matrix";
-  settings.lights = 16000;  // they are aimed at the whole film
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = settings.view.height = 64;
+  settings.view.crop[0] = 26, settings.view.crop[1] = 12, settings.view.crop[2] = 12, settings.view.crop[3] = 8;
+  settings.view.only = only;
+  settings.view.max_depth = 6;
+  settings.method.name = "brute-force";
+  settings.lights.clamp = 0;
+  settings.traced.direct = DirectLight::matrix;
+  settings.lights.count = 16000;  // they are aimed at the whole film
   ReferenceSettings how;
   how.paths = "columns";
   how.spp = 512;
@@ -65,11 +65,11 @@ TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
       "6, 7\"/>"
       "</emitter></shape>");
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.only = "direct";
-  settings.method = "brute-force";
-  settings.clamp = 0;
-  settings.lights = 400;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.only = LightPart::direct;
+  settings.method.name = "brute-force";
+  settings.lights.clamp = 0;
+  settings.lights.count = 400;
   ReferenceSettings how;
   how.spp = 128;
   constexpr int kSeeds = 32;
@@ -80,7 +80,7 @@ TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
   }
   const auto expected = mean_of(truth);
   for (const char* direct : {"matrix", "auto", "traced"}) {
-    settings.direct = direct;
+    settings.traced.direct = direct;
     std::vector<double> means;
     for (std::uint64_t k = 0; k < kSeeds; ++k) {
       settings.seed = 500 + k;
@@ -98,16 +98,16 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
   // unbiased by construction. The lights stay the same; what varies is the method's own choices.
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = 32, settings.height = 32;
-  settings.lights = 600;
-  settings.spp = 1;
-  settings.direct = "matrix";
-  settings.method = "brute-force";
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = 32, settings.view.height = 32;
+  settings.lights.count = 600;
+  settings.view.spp = 1;
+  settings.traced.direct = DirectLight::matrix;
+  settings.method.name = "brute-force";
   const Picture truth = render(scene, settings).picture;
 
-  settings.method = "row-column-sampling";
-  settings.method_settings = {{"rows", "20"},
+  settings.method.name = "row-column-sampling";
+  settings.method.parameters = {{"rows", "20"},
                               {"columns", "30"},
                               {"colour", "scalar"},
                               {"zero-columns", "sample"},
@@ -126,7 +126,7 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
   std::vector<double> expected(blocks.size());
   add(truth, [&](std::size_t k, double v) { expected[k] = v; });
   for (int seed = 0; seed < kSeeds; ++seed) {
-    settings.method_seed = 1000 + static_cast<std::uint64_t>(seed);
+    settings.method.seed = 1000 + static_cast<std::uint64_t>(seed);
     add(render(scene, settings).picture, [&](std::size_t k, double v) { blocks[k].push_back(v); });
   }
   for (std::size_t k = 0; k < blocks.size(); ++k) {
@@ -140,11 +140,11 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
 TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
   const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/interior.xml");
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = 96, settings.height = 64;
-  settings.lights = 4000;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = 96, settings.view.height = 64;
+  settings.lights.count = 4000;
   for (const char* method : {"brute-force", "instant-radiosity", "power-sampling", "row-column-sampling"}) {
-    settings.method = method;
+    settings.method.name = method;
     settings.threads = 1;
     const Picture one = render(scene, settings).picture;
     for (int threads : {2, 4}) {
@@ -162,8 +162,8 @@ TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
 TEST(Determinism, TheReferenceToo) {
   const Scene scene = box();
   RenderSettings settings;
-  settings.rest = "skip";
-  settings.width = settings.height = 32;
+  settings.traced.rest = RestOfPaths::skip;
+  settings.view.width = settings.view.height = 32;
   ReferenceSettings how;
   how.spp = 8;
   settings.threads = 1;

@@ -33,9 +33,9 @@ const char* const kBlack = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" val
 
 RenderSettings few_lights() {
   RenderSettings s;
-  s.method = "brute-force";
-  s.lights = 500;
-  s.max_depth = 3;
+  s.method.name = "brute-force";
+  s.lights.count = 500;
+  s.view.max_depth = 3;
   return s;
 }
 
@@ -58,7 +58,7 @@ TEST(WholeLight, TheSkyInAMirrorIsPartOfThePictureByDefault) {
     whole.push_back(mean_value(result.picture));
     shares.push_back(report_of(result)["rest.share"].get<double>());
     EXPECT_GE(report_of(result)["rest.paths"], pipeline::RestPilot::kFewestPaths);
-    s.rest = "skip";
+    s.traced.rest = RestOfPaths::skip;
     const RenderResult skipped = render(scene, s);
     columns.push_back(mean_value(skipped.picture));
     EXPECT_FALSE(report_of(skipped).contains("rest.share"));
@@ -81,7 +81,7 @@ TEST(WholeLight, WhereThereIsNoneNothingIsTraced) {
   const RenderResult result = render(scene, s);
   EXPECT_EQ(report_of(result)["rest.share"], 0);
   EXPECT_EQ(report_of(result)["rest.paths"], 0);
-  s.rest = "skip";
+  s.traced.rest = RestOfPaths::skip;
   EXPECT_EQ(render(scene, s).picture.planes[0].rgb, result.picture.planes[0].rgb);
 }
 

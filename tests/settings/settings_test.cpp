@@ -21,15 +21,15 @@ TEST(Settings, RoundTripThroughJson) {
   set_field(settings, "method", "row-column-sampling");
   set_field(settings, "aov", "direct,light:lamp one");
   set_field(settings, "seed", "18446744073709551");
-  settings.method_settings["rows"] = "300";
+  settings.method.parameters["rows"] = "300";
   const std::string json = to_json(settings);
   const RenderSettings back = render_settings_from_json(json);
   EXPECT_EQ(to_json(back), json);
-  EXPECT_EQ(back.width, 800);
-  EXPECT_EQ(back.crop[3], 40);
-  EXPECT_EQ(back.clamp, 0.1);
-  EXPECT_EQ(back.aovs.at(1), "light:lamp one");
-  EXPECT_EQ(back.method_settings.at("rows"), "300");
+  EXPECT_EQ(back.view.width, 800);
+  EXPECT_EQ(back.view.crop[3], 40);
+  EXPECT_EQ(back.lights.clamp, 0.1);
+  EXPECT_EQ(back.layers.at(1), "light:lamp one");
+  EXPECT_EQ(back.method.parameters.at("rows"), "300");
 }
 
 std::string message_of(const std::function<void()>& call) {
@@ -73,7 +73,7 @@ TEST(Settings, ReportGivesItsSettingsBack) {
   set_field(settings, "lights", "1234");
   const RenderSettings back =
       render_settings_from_report(R"({"method":"x","parameters":)" + to_json(settings) + "}");
-  EXPECT_EQ(back.lights, 1234u);
+  EXPECT_EQ(back.lights.count, 1234u);
   EXPECT_NE(message_of([] { render_settings_from_report("[1,2]"); }), "no error");
 }
 

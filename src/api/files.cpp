@@ -1,0 +1,86 @@
+// Pictures and small text files, written whole or not at all.
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "image/atomic_file.h"
+#include "image/file_identity.h"
+#include "image/image_io.h"
+#include "image/metrics.h"
+#include "image/scale_bar.h"
+#include "lumirank/lumirank.h"
+
+namespace lumirank {
+namespace {
+
+image::LayeredImage to_layers(const Picture& picture) {
+  image::LayeredImage layers;
+  for (const Plane& plane : picture.planes) {
+    image::Image image(picture.width, picture.height);
+    for (std::size_t p = 0; p < image.pixels.size(); ++p)
+      image.pixels[p] = {plane.rgb[3 * p], plane.rgb[3 * p + 1], plane.rgb[3 * p + 2]};
+    if (plane.name.empty())
+      layers.color = std::move(image);
+    else
+      layers.layers.emplace_back(plane.name, std::move(image));
+  }
+  return layers;
+}
+
+image::DisplayOptions to_display_options(const DisplaySettings& display) {
+  image::DisplayOptions options;
+  options.exposure = static_cast<float>(display.exposure);
+  if (display.tonemap == ToneMap::reinhard) options.tonemap = image::ToneMap::reinhard;
+  if (display.tonemap == ToneMap::agx) options.tonemap = image::ToneMap::agx;
+  return options;
+}
+
+}  // namespace
+
+void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display) {
+  image::write_image(filename, to_layers(picture), to_display_options(display));
+}
+
+void write_illuminance(const std::string& filename, const Picture& picture, const DisplaySettings& display) {
+  for (const auto& [name, image] : to_layers(picture).layers) {
+    if (name != "illuminance") continue;
+    image::Range range = image::round_range(image);
+    if (display.lux_high > display.lux_low)
+      range = {static_cast<float>(display.lux_low), static_cast<float>(display.lux_high)};
+    return image::write_image(filename, {image::with_scale(image, range, "lux"), {}});
+  }
+  throw InputError({filename, 0}, "the picture has no illuminance", "render it with --aov illuminance");
+}
+
+void check_writable(const std::string& filename) { image::check_writable(filename); }
+
+void write_text(const std::string& filename, const std::string& text) {
+  image::write_whole_file(filename, text);
+}
+
+void check_text_writable(const std::string& filename) { const image::AtomicFile probe(filename); }
+
+void check_distinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  image::require_distinct(outputs, inputs);
+}
+
+struct FilesTogether::Impl {
+  image::FilesTogether files;
+};
+FilesTogether::FilesTogether() : impl_(std::make_unique<Impl>()) {}
+FilesTogether::~FilesTogether() = default;
+void FilesTogether::commit() { impl_->files.commit(); }
+
+void remove_temporary_files() noexcept { image::remove_temporary_files(); }
+
+std::string error_json(const std::string& image_file, const std::string& reference_file) {
+  const auto image = image::read_image(image_file), reference_image = image::read_image(reference_file);
+  const image::ErrorMetrics m = image::compare(image.color, reference_image.color);
+  nlohmann::ordered_json json = {{"relative_l1", m.relative_l1},
+                                 {"relative_l2", m.relative_l2},
+                                 {"rmse", m.rmse},
+                                 {"relmse", m.relmse},
+                                 {"bias", m.bias}};
+  return json.dump() + "\n";
+}
+
+}  // namespace lumirank

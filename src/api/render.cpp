@@ -1,0 +1,114 @@
+// Rendering and the reference.
+#include <nlohmann/json.hpp>
+
+#include "api/build_world.h"
+#include "api/scene.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "base/version.h"
+#include "lumirank/lumirank.h"
+#include "pathtrace/reference.h"
+#include "pipeline/develop.h"
+#include "pipeline/error_advice.h"
+#include "pipeline/layers.h"
+#include "pipeline/memory.h"
+#include "pipeline/preview_throttle.h"
+#include "pipeline/render_run.h"
+#include "pipeline/report.h"
+#include "pipeline/view_check.h"
+
+namespace lumirank {
+namespace {
+
+double pixels_of(const pipeline::View& view) {
+  return static_cast<double>(view.width) * static_cast<double>(view.height);
+}
+
+double memory_of(const pipeline::View& view, const RenderSettings& settings, std::size_t lights) {
+  return pipeline::memory_of_picture(pixels_of(view) * settings.view.spp_or_default(), static_cast<double>(lights),
+                                     !settings.layers.empty());
+}
+
+void within_memory_and_threads(const RenderSettings& settings, const std::function<void()>& work) {
+  pipeline::within_memory(pipeline::kSmallerPicture, [&] { with_threads(settings.threads, work); });
+}
+
+}  // namespace
+
+std::string version() { return program_version(); }
+
+RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
+                    const PreviewCallback& on_preview) {
+  validate(settings);
+  RenderResult result;
+  within_memory_and_threads(settings, [&] {
+    pipeline::RenderTask task;
+    task.view = pipeline::make_view(scene.impl().desc, settings.view);
+    task.info = &pipeline::chosen_method(settings, &task.why);
+    task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&
+                      settings.method.target_error <= 0 && !task.info->combination;
+    pipeline::check_layers(*task.info, settings);
+    task.method = task.info->make(settings.method.parameters);
+    if (const std::string text = pipeline::error_not_aimed_at(*task.info, settings.method.target_error);
+        !text.empty())
+      sinks.warn(text);
+    pipeline::require_countable(pixels_of(task.view) * settings.view.spp_or_default());
+    const double memory = memory_of(task.view, settings, pipeline::lights_for(*task.info, settings));
+    pipeline::require_memory(memory, pipeline::kSmallerPicture);
+    task.world = api::build_world(scene, sinks);
+    task.build_seconds = task.timer.seconds();
+    if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty()) sinks.warn(text);
+    pipeline::require_memory(memory, pipeline::kSmallerPicture);  // the scene has taken its part
+    if (sinks.cancelled()) throw Cancelled();
+    pipeline::check_lights(*task.world, settings, pipeline::make_recipe(settings, task.view));
+    task.lumens_per_unit = scene.impl().desc.lumens_per_unit;
+    result = pipeline::run_render(std::move(task), settings, sinks, on_preview);
+  });
+  return result;
+}
+
+RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
+                       const Sinks& sinks, const PreviewCallback& on_preview) {
+  validate(settings);
+  for (const auto& layer : settings.layers)
+    if (layer != "direct" && layer != "indirect" && layer != "emission")
+      throw InputError("the reference has no AOV '" + layer + "'", "it has direct, indirect and emission");
+  RenderResult result;
+  within_memory_and_threads(settings, [&] {
+    const Timer timer;
+    const world::View view = pipeline::make_view(scene.impl().desc, settings.view);
+    pipeline::require_memory(pipeline::memory_of_reference(pixels_of(view)), pipeline::kSmallerPicture);
+    const auto world = api::build_world(scene, sinks);
+    const double build_seconds = timer.seconds();
+    if (const std::string text = pipeline::empty_view(*world, view); !text.empty()) sinks.warn(text);
+    pipeline::PreviewThrottle throttle(on_preview);
+    const auto traced = pathtrace::path_trace(
+        *world, view, pipeline::reference_options(settings.view.only, settings.seed, how.paths),
+        {how.spp, how.time, how.error}, sinks, [&](const image::Image& image) {
+          if (throttle.due()) throttle.show(pipeline::to_picture(image));
+        });
+    result.interrupted = traced.interrupted;
+    result.picture = pipeline::to_picture(traced.image);
+    for (const auto& layer : settings.layers) {
+      const image::Image& plane = layer == "direct"     ? traced.direct
+                                  : layer == "indirect" ? traced.indirect
+                                                        : traced.emission;
+      result.picture.planes.push_back({layer, pipeline::to_picture(plane).planes[0].rgb});
+    }
+    Report& report = result.report;
+    report.method = "reference";
+    report.version = program_version();
+    report.seed = settings.seed;
+    report.notes["paths"] = to_text(how.paths);
+    report.numbers = {{"spp", traced.spp}, {"error.relative_l1", traced.error}};
+    report.seconds = {{"total", timer.seconds()}, {"build", build_seconds}};
+    report.memory.peak = pipeline::peak_memory_bytes();
+    report.settings = settings;
+    result.summary = std::to_string(traced.spp) + " paths per pixel; stated relative L1 error " +
+                     nlohmann::json(traced.error).dump();
+  });
+  return result;
+}
+
+}  // namespace lumirank

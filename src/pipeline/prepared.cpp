@@ -1,0 +1,198 @@
+#include "pipeline/prepared.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/timer.h"
+#include "pipeline/traced_indirect.h"
+#include "transport/lights/sphere_lights.h"
+
+namespace lumirank::pipeline {
+
+SharedRows trace_rows(const world::World& world, const View& view, const Recipe& recipe, const Sinks& sinks) {
+  auto rows = std::make_shared<transport::Receivers>(transport::trace_receivers(
+      world, world::Camera(view.sensor, world.units()), receiver_settings(recipe, view), sinks));
+  if (sinks.cancelled()) throw Cancelled();
+  return rows;
+}
+
+bool some_traced(const transport::Receivers& rows, float below) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (is_traced(rows, i, below)) return true;
+  return false;
+}
+
+std::unique_ptr<DirectTracing> start_direct(const world::World& world, const transport::Receivers& rows,
+                                            const Recipe& recipe) {
+  TracedDirectSettings ts;
+  ts.seed = recipe.seed;
+  ts.below = recipe.traced_below;
+  ts.max_depth = recipe.max_depth;
+  if (recipe.traced_below <= 0 || !some_traced(rows, ts.below)) return nullptr;
+  return std::make_unique<DirectTracing>(world, rows, ts);
+}
+
+std::vector<Rgb> trace_sharp_lobes(const world::World& world, const transport::Receivers& rows,
+                                   const Recipe& recipe, const Sinks& sinks) {
+  if (recipe.only == LightPart::direct || !some_traced(rows, recipe.sharp_below)) return {};
+  TracedIndirectSettings ts;
+  ts.seed = recipe.seed;
+  ts.below = recipe.sharp_below;
+  ts.paths = recipe.local_paths;
+  ts.max_depth = recipe.max_depth;
+  auto light = trace_indirect(world, rows, ts, sinks);
+  if (sinks.cancelled()) throw Cancelled();
+  return light;
+}
+
+SharedRows matrix_rows(const SharedRows& rows, const Recipe& recipe) {
+  if (!some_traced(*rows, recipe.sharp_below)) return rows;
+  // Direct light of these lobes is traced or not wanted, so columns have nothing to add to them.
+  return std::make_shared<transport::Receivers>(
+      transport::broad_receivers(transport::Receivers(*rows), recipe.sharp_below));
+}
+
+transport::Receivers aim_at(const world::World& world, const View& view, std::uint64_t seed,
+                            const Sinks& sinks) {
+  constexpr double kWanted = 16384;
+  const world::Camera camera(world::whole_film(view, kWanted), world.units());
+  transport::ReceiverSettings rs;
+  rs.seed = hash_ids(seed, Stage::pilot, ~0ull);  // places of their own
+  rs.spp = 1;
+  rs.max_depth = view.max_depth;
+  rs.first_hits = false;
+  return transport::trace_receivers(world, camera, rs, sinks);
+}
+
+SharedSurvey survey(const world::World& world, const Recipe& recipe, const transport::Receivers& aim) {
+  transport::LightSettings ls = light_settings(recipe);
+  ls.receivers = &aim;
+  return transport::survey_lights(world, ls);
+}
+
+namespace {
+
+// Clamping takes from an entry what belongs to its light's area, which other lights decide; to be given back
+// by tracing paths it must be the same for all. Lights spread over a sphere around the scene would have this
+// much each. Emitter samples are not clamped then: direct light is not given back.
+pathtrace::CarriedByColumns even_areas(transport::VirtualLights& lights, const world::World& world,
+                                       double clamp, std::size_t count) {
+  const float area = 4 * kPi * square(world.bounds().radius()) / static_cast<float>(count);
+  for (std::size_t j = 0; j < lights.size(); ++j)
+    lights.area[j] = lights.kind[j] == transport::LightKind::surface ? area : 0;
+  return {static_cast<float>(clamp) / area, false};
+}
+
+}  // namespace
+
+Columns trace_columns(const world::World& world, const Recipe& recipe, const transport::LightSurvey& survey,
+                      std::size_t count, const Sinks& sinks) {
+  transport::LightSettings ls = light_settings(recipe);
+  ls.count = count;
+  ls.survey = &survey;
+  auto lights = std::make_shared<transport::VirtualLights>(transport::trace_virtual_lights(world, ls, sinks));
+  Columns columns;
+  columns.asked = count;
+  if (recipe.compensated) {
+    columns.carried = even_areas(*lights, world, recipe.lights.clamp, count);
+    columns.carried.diffuse_only = ls.diffuse_only;
+  }
+  if (recipe.lights.type == LightType::sphere)
+    columns.radius_scale = transport::make_spherical(
+        *lights, world, {static_cast<float>(recipe.lights.radius_scale)}, sinks);
+  if (sinks.cancelled()) throw Cancelled();
+  columns.lights = std::move(lights);
+  return columns;
+}
+
+std::vector<Rgb> trace_near(const world::World& world, const transport::Receivers& rows,
+                            const Columns& columns, const Recipe& recipe, const Sinks& sinks) {
+  if (recipe.near_radii <= 0 || recipe.only == LightPart::direct) return {};
+  const transport::LightReach reach(*columns.lights, world, static_cast<float>(columns.radius_scale),
+                                    recipe.near_radii);
+  TracedIndirectSettings ts;
+  ts.seed = recipe.light_seed;
+  ts.paths = recipe.local_paths;
+  ts.max_depth = recipe.max_depth;
+  ts.near = &reach;
+  auto light = trace_indirect(world, rows, ts, sinks);
+  if (sinks.cancelled()) throw Cancelled();
+  return light;
+}
+
+SharedPrepared join(const SharedWorld& world, const View& view, const Recipe& recipe, SharedRows rows,
+                    Columns columns, TracedLight traced, std::map<std::string, double> seconds) {
+  auto prepared = std::make_shared<Prepared>();
+  prepared->world = world, prepared->view = view, prepared->recipe = recipe;
+  prepared->rows = std::move(rows), prepared->columns = std::move(columns);
+  prepared->traced = std::move(traced), prepared->seconds = std::move(seconds);
+  const Timer timer;
+  prepared->matrix = std::make_shared<transport::SceneMatrix>(*world, prepared->receivers(),
+                                                              prepared->lights(), matrix_settings(recipe));
+  prepared->seconds["matrix"] = timer.seconds();
+  return prepared;
+}
+
+namespace {
+
+bool same_window(const View& a, const View& b) {
+  return a.sensor.id == b.sensor.id && a.sensor.film.width == b.sensor.film.width &&
+         a.sensor.film.height == b.sensor.film.height && a.max_depth == b.max_depth && a.crop_x == b.crop_x &&
+         a.crop_y == b.crop_y && a.width == b.width && a.height == b.height;
+}
+
+// Rows and the light that is traced for them; what is traced from close by belongs to columns as well.
+bool same_rows(const Prepared& before, const View& view, const Recipe& r) {
+  const Recipe& b = before.recipe;
+  return same_window(before.view, view) && b.seed == r.seed && b.spp == r.spp && b.only == r.only &&
+         b.traced_below == r.traced_below && b.sharp_below == r.sharp_below &&
+         b.local_paths == r.local_paths && b.first_hits == r.first_hits;
+}
+
+bool same_columns(const Prepared& before, const Recipe& r, std::size_t count) {
+  const VirtualLightSettings &a = before.recipe.lights, &b = r.lights;
+  return before.columns.asked == count && before.recipe.light_seed == r.light_seed && a.type == b.type &&
+         a.clamp == b.clamp && a.radius_scale == b.radius_scale && before.recipe.compensated == r.compensated &&
+         before.recipe.near_radii == r.near_radii && before.recipe.only == r.only &&
+         before.recipe.traced_below == r.traced_below;
+}
+
+}  // namespace
+
+SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe& recipe, std::size_t count,
+                       const SharedPrepared& previous, const Sinks& sinks) {
+  std::map<std::string, double> seconds;
+  SharedRows rows;
+  TracedLight traced;
+  const bool keeps_rows = previous && previous->world == world && same_rows(*previous, view, recipe);
+  if (keeps_rows) {
+    rows = previous->rows, traced = previous->traced, seconds = previous->seconds;
+  } else {
+    Timer timer;
+    const SharedRows all = trace_rows(*world, view, recipe, sinks);
+    seconds["receivers"] = timer.seconds();
+    timer = {};
+    if (const auto tracing = start_direct(*world, *all, recipe)) {
+      if (!tracing->add(TracedDirectSettings{}.samples, sinks)) throw Cancelled();
+      traced.direct = per_sample(*all, tracing->radiance()), traced.direct_samples = tracing->samples();
+    }
+    if (recipe.traced_below > 0) seconds["traced_direct"] = timer.seconds();
+    timer = {};
+    traced.sharp = trace_sharp_lobes(*world, *all, recipe, sinks);
+    rows = matrix_rows(all, recipe);
+    if (rows != all) seconds["traced_indirect"] = timer.seconds();
+  }
+  if (keeps_rows && same_columns(*previous, recipe, count)) return previous;
+  Timer timer;
+  Columns columns = trace_columns(
+      *world, recipe, *survey(*world, recipe, aim_at(*world, view, recipe.light_seed, sinks)), count, sinks);
+  seconds["lights"] = timer.seconds();
+  timer = {};
+  traced.near = trace_near(*world, *rows, columns, recipe, sinks);
+  if (!traced.near.empty()) seconds["traced_near"] = timer.seconds();
+  return join(world, view, recipe, std::move(rows), std::move(columns), std::move(traced), std::move(seconds));
+}
+
+}  // namespace lumirank::pipeline

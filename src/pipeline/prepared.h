@@ -1,0 +1,88 @@
+// What pictures are estimated on: a world, a view of it, the rows and columns of its matrix, and the matrix.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/sinks.h"
+#include "pathtrace/path_tracer.h"
+#include "pipeline/recipe.h"
+#include "pipeline/traced_direct.h"
+#include "transport/cpu/scene_matrix.h"
+#include "transport/lights/virtual_lights.h"
+#include "transport/rows/receivers.h"
+#include "world/view.h"
+#include "world/world.h"
+
+namespace lumirank::pipeline {
+
+using SharedWorld = std::shared_ptr<const world::World>;
+using SharedRows = std::shared_ptr<const transport::Receivers>;
+using SharedSurvey = std::shared_ptr<const transport::LightSurvey>;
+
+struct Columns {
+  std::shared_ptr<const transport::VirtualLights> lights;
+  std::size_t asked = 0;                // how many there were to be
+  double radius_scale = 0;              // of spherical lights; 0: points
+  pathtrace::CarriedByColumns carried;  // where the rest is to be traced; bound 0: it is not
+};
+
+// Light that is traced instead of going through the matrix, one value per film sample; empty where none is.
+struct TracedLight {
+  std::vector<Rgb> direct;
+  int direct_samples = 0;  // per receiver
+  std::vector<Rgb> sharp;  // indirect, in lobes that have left the rows
+  std::vector<Rgb> near;   // indirect, from close by
+};
+
+// Owns what it is made of, never changes, and may be shared between threads and calls.
+struct Prepared {
+  SharedWorld world;
+  View view;
+  Recipe recipe;
+  SharedRows rows;
+  Columns columns;
+  TracedLight traced;
+  std::shared_ptr<const transport::SceneMatrix> matrix;
+  std::map<std::string, double> seconds;  // by stage
+
+  const transport::Receivers& receivers() const { return *rows; }
+  const transport::VirtualLights& lights() const { return *columns.lights; }
+};
+using SharedPrepared = std::shared_ptr<const Prepared>;
+
+// All stages one after the other, `count` virtual lights. What `previous` (may be empty) has made of the same
+// world in the same way is taken over: its rows with their traced light, and its columns, or the rows alone.
+SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe& recipe, std::size_t count,
+                       const SharedPrepared& previous, const Sinks& sinks);
+
+// ------------------------------------------------------------------------ the stages, for who times them
+
+// Rows as the eye finds them.
+SharedRows trace_rows(const world::World& world, const View& view, const Recipe& recipe, const Sinks& sinks);
+bool some_traced(const transport::Receivers& rows, float below);
+// Direct light of the lobes whose share is traced; nothing if there are none. Rows must outlive it.
+std::unique_ptr<DirectTracing> start_direct(const world::World& world, const transport::Receivers& rows,
+                                            const Recipe& recipe);
+std::vector<Rgb> trace_sharp_lobes(const world::World& world, const transport::Receivers& rows,
+                                   const Recipe& recipe, const Sinks& sinks);
+// What is left of the rows for the matrix: without lobes that are traced wholly.
+SharedRows matrix_rows(const SharedRows& rows, const Recipe& recipe);
+
+// What lights are aimed at: some 16,000 receivers spread over the whole film. Lights thus depend on the view,
+// but neither on the crop nor on the number of pixels and samples.
+transport::Receivers aim_at(const world::World& world, const View& view, std::uint64_t seed,
+                            const Sinks& sinks);
+SharedSurvey survey(const world::World& world, const Recipe& recipe, const transport::Receivers& aim);
+Columns trace_columns(const world::World& world, const Recipe& recipe, const transport::LightSurvey& survey,
+                      std::size_t count, const Sinks& sinks);
+std::vector<Rgb> trace_near(const world::World& world, const transport::Receivers& rows,
+                            const Columns& columns, const Recipe& recipe, const Sinks& sinks);
+
+// The matrix over what has been made. `seconds`: of the stages before.
+SharedPrepared join(const SharedWorld& world, const View& view, const Recipe& recipe, SharedRows rows,
+                    Columns columns, TracedLight traced, std::map<std::string, double> seconds);
+
+}  // namespace lumirank::pipeline

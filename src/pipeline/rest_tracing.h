@@ -1,0 +1,50 @@
+// Light that columns cannot carry, traced beside them (TracedLightSettings::rest): whether it matters, when
+// its paths are traced, and how many.
+#pragma once
+
+#include <memory>
+
+#include "base/timer.h"
+#include "pathtrace/reference.h"
+#include "pipeline/prepared.h"
+#include "pipeline/rest_pilot.h"
+#include "pipeline/timed_passes.h"
+
+namespace lumirank::pipeline {
+
+class RestTracing {
+ public:
+  // Pilots where the settings leave it open.
+  RestTracing(SharedWorld world, const View& view, const RenderSettings& settings, const Sinks& sinks);
+
+  const RestPlan& plan() const { return plan_; }
+  double pilot_seconds() const { return pilot_seconds_; }
+
+  // Under a budget: the first paths before the method, which fills it. `earlier` > 0: a repetition's number
+  // of paths. Throws Cancelled.
+  void begin(const View& view, int earlier, double deadline, const Clock& clock, const Sinks& sinks);
+  bool begun() const { return film_ != nullptr; }
+  // More of them until the clock says so; false if it was cancelled.
+  bool add_until(double until, const Clock& clock, const Sinks& sinks);
+  // Without a budget all at once, after the method. False if it was interrupted.
+  bool trace_all(const View& view, const Sinks& sinks);
+
+  int paths() const { return paths_; }        // traced, per pixel
+  double seconds() const { return seconds_; }
+  void add_to(image::Image& image) const;     // nothing if none were traced
+
+  static constexpr int kMaxPaths = 4096;  // beyond which more is not seen
+
+ private:
+  bool add(int paths, const Sinks& sinks);
+
+  SharedWorld world_;
+  pathtrace::ReferenceOptions options_;
+  RestPlan plan_;
+  double pilot_seconds_ = 0, seconds_ = 0, pace_ = 0;
+  std::unique_ptr<pathtrace::PathFilm> film_;
+  image::Image all_;  // of trace_all()
+  int paths_ = 0;
+};
+
+}  // namespace lumirank::pipeline
