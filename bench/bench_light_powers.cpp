@@ -15,7 +15,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/prepared.h"
 #include "scenedesc/readers.h"
 #include "transport/cpu/scene_matrix.h"
 
@@ -64,26 +64,24 @@ double quantile(const std::vector<double>& sorted, double q) {
 void run(const Options& options) {
   const scenedesc::SceneDesc desc = scenedesc::read_scene(options.scene);
   std::vector<scenedesc::Warning> warnings;
-  const world::World world = world::World::build(desc, {}, warnings);
+  const auto world = std::make_shared<world::World>(world::World::build(desc, {}, warnings));
   RenderSettings settings;
   settings.view.width = options.width, settings.view.height = options.height;
   settings.view.spp = 1, settings.seed = options.seed;
-  pipeline::Setup setup;
-  setup.world = &world;
-  setup.view = pipeline::make_view(desc, settings);
-  pipeline::make_receivers(setup, settings, {});
-  Timer timer;
-  pipeline::make_matrix(setup, settings, options.lights, {});
-  const double seconds = timer.seconds();
-  const transport::VirtualLights& lights = setup.lights;
+  const world::View view = pipeline::make_view(desc, settings.view);
+  const auto prepared =
+      pipeline::prepare(world, view, pipeline::make_recipe(settings, view), options.lights, {}, {});
+  const double seconds = prepared->seconds.at("lights");
+  const transport::VirtualLights& lights = prepared->lights();
+  const matrix::LightingMatrix& matrix = *prepared->matrix;
 
   std::vector<double> column(lights.size(), 0.0);
   std::vector<Rgb> row(lights.size());
   double total = 0, strongest = 0, strongest_of_one = 0;
-  const std::size_t step = std::max<std::size_t>(1, setup.matrix->rows() / options.receivers);
-  for (std::size_t i = 0; i < setup.matrix->rows(); i += step) {
-    setup.matrix->row(static_cast<matrix::Index>(i), row, matrix::Part::value);
-    const float weight = max_component(setup.receivers.weight[i]);
+  const std::size_t step = std::max<std::size_t>(1, matrix.rows() / options.receivers);
+  for (std::size_t i = 0; i < matrix.rows(); i += step) {
+    matrix.row(static_cast<matrix::Index>(i), row, matrix::Part::value);
+    const float weight = max_component(prepared->receivers().weight[i]);
     double sum = 0, most = 0;
     for (std::size_t j = 0; j < lights.size(); ++j) {
       if (lights.kind[j] != transport::LightKind::surface) continue;

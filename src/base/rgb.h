@@ -4,28 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lumirank/values.h"
+
 namespace lumirank {
-
-struct Rgb {
-  float r = 0, g = 0, b = 0;
-  Rgb() = default;
-  constexpr Rgb(float r_, float g_, float b_) : r(r_), g(g_), b(b_) {}
-  explicit constexpr Rgb(float v) : r(v), g(v), b(v) {}
-
-  float operator[](int i) const { return i == 0 ? r : (i == 1 ? g : b); }
-  float& operator[](int i) { return i == 0 ? r : (i == 1 ? g : b); }
-  friend Rgb operator+(Rgb a, Rgb c) { return {a.r + c.r, a.g + c.g, a.b + c.b}; }
-  friend Rgb operator-(Rgb a, Rgb c) { return {a.r - c.r, a.g - c.g, a.b - c.b}; }
-  friend Rgb operator*(Rgb a, Rgb c) { return {a.r * c.r, a.g * c.g, a.b * c.b}; }
-  friend Rgb operator/(Rgb a, Rgb c) { return {a.r / c.r, a.g / c.g, a.b / c.b}; }
-  friend Rgb operator*(Rgb a, float s) { return {a.r * s, a.g * s, a.b * s}; }
-  friend Rgb operator*(float s, Rgb a) { return a * s; }
-  friend Rgb operator/(Rgb a, float s) { return a * (1.0f / s); }
-  Rgb& operator+=(Rgb c) { return *this = *this + c; }
-  Rgb& operator*=(Rgb c) { return *this = *this * c; }
-  Rgb& operator*=(float s) { return *this = *this * s; }
-  friend bool operator==(const Rgb&, const Rgb&) = default;
-};
 
 inline float luminance(Rgb c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 inline float max_component(Rgb c) { return std::max(c.r, std::max(c.g, c.b)); }

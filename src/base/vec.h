@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lumirank/values.h"
+
 namespace lumirank {
 
 inline constexpr float kPi = 3.14159265358979323846f;
@@ -12,31 +14,9 @@ inline constexpr double kPiD = 3.14159265358979323846;
 inline constexpr float kInvPi = 0.31830988618379067154f;
 inline constexpr float kInfinity = __builtin_huge_valf();
 
-struct Vec2f {
-  float x = 0, y = 0;
-  friend Vec2f operator+(Vec2f a, Vec2f b) { return {a.x + b.x, a.y + b.y}; }
-  friend Vec2f operator-(Vec2f a, Vec2f b) { return {a.x - b.x, a.y - b.y}; }
-  friend Vec2f operator*(Vec2f a, float s) { return {a.x * s, a.y * s}; }
-  friend bool operator==(const Vec2f&, const Vec2f&) = default;
-};
-
 struct Vec2i {
   int x = 0, y = 0;
   friend bool operator==(const Vec2i&, const Vec2i&) = default;
-};
-
-struct Vec3f {
-  float x = 0, y = 0, z = 0;
-  float operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
-  float& operator[](int i) { return i == 0 ? x : (i == 1 ? y : z); }
-  friend Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend Vec3f operator-(Vec3f a) { return {-a.x, -a.y, -a.z}; }
-  friend Vec3f operator*(Vec3f a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-  friend Vec3f operator*(float s, Vec3f a) { return a * s; }
-  friend Vec3f operator/(Vec3f a, float s) { return a * (1.0f / s); }
-  Vec3f& operator+=(Vec3f b) { return *this = *this + b; }
-  friend bool operator==(const Vec3f&, const Vec3f&) = default;
 };
 
 // A place as a scene file states it: far from the origin 32 bits would not hold what its numbers say.

@@ -50,7 +50,7 @@ RenderSettings settings_for(const std::string& light_type) {
   settings.lights.count = 1500;
   settings.view.spp = 4;
   settings.lights.clamp = 0.02;
-  settings.lights.type = light_type;
+  set_field(settings, "light-type", light_type);
   return settings;
 }
 
@@ -58,7 +58,7 @@ void expect_whole(const std::string& light_type) {
   const Scene scene = corner();
   RenderSettings settings = settings_for(light_type);
   ReferenceSettings how;
-  how.paths = "columns";
+  how.paths = ReferencePaths::columns;
   how.spp = 512;
   std::vector<double> clamped[3], whole[3], paths[3];
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
@@ -99,8 +99,10 @@ TEST(Compensation, IsRefusedWhereItCannotBeWhole) {
     return std::string();
   };
   EXPECT_NE(message([](RenderSettings& s) { s.time = 1; }).find("time budget"), std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.lights.clamp = 0; }).find("without clamping"), std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.view.only = LightPart::direct; }).find("indirect light"), std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.lights.clamp = 0; }).find("without clamping"),
+            std::string::npos);
+  EXPECT_NE(message([](RenderSettings& s) { s.view.only = LightPart::direct; }).find("indirect light"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "methods/common/column_pass.h"
 #include "methods/common/exact_rows.h"
 #include "pipeline/error_advice.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/prepared.h"
 #include "support/scene_file.h"
 #include "support/statistics.h"
 
@@ -43,25 +43,24 @@ TEST(StatedError, PartsAreThoseOfTheTrueError) {
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
   settings.view.width = settings.view.height = 64;
-  settings.view.crop[0] = 26, settings.view.crop[1] = 12, settings.view.crop[2] = 12, settings.view.crop[3] = 8;
+  settings.view.crop[0] = 26, settings.view.crop[1] = 12, settings.view.crop[2] = 12,
+  settings.view.crop[3] = 8;
   settings.view.spp = 1;
   settings.traced.direct = DirectLight::matrix;
   std::vector<scenedesc::Warning> warnings;
   const world::World world = world::World::build(scene.impl().desc, {}, warnings);
-  pipeline::Setup setup;
-  setup.view = pipeline::make_view(scene.impl().desc, settings);
-  setup.world = &world;
-  pipeline::make_receivers(setup, settings, {});
+  const world::View view = pipeline::make_view(scene.impl().desc, settings.view);
+  const auto rows = pipeline::trace_rows(world, view, pipeline::make_recipe(settings, view), {});
   // Not aimed at the receivers: learning where to aim takes longer than tracing.
   const auto lights_of = [&](std::uint64_t seed, std::size_t count) {
     transport::LightSettings ls;
-    ls.seed = seed, ls.count = count, ls.max_depth = setup.view.max_depth;
+    ls.seed = seed, ls.count = count, ls.max_depth = view.max_depth;
     return transport::trace_virtual_lights(world, ls);
   };
   const auto matrix_of = [&](const transport::VirtualLights& lights, float clamp) {
     transport::SceneMatrixSettings ms;
-    ms.clamp = clamp, ms.max_depth = setup.view.max_depth;
-    return transport::SceneMatrix(world, setup.receivers, lights, ms);
+    ms.clamp = clamp, ms.max_depth = view.max_depth;
+    return transport::SceneMatrix(world, *rows, lights, ms);
   };
   const auto sum = [](std::span<const Rgb> values) {
     double s = 0;
@@ -70,7 +69,7 @@ TEST(StatedError, PartsAreThoseOfTheTrueError) {
   };
   constexpr std::size_t kSeeds = 300;
   std::vector<std::vector<Rgb>> sums;
-  std::vector<Rgb> all_sums(setup.receivers.size());
+  std::vector<Rgb> all_sums(rows->size());
   std::vector<double> stated;
   for (std::size_t seed = 0; seed < kSeeds; ++seed) {
     const transport::VirtualLights lights = lights_of(100 + seed, 1000);
@@ -110,7 +109,7 @@ TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
   settings.method.target_error = 0.08;
   settings.threads = 1;
   const RenderResult one = render(scene, settings);
-  const json report = json::parse(one.report_json);
+  const json report = json::parse(one.report.json());
   EXPECT_LE(number(report, "error.estimate"), 0.08);
   EXPECT_NEAR(number(report, "error.estimate"),
               std::hypot(number(report, "error.sampling"), number(report, "error.lights")) +
@@ -123,7 +122,7 @@ TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
     const RenderResult many = render(scene, settings);
     EXPECT_EQ(one.picture.planes[0].rgb, many.picture.planes[0].rgb) << threads << " threads";
     for (const char* key : {"error.estimate", "error.sampling", "error.lights", "error.clamping"})
-      EXPECT_EQ(report.at(key), json::parse(many.report_json).at(key)) << threads << " threads, " << key;
+      EXPECT_EQ(report.at(key), json::parse(many.report.json()).at(key)) << threads << " threads, " << key;
   }
 }
 
@@ -136,7 +135,7 @@ TEST(StatedError, OfEveryMethodThatIsAskedForIt) {
   settings.method.target_error = 0.3;
   for (const char* method : {"brute-force", "instant-radiosity", "power-sampling", "row-column-sampling"}) {
     settings.method.name = method;
-    const json report = json::parse(render(scene, settings).report_json);
+    const json report = json::parse(render(scene, settings).report.json());
     EXPECT_LE(number(report, "error.estimate"), 0.3) << method;
     EXPECT_GT(number(report, "error.lights"), 0) << method;
     // All columns: single precision is what is left.
@@ -148,11 +147,11 @@ TEST(StatedError, OfEveryMethodThatIsAskedForIt) {
   // none is stated.
   settings.method.target_error = 0;
   settings.method.parameters = {{"rows", "30"}, {"columns", "50"}};
-  const json fixed = json::parse(render(scene, settings).report_json);
+  const json fixed = json::parse(render(scene, settings).report.json());
   EXPECT_TRUE(fixed.contains("error.lights"));
   EXPECT_FALSE(fixed.contains("error.estimate"));
   settings.method.target_error = 0.3;
-  EXPECT_TRUE(json::parse(render(scene, settings).report_json).contains("error.estimate"));
+  EXPECT_TRUE(json::parse(render(scene, settings).report.json()).contains("error.estimate"));
 }
 
 TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
@@ -166,7 +165,7 @@ TEST(StatedError, TooFewLightsGetAdviceWithANumber) {
   std::vector<std::string> warnings;
   Sinks sinks;
   sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
-  const json report = json::parse(render(scene, settings, sinks).report_json);
+  const json report = json::parse(render(scene, settings, sinks).report.json());
   EXPECT_GT(number(report, "error.estimate"), 0.04);
   EXPECT_EQ(report.at("target"), "not reached");
   ASSERT_EQ(warnings.size(), 1u);
@@ -193,7 +192,7 @@ TEST(StatedError, MethodsThatDoNotAimAtItSaySo) {
     for (const double error : {0.0, 5.0}) {  // of which nobody falls short
       settings.method.target_error = error;
       warnings.clear();
-      const json report = json::parse(render(scene, settings, sinks).report_json);
+      const json report = json::parse(render(scene, settings, sinks).report.json());
       const bool expected = error > 0 && !info.error_decided_by.empty();
       ASSERT_EQ(warnings.size(), expected ? 1u : 0u) << info.name;
       if (!expected) continue;

@@ -56,7 +56,7 @@ std::string spot(const char* origin, const char* target, int cutoff) {
 RenderSettings unclamped(const char* only) {
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
-  settings.view.only = only;
+  set_field(settings, "only", only);
   settings.view.max_depth = 3;
   settings.method.name = "brute-force";
   settings.lights.clamp = 0;
@@ -75,7 +75,7 @@ void expect_equal_means(const std::string& body, const char* only, int spp) {
   const Scene scene = test::load_text(fur_and_wall(folder) + body);
   RenderSettings settings = unclamped(only);
   ReferenceSettings how;
-  how.paths = "columns";
+  how.paths = ReferencePaths::columns;
   how.spp = spp;
   constexpr int kSeeds = 32;
   test::ChannelMeans lights, paths;
@@ -144,7 +144,7 @@ TEST(HairUnbiased, LightThatOneHairSendsToAWallIsThatOfTheFormula) {
       "value=\"0.8\"/></bsdf></shape>");
   RenderSettings settings = unclamped("indirect");
   ReferenceSettings how;
-  how.paths = "columns";
+  how.paths = ReferencePaths::columns;
   how.spp = 1024;
   constexpr int kSeeds = 24;
   std::vector<double> lights, paths;

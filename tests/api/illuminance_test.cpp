@@ -101,7 +101,7 @@ TEST(Illuminance, AgreesWithThePathTracerInAGreyRoom) {
   settings.lights.clamp = 0;
   ReferenceSettings how;
   how.spp = 128;
-  how.paths = "columns";
+  how.paths = ReferencePaths::columns;
   constexpr int kSeeds = 24;
   std::vector<double> columns, paths;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {

@@ -8,7 +8,7 @@
 #include "methods/common/column_pass.h"
 #include "methods/common/row_group_pass.h"
 #include "methods/statistics.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/prepared.h"
 
 namespace lumirank {
 namespace {
@@ -20,15 +20,15 @@ class LightCutsInScenes : public testing::TestWithParam<const char*> {
     settings_.view.width = 24, settings_.view.height = 16, settings_.view.spp = 2;
     std::vector<scenedesc::Warning> warnings;
     world_ = std::make_unique<world::World>(world::World::build(scene_.impl().desc, {}, warnings));
-    setup_.view = pipeline::make_view(scene_.impl().desc, settings_);
-    setup_.world = world_.get();
-    pipeline::make_receivers(setup_, settings_, {});
+    const world::View view = pipeline::make_view(scene_.impl().desc, settings_.view);
+    const pipeline::Recipe recipe = pipeline::make_recipe(settings_, view);
+    rows_ = pipeline::matrix_rows(pipeline::trace_rows(*world_, view, recipe, {}), recipe);
     transport::LightSettings ls;
-    ls.seed = 1, ls.count = 300, ls.max_depth = setup_.view.max_depth;
+    ls.seed = 1, ls.count = 300, ls.max_depth = view.max_depth;
     lights_ = transport::trace_virtual_lights(*world_, ls);
     transport::SceneMatrixSettings ms;
-    ms.max_depth = setup_.view.max_depth;
-    matrix_ = std::make_unique<transport::SceneMatrix>(*world_, setup_.receivers, lights_, ms);
+    ms.max_depth = view.max_depth;
+    matrix_ = std::make_unique<transport::SceneMatrix>(*world_, *rows_, lights_, ms);
   }
 
   std::vector<Rgb> sums(const char* method, const std::map<std::string, std::string>& settings = {}) const {
@@ -47,7 +47,7 @@ class LightCutsInScenes : public testing::TestWithParam<const char*> {
   Scene scene_;
   RenderSettings settings_;
   std::unique_ptr<world::World> world_;
-  pipeline::Setup setup_;
+  pipeline::SharedRows rows_;
   transport::VirtualLights lights_;
   std::unique_ptr<transport::SceneMatrix> matrix_;
 };

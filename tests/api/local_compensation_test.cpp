@@ -43,7 +43,7 @@ RenderSettings brute_force(const std::string& light_type) {
   settings.method.name = "brute-force";
   settings.view.max_depth = 5;
   settings.lights.count = 800;
-  settings.lights.type = light_type;
+  set_field(settings, "light-type", light_type);
   settings.lights.clamp = 0;
   return settings;
 }
@@ -52,7 +52,7 @@ RenderSettings brute_force(const std::string& light_type) {
 // of the light were missing.
 void expect_whole(const Scene& scene, RenderSettings settings, double teeth) {
   ReferenceSettings how;
-  how.paths = "columns";
+  how.paths = ReferencePaths::columns;
   how.spp = 512;
   test::ChannelMeans whole, paths;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
@@ -70,7 +70,7 @@ TEST(LocalCompensation, SharpLobesTakeAllTheirLightFromPaths) {
   settings.traced.local_paths = 16;
   for (const char* only : {"all", "indirect", "direct"}) {
     SCOPED_TRACE(only);
-    settings.view.only = only;
+    set_field(settings, "only", only);
     expect_whole(scene, settings, 0.06);
   }
 }
@@ -143,9 +143,11 @@ TEST(LocalCompensation, IsRefusedWhereItCannotBeWhole) {
     }
     return std::string();
   };
-  EXPECT_NE(message([](RenderSettings& s) { s.traced.direct = DirectLight::matrix; }).find("local-paths"), std::string::npos);
-  EXPECT_NE(message([](RenderSettings& s) { s.lights.clamp = 0.1, s.traced.compensate = 4; }).find("leave out one"),
+  EXPECT_NE(message([](RenderSettings& s) { s.traced.direct = DirectLight::matrix; }).find("local-paths"),
             std::string::npos);
+  EXPECT_NE(
+      message([](RenderSettings& s) { s.lights.clamp = 0.1, s.traced.compensate = 4; }).find("leave out one"),
+      std::string::npos);
   EXPECT_NE(message([](RenderSettings& s) { s.layers = {"light:*"}; }).find("--local-paths"),
             std::string::npos);
 }

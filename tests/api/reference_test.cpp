@@ -143,7 +143,7 @@ TEST(Reference, MirrorShowsTheLampAndColumnsLeaveOutItsLightOnTheFloor) {
   ReferenceSettings how;
   how.spp = 256;
   const auto run = [&](const char* paths, std::uint64_t seed) {
-    how.paths = paths;
+    how.paths = reference_paths(paths);
     settings.seed = seed;
     const Picture picture = reference(scene, settings, how).picture;
     return channel(picture, 1);
@@ -177,7 +177,7 @@ TEST(Reference, StatesItsErrorHonestly) {
     difference += std::abs(small.picture.planes[0].rgb[k] - large.picture.planes[0].rgb[k]);
     total += large.picture.planes[0].rgb[k];
   }
-  const std::string& report = small.report_json;
+  const std::string& report = small.report.json();
   const double stated = std::stod(report.substr(report.find("error.relative_l1\": ") + 20));
   EXPECT_NEAR(stated / (difference / total), 1, 0.25);
 }

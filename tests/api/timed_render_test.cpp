@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "lumirank/lumirank.h"
 #include "methods/method.h"
-#include "pipeline/aovs.h"
 #include "pipeline/error_advice.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/layers.h"
+#include "pipeline/recipe.h"
 #include "support/scene_file.h"
 
 namespace lumirank {
@@ -31,7 +31,7 @@ Scene room() {
       "value=\"0.5\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"9\"/></emitter></shape>");
 }
 
-nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::parse(result.report_json); }
+nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::parse(result.report.json()); }
 
 std::vector<std::vector<float>> bits(const RenderResult& result) {
   std::vector<std::vector<float>> planes;
@@ -67,7 +67,7 @@ TEST(TimedRender, EveryStagesChoiceIsRecordedAndRepeatsTheBits) {
     EXPECT_EQ(first.picture.width, size + 1) << "whatever the budget";
     EXPECT_EQ(first.picture.planes[0].rgb.size(), 3u * static_cast<std::size_t>((size + 1) * size));
     for (const int threads : {2}) {
-      RenderSettings again = render_settings_from_report(first.report_json);
+      RenderSettings again = render_settings_from_report(first.report.json());
       again.threads = threads;
       const RenderResult second = render(scene, again);
       EXPECT_EQ(bits(second), bits(first)) << seconds << " s, " << threads << " threads";
@@ -107,8 +107,8 @@ TEST(TimedRender, WhatIsGivenByHandIsNotLowered) {
   EXPECT_EQ(report["virtual_lights.asked"], 3000);
   RenderSettings by_hand;
   set_field(by_hand, "lights", "100000");
-  EXPECT_TRUE(by_hand.lights_given);
-  EXPECT_FALSE(render_settings_from_json(to_json(RenderSettings{})).lights_given)
+  EXPECT_TRUE(by_hand.lights.count.has_value());
+  EXPECT_FALSE(render_settings_from_json(to_json(RenderSettings{})).lights.count.has_value())
       << "a report names every setting, asked for or not";
 }
 

@@ -28,15 +28,16 @@ void expect_equal_means(const char* only) {
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
   settings.view.width = settings.view.height = 64;
-  settings.view.crop[0] = 26, settings.view.crop[1] = 12, settings.view.crop[2] = 12, settings.view.crop[3] = 8;
-  settings.view.only = only;
+  settings.view.crop[0] = 26, settings.view.crop[1] = 12, settings.view.crop[2] = 12,
+  settings.view.crop[3] = 8;
+  set_field(settings, "only", only);
   settings.view.max_depth = 6;
   settings.method.name = "brute-force";
   settings.lights.clamp = 0;
   settings.traced.direct = DirectLight::matrix;
   settings.lights.count = 16000;  // they are aimed at the whole film
   ReferenceSettings how;
-  how.paths = "columns";
+  how.paths = ReferencePaths::columns;
   how.spp = 512;
   constexpr int kSeeds = 48;
   test::ChannelMeans lights, paths;
@@ -80,7 +81,7 @@ TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
   }
   const auto expected = mean_of(truth);
   for (const char* direct : {"matrix", "auto", "traced"}) {
-    settings.traced.direct = direct;
+    set_field(settings, "direct", direct);
     std::vector<double> means;
     for (std::uint64_t k = 0; k < kSeeds; ++k) {
       settings.seed = 500 + k;
@@ -108,10 +109,10 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
 
   settings.method.name = "row-column-sampling";
   settings.method.parameters = {{"rows", "20"},
-                              {"columns", "30"},
-                              {"colour", "scalar"},
-                              {"zero-columns", "sample"},
-                              {"most-shown", "0"}};
+                                {"columns", "30"},
+                                {"colour", "scalar"},
+                                {"zero-columns", "sample"},
+                                {"most-shown", "0"}};
   constexpr int kSeeds = 48, kBlock = 8, kBlocks = 32 / kBlock;
   std::vector<std::vector<double>> blocks(kBlocks * kBlocks * 3);
   const auto add = [&](const Picture& picture, auto&& keep) {

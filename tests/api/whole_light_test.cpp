@@ -45,7 +45,7 @@ double mean_value(const Picture& picture) {
   return sum / static_cast<double>(picture.planes[0].rgb.size());
 }
 
-nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::parse(result.report_json); }
+nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::parse(result.report.json()); }
 
 TEST(WholeLight, TheSkyInAMirrorIsPartOfThePictureByDefault) {
   const Scene scene = load_text(floor_and_wall(kMirror));

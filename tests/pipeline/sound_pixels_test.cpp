@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "pipeline/pipeline.h"
+#include "pipeline/develop.h"
 
 namespace lumirank::test {
 namespace {
