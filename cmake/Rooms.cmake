@@ -27,6 +27,12 @@ endif()
 
 # Unity builds: a room's files are compiled some at a time as one, since most of a file's time goes to the headers that all
 # of them share. Names in a room's anonymous namespaces therefore differ. Switch it off to work on a single file.
+# Tests and benchmarks include the rooms' headers, so they are compiled for the same instructions.
+function(lumirank_inner target)
+  target_compile_options(${target} PRIVATE ${LUMIRANK_FLAGS})
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
 function(lumirank_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${LUMIRANK_UNITY} UNITY_BUILD_BATCH_SIZE 20)
 endfunction()
@@ -37,7 +43,10 @@ function(lumirank_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   add_library(lumirank_${name} STATIC ${sources})
   target_include_directories(lumirank_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
-  target_compile_options(lumirank_${name} PRIVATE ${LUMIRANK_WARNINGS} PUBLIC ${LUMIRANK_FLAGS})
+  target_compile_options(lumirank_${name} PRIVATE ${LUMIRANK_WARNINGS} ${LUMIRANK_FLAGS})
+  # What a shared library of the rooms shows is what public headers mark with LUMIRANK_API.
+  set_target_properties(lumirank_${name} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   foreach(room IN LISTS ROOM_ROOMS)
     target_link_libraries(lumirank_${name} PUBLIC lumirank_${room})
   endforeach()

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lumirank/export.h"
 #include "lumirank/lumirank.h"
 
 namespace lumirank {
@@ -29,7 +30,7 @@ struct CompareSettings {
 
 // Writes results.json, results.csv, images, error images and index.html into `folder` (made if absent). What
 // has been finished when `sinks.cancel` is set is written; returns false then.
-bool compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
-             const Sinks& sinks = {});
+LUMIRANK_API bool compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
+                          const Sinks& sinks = {});
 
 }  // namespace lumirank

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "lumirank/export.h"
+
 namespace lumirank {
 
 struct SourceLocation {
@@ -14,10 +16,10 @@ struct SourceLocation {
 };
 
 // "file:line", "file" or "".
-std::string to_string(const SourceLocation& where);
+LUMIRANK_API std::string to_string(const SourceLocation& where);
 
 // The input or an option is wrong. what() reads "file:line: message; remedy".
-class InputError : public std::runtime_error {
+class LUMIRANK_API InputError : public std::runtime_error {
  public:
   InputError(SourceLocation where, const std::string& message, const std::string& remedy = {});
   explicit InputError(const std::string& message, const std::string& remedy = {})
@@ -30,13 +32,13 @@ class InputError : public std::runtime_error {
 };
 
 // An invariant of the program is broken: a bug. The message says how to replay the row or column.
-class InternalError : public std::logic_error {
+class LUMIRANK_API InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
 // The caller asked to stop (Ctrl-C).
-class Cancelled : public std::runtime_error {
+class LUMIRANK_API Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}
 };

@@ -13,16 +13,17 @@
 #include <vector>
 
 #include "lumirank/error.h"
+#include "lumirank/export.h"
 #include "lumirank/report.h"
 #include "lumirank/settings.h"
 #include "lumirank/sinks.h"
 
 namespace lumirank {
 
-std::string version();
+LUMIRANK_API std::string version();
 
 // A scene file after parsing; nothing is built yet. Cheap to copy.
-class Scene {
+class LUMIRANK_API Scene {
  public:
   // Throws InputError (file, line, remedy). Warnings go to `sinks.warning` and stay in the listing.
   static Scene load(const std::string& filename, const LoadOptions& options = {}, const Sinks& sinks = {});
@@ -35,7 +36,10 @@ class Scene {
   std::vector<std::string> files() const;
 
   struct Impl;
+  Scene() = default;
+  explicit Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   const Impl& impl() const { return *impl_; }
+  std::shared_ptr<const Impl> share() const { return impl_; }
 
  private:
   std::shared_ptr<const Impl> impl_;
@@ -62,30 +66,33 @@ struct RenderResult {
 // improves.
 using PreviewCallback = std::function<void(const Picture&)>;
 
-RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
-                    const PreviewCallback& on_preview = {});
+LUMIRANK_API RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
+                                 const PreviewCallback& on_preview = {});
 
 // Ground truth by path tracing. Of `settings` it reads view, seed, threads and layers.
-RenderResult reference(const Scene& scene, const RenderSettings& settings, const ReferenceSettings& how,
-                       const Sinks& sinks = {}, const PreviewCallback& on_preview = {});
+LUMIRANK_API RenderResult reference(const Scene& scene, const RenderSettings& settings,
+                                    const ReferenceSettings& how, const Sinks& sinks = {},
+                                    const PreviewCallback& on_preview = {});
 
 // By extension: .exr (all planes), .png, .pfm. Whole or absent.
-void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display = {});
-void check_writable(const std::string& filename);
+LUMIRANK_API void write_picture(const std::string& filename, const Picture& picture,
+                                const DisplaySettings& display = {});
+LUMIRANK_API void check_writable(const std::string& filename);
 // The plane "illuminance" in false colours with a scale in lux, as PNG. Throws InputError if there is none.
-void write_illuminance(const std::string& filename, const Picture& picture,
-                       const DisplaySettings& display = {});
+LUMIRANK_API void write_illuminance(const std::string& filename, const Picture& picture,
+                                    const DisplaySettings& display = {});
 // A small text file (report, settings), written to a temporary name and renamed.
-void write_text(const std::string& filename, const std::string& text);
+LUMIRANK_API void write_text(const std::string& filename, const std::string& text);
 // Throws InputError if write_text could not write there; leaves nothing behind.
-void check_text_writable(const std::string& filename);
+LUMIRANK_API void check_text_writable(const std::string& filename);
 
 // Throws InputError if two of the outputs are one file (through whatever links), or one of them is an input:
 // Scene::files(), say.
-void check_distinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+LUMIRANK_API void check_distinct(const std::vector<std::string>& outputs,
+                                 const std::vector<std::string>& inputs);
 
 // What this thread writes by the functions above while it lives appears in commit(), all of it or nothing.
-class FilesTogether {
+class LUMIRANK_API FilesTogether {
  public:
   FilesTogether();
   ~FilesTogether();
@@ -99,13 +106,13 @@ class FilesTogether {
 };
 
 // For the signal handler of a host that ends the process in the middle of a write; it may be called there.
-void remove_temporary_files() noexcept;
+LUMIRANK_API void remove_temporary_files() noexcept;
 
 // Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
-std::string error_json(const std::string& image_file, const std::string& reference_file);
+LUMIRANK_API std::string error_json(const std::string& image_file, const std::string& reference_file);
 
 // The methods with their parameters and papers.
-std::string methods_text();
-std::string methods_json();
+LUMIRANK_API std::string methods_text();
+LUMIRANK_API std::string methods_json();
 
 }  // namespace lumirank

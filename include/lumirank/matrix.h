@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 
+#include "lumirank/export.h"
 #include "lumirank/sinks.h"
 #include "lumirank/values.h"
 
@@ -32,6 +33,9 @@ struct MatrixCost {
 struct WeightedColumn {
   Index column = 0;
   Rgb scale{1};
+  // If > 0, its entries times `scale` are kept from showing more than this share of what fills the whole
+  // hemisphere: a bound on columns that stand for many others.
+  float max_contribution = 0;
 };
 
 // Arrays of length rows(), valid as long as the matrix.
@@ -53,7 +57,7 @@ struct MatrixColumns {
 
 // A view that shares what it looks at: cheap to copy, never changes, may be used by many threads at once.
 // Spans of a wrong length or indices out of range throw InputError.
-class Matrix {
+class LUMIRANK_API Matrix {
  public:
   std::size_t rows() const;
   std::size_t columns() const;

@@ -7,21 +7,22 @@
 #include <string>
 #include <vector>
 
+#include "lumirank/export.h"
 #include "lumirank/settings.h"
 
 namespace lumirank {
 
-struct Report {
+struct LUMIRANK_API Report {
   std::string method, version;
   std::uint64_t seed = 0;
   std::map<std::string, double> seconds;  // wall clock by stage; "total" from the loaded scene on
 
   // Of the matrix: what the method looked at.
   struct Cost {
-    std::uint64_t entries = 0;      // evaluated, zero or not
-    std::uint64_t culled = 0;       // of these, decided without a ray
+    std::uint64_t entries = 0;  // evaluated, zero or not
+    std::uint64_t culled = 0;   // of these, decided without a ray
     std::uint64_t shadow_rays = 0;
-    double sampling_rate = 0;       // share of all entries, or as the method itself counts
+    double sampling_rate = 0;  // share of all entries, or as the method itself counts
   };
   std::optional<Cost> cost;
 
@@ -45,7 +46,7 @@ struct Report {
   // Relative L1 error as the render states it; empty where it states none.
   std::optional<double> stated_error() const;
 
-  RenderSettings settings;                                    // as asked
+  RenderSettings settings;                                   // as asked
   std::map<std::string, std::vector<std::int64_t>> choices;  // of the clock, under a time budget
 
   // One object: "seconds.total", "entries.evaluated", … and "parameters".

@@ -12,13 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "lumirank/export.h"
 #include "lumirank/lumirank.h"
 #include "lumirank/matrix.h"
 
 namespace lumirank {
 
 // Owns what it is made of, never changes, is cheap to copy, and may be used by many threads at once.
-class Prepared {
+class LUMIRANK_API Prepared {
  public:
   Matrix matrix() const;
   int width() const;  // of the picture, pixels
@@ -40,8 +41,8 @@ class Prepared {
 // Of `settings` it reads view, lights, traced, layers, seed and threads; the rest of the paths and the
 // compensation are left to render(). What `previous` has of the same scene (the world), view (receivers) and
 // lights is taken over. Throws InputError, Cancelled.
-Prepared prepare(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
-                 const Prepared& previous = {});
+LUMIRANK_API Prepared prepare(const Scene& scene, const RenderSettings& settings, const Sinks& sinks = {},
+                              const Prepared& previous = {});
 
 // What a method made of the matrix.
 struct Estimate {
@@ -64,17 +65,17 @@ struct EstimateOptions {
 
 // Any method, as often as wanted, on one matrix ("auto": slice-cuts). Throws InputError for settings that the
 // method does not take, Cancelled if there is nothing yet.
-Estimate estimate_sums(const Prepared& prepared, const MethodSettings& method,
-                       const EstimateOptions& options = {});
+LUMIRANK_API Estimate estimate_sums(const Prepared& prepared, const MethodSettings& method,
+                                    const EstimateOptions& options = {});
 
 // The picture of row sums with the light that was traced beside the matrix; `layers` as --aov names them, but
 // for the illuminance. Throws InputError for layers that the estimate or what is prepared cannot give.
-Picture develop(const Prepared& prepared, const Estimate& estimate,
-                const std::vector<std::string>& layers = {}, const Sinks& sinks = {});
+LUMIRANK_API Picture develop(const Prepared& prepared, const Estimate& estimate,
+                             const std::vector<std::string>& layers = {}, const Sinks& sinks = {});
 
 // The same picture under other lights: the light of each emitter is multiplied with a factor per channel.
 // Columns are gone over once, when it is made; each picture after that is a sum of a few.
-class Relighting {
+class LUMIRANK_API Relighting {
  public:
   // Throws InputError if the estimate is no combination of columns, or if direct light was traced, which
   // does not know its emitter: prepare with `traced.direct = DirectLight::matrix`.

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "lumirank/export.h"
+
 namespace lumirank {
 
 struct LoadOptions {
@@ -23,9 +25,9 @@ enum class LightPart { all, direct, indirect };
 // Virtual lights of indirect light: points; points that send on by the diffuse lobes of their surface alone
 // (2009, section 2); spheres (2009, section 4).
 enum class LightType { point, diffuse_point, sphere };
-enum class SphereIndicator { disc, cosine };    // what is taken for the lit surface close by; cosine: 2009
-enum class SphereStrategies { all, cone };      // sample cone and both BSDFs, or the cone alone
-enum class SphereSamples { overlap, cone };     // by the overlap of lobes and cone, or the cone alone: 2009
+enum class SphereIndicator { disc, cosine };  // what is taken for the lit surface close by; cosine: 2009
+enum class SphereStrategies { all, cone };    // sample cone and both BSDFs, or the cone alone
+enum class SphereSamples { overlap, cone };   // by the overlap of lobes and cone, or the cone alone: 2009
 // Direct light at receivers: by columns; traced with multiple importance sampling; automatic: traced where a
 // lobe is sharper than a measured roughness.
 enum class DirectLight { automatic, matrix, traced };
@@ -37,11 +39,11 @@ enum class ToneMap { none, reinhard, agx };
 
 // What is looked at, and how finely.
 struct ViewSettings {
-  std::string camera;                 // id; "": the scene's first
-  int width = 0, height = 0;          // pixels; 0: as the scene says
-  std::array<int, 4> crop{};          // x, y, width, height in pixels; width 0: none
-  std::optional<int> spp;             // receivers per pixel; unset: 4, or what a time budget holds
-  int max_depth = 0;                  // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
+  std::string camera;         // id; "": the scene's first
+  int width = 0, height = 0;  // pixels; 0: as the scene says
+  std::array<int, 4> crop{};  // x, y, width, height in pixels; width 0: none
+  std::optional<int> spp;     // receivers per pixel; unset: 4, or what a time budget holds
+  int max_depth = 0;          // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
   LightPart only = LightPart::all;
 
   static constexpr int kDefaultSpp = 4;
@@ -66,8 +68,8 @@ struct VirtualLightSettings {
 struct MethodSettings {
   std::string name = "auto";
   std::map<std::string, std::string> parameters;  // by key; methods_text() lists them
-  std::uint64_t seed = 0;    // other choices on the same lights and receivers; 0: the render's seed
-  double target_error = 0;   // estimated relative error to stop at; 0: the method's default
+  std::uint64_t seed = 0;   // other choices on the same lights and receivers; 0: the render's seed
+  double target_error = 0;  // estimated relative error to stop at; 0: the method's default
 };
 
 // Light that is traced beside the matrix.
@@ -112,29 +114,29 @@ struct DisplaySettings {
 };
 
 // The names that the command line uses. Throw InputError that lists the valid ones.
-ReferencePaths reference_paths(const std::string& name);
-std::string to_text(ReferencePaths paths);
-ToneMap tone_map(const std::string& name);
+LUMIRANK_API ReferencePaths reference_paths(const std::string& name);
+LUMIRANK_API std::string to_text(ReferencePaths paths);
+LUMIRANK_API ToneMap tone_map(const std::string& name);
 
 // One row of the table of settings.
 struct Field {
   std::string key, type, default_text, range, unit, help;
 };
-const std::vector<Field>& render_fields();
+LUMIRANK_API const std::vector<Field>& render_fields();
 
 // Reads and writes one field by its key. Throws InputError that lists the valid keys or values.
-void set_field(RenderSettings& settings, const std::string& key, const std::string& value);
-std::string get_field(const RenderSettings& settings, const std::string& key);
+LUMIRANK_API void set_field(RenderSettings& settings, const std::string& key, const std::string& value);
+LUMIRANK_API std::string get_field(const RenderSettings& settings, const std::string& key);
 
 // All fields as a JSON object and back, without `choices`; an unknown key is an InputError.
-std::string to_json(const RenderSettings& settings);
-RenderSettings render_settings_from_json(const std::string& text);
+LUMIRANK_API std::string to_json(const RenderSettings& settings);
+LUMIRANK_API RenderSettings render_settings_from_json(const std::string& text);
 
 // The settings of an earlier render and its choices, from its report. Throws InputError if it is none, or was
 // made under a time budget and lacks its choices because it was interrupted.
-RenderSettings render_settings_from_report(const std::string& report);
+LUMIRANK_API RenderSettings render_settings_from_report(const std::string& report);
 
 // Throws InputError for values that contradict each other or lie out of range.
-void validate(const RenderSettings& settings);
+LUMIRANK_API void validate(const RenderSettings& settings);
 
 }  // namespace lumirank

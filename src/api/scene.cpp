@@ -68,8 +68,7 @@ Scene Scene::load(const std::string& filename, const LoadOptions& options, const
                           [&] { impl->desc = scenedesc::read_scene(filename, read); });
   impl->files_read = files.names();
   api::report_warnings(sinks, impl->desc.warnings);
-  Scene scene;
-  scene.impl_ = std::move(impl);
+  return Scene(std::move(impl));
   return scene;
 }
 

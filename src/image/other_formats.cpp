@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <vector>
 
 #include "base/error.h"
 
@@ -21,9 +22,15 @@ struct OtherImagesModule {
 // Beside the program, where the build leaves it, or where it is installed.
 OtherImagesModule load_other_images_module() {
   std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const char* place : {".", "lib/lumirank", "../lib/lumirank"}) {
-    const fs::path file = (folder / place / kOtherImagesModule).lexically_normal();
+  std::vector<fs::path> places;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const char* place : {".", "lib/lumirank", "../lib/lumirank"}) places.push_back(program / place);
+  // In a shared library this code lies elsewhere than the program.
+  if (Dl_info here{}; dladdr(reinterpret_cast<void*>(&load_other_images_module), &here) && here.dli_fname)
+    for (const char* place : {".", "lumirank", "lib/lumirank"})
+      places.push_back(fs::absolute(here.dli_fname, error).parent_path() / place);
+  for (const fs::path& place : places) {
+    const fs::path file = (place / kOtherImagesModule).lexically_normal();
     if (!fs::is_regular_file(file, error)) continue;
     void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     void* function = module ? dlsym(module, kReadOtherImage) : nullptr;
@@ -32,7 +39,7 @@ OtherImagesModule load_other_images_module() {
     return {nullptr, why ? why : "it lacks its function"};
   }
   return {nullptr,
-          std::string(kOtherImagesModule) + " lies neither beside the program nor in ../lib/lumirank"};
+          std::string(kOtherImagesModule) + " lies neither beside the program or the library nor in their lib/lumirank"};
 }
 
 }  // namespace

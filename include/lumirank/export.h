@@ -1,0 +1,8 @@
+// What the shared library shows of itself.
+#pragma once
+
+#if defined(__GNUC__)
+#define LUMIRANK_API __attribute__((visibility("default")))
+#else
+#define LUMIRANK_API
+#endif
