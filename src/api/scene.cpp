@@ -69,7 +69,6 @@ Scene Scene::load(const std::string& filename, const LoadOptions& options, const
   impl->files_read = files.names();
   api::report_warnings(sinks, impl->desc.warnings);
   return Scene(std::move(impl));
-  return scene;
 }
 
 std::vector<std::string> Scene::files() const {
