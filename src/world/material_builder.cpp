@@ -93,16 +93,11 @@ bool MaterialBuilder::holds_hair(int bsdf, std::size_t depth) const {
     return false;
   const auto& kind = desc_.bsdfs[static_cast<std::size_t>(bsdf)].kind;
   if (std::holds_alternative<sd::HairDesc>(kind)) return true;
-  if (const auto* m = std::get_if<sd::CoatingDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::SheenDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::MaskDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  // Of two sides the front alone lies on fibres.
   if (const auto* m = std::get_if<sd::TwoSidedDesc>(&kind)) return holds_hair(m->front, depth + 1);
-  if (const auto* m = std::get_if<sd::BumpMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::NormalMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::MixtureDesc>(&kind))
-    for (const auto& part : m->parts)
-      if (holds_hair(part.bsdf, depth + 1)) return true;
-  return false;
+  bool found = false;
+  sd::for_each_nested(kind, [&](int nested) { found = found || holds_hair(nested, depth + 1); });
+  return found;
 }
 
 int MaterialBuilder::instead_around_hair(const sd::BsdfDesc& b) {

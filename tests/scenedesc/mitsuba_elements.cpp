@@ -132,7 +132,7 @@ TEST(MitsubaDefaults, ConductorsAreCopperIn06AndMirrorsIn3) {
              now = std::get<ConductorDesc>(parse(text).bsdfs.at(0).kind);
   EXPECT_EQ(now.eta, Rgb(0));
   EXPECT_EQ(now.k, Rgb(1));
-  const auto copper = *mitsuba::metal_index("Cu");
+  const auto copper = *metal_index("Cu");
   EXPECT_FLOAT_EQ(old.eta.g, copper.eta.g / 1.000277f);
 }
 
@@ -273,7 +273,7 @@ TEST(MitsubaCoating, AbsorptionIsTimesThickness) {
 // green before blue, as these metals look.
 TEST(MitsubaMetals, LookAsTheyShould) {
   const auto reflectance = [](const char* name) {
-    const auto m = *mitsuba::metal_index(name);
+    const auto m = *metal_index(name);
     Rgb r;
     for (int i = 0; i < 3; ++i)
       r[i] = ((m.eta[i] - 1) * (m.eta[i] - 1) + m.k[i] * m.k[i]) /
@@ -302,7 +302,7 @@ TEST(MitsubaMetals, LookAsTheyShould) {
     EXPECT_GT(r.r, 0.9f);
     EXPECT_LT(r.b, 0.6f);
   }
-  EXPECT_FALSE(mitsuba::metal_index("Unobtainium").has_value());
+  EXPECT_FALSE(metal_index("Unobtainium").has_value());
 }
 
 TEST(MitsubaSpectrum, FilesAndPairsAreTheSame) {
