@@ -59,6 +59,8 @@ enum class LobeSort : std::uint8_t {
   KIND(disney_diffuse, reflects)                                                                                \
   /* Disney's: color · F · D · G with GTR1 of width alpha_u */                                                  \
   KIND(clearcoat, reflects)                                                                                     \
+  /* A table of measurements: color · f; alpha_u is the width of what is drawn */                               \
+  KIND(measured, reflects)                                                                                      \
   /* Through thin sheets, unbent; eta is that of the sheet from either side: color/π */                         \
   KIND(diffuse_transmit, shines_through)                                                                        \
   /* ... and microfacet_reflect with wi mirrored to wo's side and 1 - F instead of F */                         \

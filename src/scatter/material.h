@@ -2,9 +2,12 @@
 // A material becomes a Closure at a surface point.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
 #include "base/frame.h"
 #include "base/rgb.h"
 #include "scatter/closure.h"
@@ -104,6 +107,16 @@ struct PrincipledMaterial {
 };
 void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
+// A measured isotropic BRDF (lobes/measured.cpp).
+struct MeasuredTable;
+struct MeasuredMaterial {
+  std::shared_ptr<const MeasuredTable> table;
+};
+void add_lobes(const MeasuredMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+// The table in the bytes of a file of the MERL database. InputError, at `where`, if that is not what they
+// are; `filename` only names them.
+std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const std::string& filename,
+                                                const SourceLocation& where);
 // A thin sheet that reflects and lets through diffusely, alike on both sides.
 struct DiffuseTransmitterMaterial {
   ColorInput reflectance, transmittance;
@@ -185,8 +198,8 @@ void add_lobes(const MixtureMaterial& m, ClosureBuilder& out, const SurfacePoint
 using Material =
     std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
-                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, SheenMaterial,
-                 HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
+                 PrincipledThinMaterial, DiffuseTransmitterMaterial, MeasuredMaterial, CoatingMaterial,
+                 SheenMaterial, HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
                  MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::world {
 
@@ -271,6 +272,10 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
     }
     sc::Material operator()(const sd::DiffuseTransmitterDesc& d) const {
       return sc::DiffuseTransmitterMaterial{color(d.reflectance), color(d.transmittance)};
+    }
+    sc::Material operator()(const sd::MeasuredDesc& d) const {
+      if (d.file.missing) return sc::DiffuseMaterial{sc::ColorInput{Rgb(0.5f), -1}};
+      return sc::MeasuredMaterial{sc::parse_merl(sd::read_file(d.file.name, where), d.file.name, where)};
     }
     sc::Material operator()(const sd::CoatingDesc& d) const {
       sc::CoatingMaterial m;

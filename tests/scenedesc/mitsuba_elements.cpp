@@ -1,6 +1,7 @@
 // Parameters, includes, warnings, defaults and conversions of the Mitsuba reader.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -8,6 +9,7 @@
 #include "scenedesc/data/ior.h"
 #include "scenedesc/mitsuba/solar.h"
 #include "scenedesc/readers.h"
+#include "scenedesc/writer/mitsuba_writer.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -267,6 +269,25 @@ TEST(MitsubaCoating, AbsorptionIsTimesThickness) {
   EXPECT_THROW(
       parse(kCamera + "<bsdf type=\"coating\"><rgb name=\"sigmaA\" value=\"-1 0 0\"/>" + inner, "0.6.0"),
       InputError);
+}
+
+TEST(MitsubaMeasured, NamesItsFile) {
+  const std::string file = testing::TempDir() + "skin.binary";
+  std::ofstream(file) << "a table";
+  const SceneDesc scene = parse(
+      kCamera + "<bsdf type=\"merl\"><string name=\"filename\" value=\"skin.binary\"/></bsdf>", "0.6.0");
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto& table = std::get<MeasuredDesc>(scene.bsdfs.at(0).kind);
+  EXPECT_EQ(table.file.name, file);
+  EXPECT_FALSE(table.file.missing);
+  EXPECT_NE(describe(scene).find("merl filename " + file), std::string::npos);
+  const auto files = files_of(scene);
+  EXPECT_NE(std::find(files.begin(), files.end(), file), files.end());
+  const WrittenScene written = write_mitsuba(scene, testing::TempDir() + "out.xml");
+  ASSERT_EQ(written.warnings.size(), 1u);
+  EXPECT_NE(written.warnings[0].what.find("MERL"), std::string::npos);
+  EXPECT_NE(written.xml.find("\"diffuse\""), std::string::npos);
+  EXPECT_THROW(parse(kCamera + "<bsdf type=\"merl\"/>"), InputError);
 }
 
 // Fresnel reflectance at normal incidence: silver above 0.9 in every channel, gold and copper red before

@@ -21,6 +21,7 @@ const std::map<std::string, Builder>& builders() {
       {"principled", principled},
       {"principledthin", principled_thin},
       {"difftrans", plain_bsdf<DiffuseTransmitterDesc>},
+      {"merl", plain_bsdf<MeasuredDesc>},
       {"hair", hair},
       {"kajiyakay", plain_bsdf<HairDesc>},  // only Lumirank has it
       {"coating", coating},

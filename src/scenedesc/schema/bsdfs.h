@@ -205,6 +205,15 @@ struct DiffuseTransmitterDesc {
                       Field{"transmittance", &DiffuseTransmitterDesc::transmittance, Role::reflectance}};
   }
 };
+// A measured isotropic BRDF: a table in the format of the MERL database (Matusik et al. 2003).
+struct MeasuredDesc {
+  FileInput file;
+
+  static constexpr BsdfInfo kInfo{"merl", "measured BRDFs of the MERL database", "diffuse, gray 0.5"};
+  static constexpr auto fields() {
+    return std::tuple{Field{"filename", &MeasuredDesc::file, Role::file, Range::any, "BRDF table"}};
+  }
+};
 // A dielectric layer over the nested BSDF, without scattering in it; smooth if alpha_u and alpha_v are the
 // constant 0. Mitsuba 0.6's "coating" and "roughcoating", pbrt's coateddiffuse and coatedconductor (over a
 // diffuse or conductor BSDF whose eta and k are relative to the layer), glTF's clear coat (`weight`).
@@ -301,10 +310,11 @@ struct MixtureDesc {  // Σ weight_k · bsdf_k; "blendbsdf" has two entries and 
   static constexpr BsdfInfo kInfo{"mixturebsdf"};
 };
 
-using BsdfKind = std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc,
-                              ThinDielectricDesc, PlasticDesc, PhongDesc, WardDesc, PrincipledDesc,
-                              PrincipledThinDesc, DiffuseTransmitterDesc, CoatingDesc, SheenDesc, HairDesc,
-                              MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>;
+using BsdfKind =
+    std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc,
+                 ThinDielectricDesc, PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, PrincipledThinDesc,
+                 DiffuseTransmitterDesc, MeasuredDesc, CoatingDesc, SheenDesc, HairDesc, MaskDesc,
+                 TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>;
 
 struct BsdfDesc {
   std::string id;
