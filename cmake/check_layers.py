@@ -30,6 +30,21 @@ ROOMS = {
     "api": ["study"],
 }
 
+# Folders of a room from the bottom up, as far as they have an order: none includes one further up, nor one beside it.
+FOLDERS = {
+    "scenedesc": [["schema"], ["data"], ["meshes", "ies"], ["mitsuba", "pbrt", "gltf"], ["writer"], ["."]],
+}
+
+
+def out_of_order(room, path, name):
+    """Whether a file includes a folder of its own room that does not lie below its own."""
+    def rank(parts):
+        folder = parts[0] if len(parts) > 1 else "."
+        return folder, next(i for i, row in enumerate(FOLDERS[room]) if folder in row)
+    own, own_rank = rank(path.relative_to(ROOT / "src" / room).parts)
+    other, other_rank = rank(pathlib.PurePosixPath(name).parts[1:])
+    return own != other and other_rank >= own_rank
+
 
 def reachable(room):
     seen, todo = set(), [room]
@@ -55,6 +70,8 @@ def main():
                 top = name.split("/")[0]
                 if quote == '"' and top in ROOMS and top not in allowed:
                     errors.append(f"{path.relative_to(ROOT)}: {room} may not include {name}")
+                elif quote == '"' and top == room and room in FOLDERS and out_of_order(room, path, name):
+                    errors.append(f"{path.relative_to(ROOT)}: may not include {name}, which is not below it")
     for path in sorted((ROOT / "include").rglob("*.h")):
         for quote, name in INCLUDE.findall(path.read_text()):
             if quote == '"' and not name.startswith("lumirank/"):

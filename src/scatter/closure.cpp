@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "scatter/lobe.h"
+#include "scatter/lobes/family.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -63,7 +64,7 @@ bool follow_delta(const Closure& c, const Incident& in, const Lobe& lobe, Vec3f 
   if (!in.valid || !delta_direction(view, in.wo, local, out.coefficient)) return false;
   local.z *= in.side;
   out.wi = c.frame.to_world(local);
-  out.eta = lobe.kind == LobeKind::delta_transmit ? view.eta : 1.0f;
+  out.eta = family_of(lobe.kind).refracts ? view.eta : 1.0f;
   return sides_agree(c, out.wi, local.z);
 }
 
@@ -112,14 +113,15 @@ float density_of_all(const Closure& c, const Incident& in, Vec3f wi, const Selec
 float crossed_eta(const Closure& c, const Incident& in, Vec3f wi) {
   if (wi.z > 0 || in.fibre) return 1;
   for (int k = 0; k < c.count; ++k)
-    if (c.lobes[k].kind == LobeKind::microfacet_transmit) return view_from(c.lobes[k], in.side > 0).eta;
+    if (!is_delta(c.lobes[k].kind) && family_of(c.lobes[k].kind).refracts)
+      return view_from(c.lobes[k], in.side > 0).eta;
   return 1;
 }
 
 }  // namespace
 
 void Closure::add(const Lobe& lobe) {
-  if (is_black(lobe.color) && !(lobe.kind == LobeKind::oren_nayar && !is_black(lobe.conductor_eta))) return;
+  if (is_black(lobe.color) && !(family_of(lobe.kind).two_colors && !is_black(lobe.conductor_eta))) return;
   if (count == kMaxLobes) throw InternalError("a closure has more lobes than kMaxLobes");
   lobes[count++] = lobe;
 }
@@ -162,25 +164,6 @@ Rgb Closure::diffuse_color() const {
   for (int k = 0; k < count; ++k)
     if (lobes[k].kind == LobeKind::diffuse) return lobes[k].color;
   return {};
-}
-
-float lobe_roughness(const Lobe& lobe) {
-  // Refraction into the open widens what lies under a coat.
-  const float wider = lobe.coat ? lobe.coat.bend : 1.0f;
-  switch (lobe.kind) {
-    case LobeKind::microfacet_reflect:
-    case LobeKind::microfacet_transmit:
-    case LobeKind::thin_transmit:
-    case LobeKind::ward:
-      return std::min({1.0f, wider * lobe.alpha_u, wider * lobe.alpha_v});
-    case LobeKind::clearcoat:
-      return std::min(1.0f, wider * lobe.alpha_u);
-    case LobeKind::phong:
-    case LobeKind::hair_specular:
-      return std::min(1.0f, wider * std::sqrt(2 / (lobe.alpha_u + 2)));
-    default:
-      return is_delta(lobe.kind) ? 0.0f : 1.0f;
-  }
 }
 
 float Closure::roughness() const {

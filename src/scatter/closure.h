@@ -22,48 +22,74 @@ namespace lumirank::scatter {
 // A lobe acts alike on both sides of the surface: a one-sided material makes no lobes where wo is on its
 // back. Formulas give f (without the cosine of wi); cos_o, cos_i > 0 are the cosines of wo and wi with
 // frame.n, m = normalize(wo + wi).
-enum class LobeKind : std::uint8_t {
-  // Smooth in direction:
-  diffuse,     // color/π
-  oren_nayar,  // alpha_u = σ (radians); color = ρ, conductor_eta = ρ² (interreflection); see oren_nayar.cpp
-  interfaced_diffuse,  // plastic's base: color/π · T(cos_i) · T(cos_o), T = interface_transmittance() in
-                       // interface.h: six
-  // coefficients in conductor_eta and conductor_k, and eta. color has ρ/(eta²·(1 - internal
-  // reflectance[·ρ])) multiplied in; alpha_v = 2∫T(μ)μ dμ (for the albedo only)
-  microfacet_reflect,   // color · F(wo·m) · D(m) · G1(wo) · G1(wi) / (4 cos_o cos_i), D and G1 as in
-                        // microfacet.h with
-                        // alpha_u, alpha_v; F by `fresnel`
-  microfacet_transmit,  // rough dielectric's refraction (radiance from wi to wo), see microfacet_lobes.cpp
-  phong,                // color · (n+2)/(2π) · cosⁿ(angle to the mirror direction), alpha_u = exponent
-  ward,                 // color, alpha_u, alpha_v; variant 0 ward, 1 ward-duer, 2 balanced; see ward.cpp
-  sheen,                // Disney's: color · (1 - wi·m)⁵
-  charlie_sheen,        // cloth, alpha_u = α; see charlie_sheen.h
-  disney_diffuse,       // Disney's with retro-reflection; alpha_u = roughness, extra = flatness; see
-                        // disney_lobes.cpp
-  clearcoat,            // Disney's: color · F · D · G with GTR1 of width alpha_u; see disney_lobes.cpp
-  // Through thin sheets, to the other side and unbent; eta is that of the sheet from either side:
-  diffuse_transmit,  // color/π
-  thin_transmit,     // microfacet_reflect with wi mirrored to wo's side and 1 - F instead of F
-  // Of a fibre along frame.s, whatever the side; stands with no other smooth lobes. See hair.cpp and
-  // Closure::is_fibre():
-  hair_diffuse,   // color/π²
-  hair_specular,  // Kajiya and Kay's, normalised; alpha_u = exponent, alpha_v = hair_specular_scale()
-  // Delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations() meet them:
-  delta_reflect,   // color · F by `fresnel`; variant kThinSlab: 2F/(1 + F)
-  delta_transmit,  // color · (1 - F), refracts by eta
-  delta_pass,  // goes straight on: null surfaces, cut-outs: color; variant kThinSlab: color · (1 - 2F/(1 +
-               // F))
+//
+// A family of lobes is a file in lobes/ and a line here: its name, and how it stands to the surface.
+enum class LobeSort : std::uint8_t {
+  reflects,        // smooth in direction, on wo's side
+  shines_through,  // smooth, to the other side
+  fibre,           // smooth, of a fibre along frame.s whatever the side; stands with no other smooth lobes
+  delta_reflects,  // delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations()
+                   // meet them
+  delta_through,
 };
-inline bool is_delta(LobeKind kind) { return kind >= LobeKind::delta_reflect; }
-inline bool is_hair(LobeKind kind) {
-  return kind == LobeKind::hair_diffuse || kind == LobeKind::hair_specular;
-}
+// clang-format off
+#define LUMIRANK_LOBE_KINDS(KIND)                                                                               \
+  /* color/π */                                                                                                 \
+  KIND(diffuse, reflects)                                                                                       \
+  /* alpha_u = σ (radians); color = ρ, conductor_eta = ρ² (interreflection) */                                  \
+  KIND(oren_nayar, reflects)                                                                                    \
+  /* Plastic's base: color/π · T(cos_i) · T(cos_o), T = interface_transmittance() in interface.h: six           \
+     coefficients in conductor_eta and conductor_k, and eta. color has                                          \
+     ρ/(eta²·(1 - internal reflectance[·ρ])) multiplied in; alpha_v = 2∫T(μ)μ dμ (for the albedo only) */       \
+  KIND(interfaced_diffuse, reflects)                                                                            \
+  /* color · F(wo·m) · D(m) · G1(wo) · G1(wi) / (4 cos_o cos_i), D and G1 as in microfacet.h with alpha_u,      \
+     alpha_v; F by `fresnel` */                                                                                 \
+  KIND(microfacet_reflect, reflects)                                                                            \
+  /* Rough dielectric's refraction (radiance from wi to wo) */                                                  \
+  KIND(microfacet_transmit, shines_through)                                                                     \
+  /* color · (n+2)/(2π) · cosⁿ(angle to the mirror direction), alpha_u = exponent */                            \
+  KIND(phong, reflects)                                                                                         \
+  /* color, alpha_u, alpha_v; variant 0 ward, 1 ward-duer, 2 balanced */                                        \
+  KIND(ward, reflects)                                                                                          \
+  /* Disney's: color · (1 - wi·m)⁵ */                                                                           \
+  KIND(sheen, reflects)                                                                                         \
+  /* Cloth, alpha_u = α */                                                                                      \
+  KIND(charlie_sheen, reflects)                                                                                 \
+  /* Disney's with retro-reflection; alpha_u = roughness, extra = flatness */                                   \
+  KIND(disney_diffuse, reflects)                                                                                \
+  /* Disney's: color · F · D · G with GTR1 of width alpha_u */                                                  \
+  KIND(clearcoat, reflects)                                                                                     \
+  /* A table of measurements: color · f; alpha_u is the width of what is drawn */                               \
+  KIND(measured, reflects)                                                                                      \
+  /* Through thin sheets, unbent; eta is that of the sheet from either side: color/π */                         \
+  KIND(diffuse_transmit, shines_through)                                                                        \
+  /* ... and microfacet_reflect with wi mirrored to wo's side and 1 - F instead of F */                         \
+  KIND(thin_transmit, shines_through)                                                                           \
+  /* color/π² */                                                                                                \
+  KIND(hair_diffuse, fibre)                                                                                     \
+  /* Kajiya and Kay's, normalised; alpha_u = exponent, alpha_v = hair_specular_scale() */                       \
+  KIND(hair_specular, fibre)                                                                                    \
+  /* color · F by `fresnel`; variant kThinSlab: 2F/(1 + F) */                                                   \
+  KIND(delta_reflect, delta_reflects)                                                                           \
+  /* color · (1 - F), refracts by eta */                                                                        \
+  KIND(delta_transmit, delta_through)                                                                           \
+  /* Goes straight on: null surfaces, cut-outs: color; variant kThinSlab: color · (1 - 2F/(1 + F)) */           \
+  KIND(delta_pass, delta_through)
+// clang-format on
 
-// Smooth lobes that send light to the other side.
-inline bool shines_through(LobeKind kind) {
-  return kind == LobeKind::microfacet_transmit || kind == LobeKind::diffuse_transmit ||
-         kind == LobeKind::thin_transmit;
-}
+#define LUMIRANK_LOBE_NAME(name, sort) name,
+enum class LobeKind : std::uint8_t { LUMIRANK_LOBE_KINDS(LUMIRANK_LOBE_NAME) };
+#undef LUMIRANK_LOBE_NAME
+
+#define LUMIRANK_LOBE_SORT(name, sort) LobeSort::sort,
+inline constexpr LobeSort kLobeSorts[] = {LUMIRANK_LOBE_KINDS(LUMIRANK_LOBE_SORT)};
+#undef LUMIRANK_LOBE_SORT
+inline constexpr int kLobeKinds = sizeof kLobeSorts / sizeof kLobeSorts[0];
+
+inline LobeSort sort_of(LobeKind kind) { return kLobeSorts[static_cast<int>(kind)]; }
+inline bool is_delta(LobeKind kind) { return sort_of(kind) >= LobeSort::delta_reflects; }
+inline bool is_hair(LobeKind kind) { return sort_of(kind) == LobeSort::fibre; }
+inline bool shines_through(LobeKind kind) { return sort_of(kind) == LobeSort::shines_through; }
 
 enum class FresnelKind : std::uint8_t { none, dielectric, conductor, schlick };
 enum class NormalDistribution : std::uint8_t { beckmann, ggx };
@@ -95,7 +121,10 @@ struct Veil {
   friend bool operator==(const Veil&, const Veil&) = default;
 };
 
-// Plain data; which fields mean something depends on `kind`. 112 bytes.
+// What a family keeps per material beyond numbers. Each family knows its own.
+struct LobeTable {};
+
+// Plain data; which fields mean something depends on `kind`. 120 bytes.
 struct Lobe {
   LobeKind kind = LobeKind::diffuse;
   FresnelKind fresnel = FresnelKind::none;
@@ -108,6 +137,8 @@ struct Lobe {
   float extra = 0;                       // disney_diffuse: flatness
   Coat coat;                             // over this lobe, if any
   Veil veil;                             // the same; between the lobe and the coat
+  const LobeTable* table =
+      nullptr;  // of measured kinds: what their material holds, which outlives the closure
 };
 
 inline constexpr int kMaxLobes = 8;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "scatter/interface.h"
 #include "scatter/lobe.h"
+#include "scatter/lobes/family.h"
 #include "scatter/microfacet.h"
 
 namespace lumirank::scatter {
@@ -10,10 +11,12 @@ namespace {
 
 // Whether the lobe's index is read from wo's side, so that turning the frame inverts it.
 bool index_has_a_side(const Lobe& lobe) {
-  const bool reflects = lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::delta_reflect;
-  if (reflects) return lobe.fresnel == FresnelKind::dielectric && lobe.variant != kThinSlab;
-  return lobe.kind == LobeKind::microfacet_transmit || lobe.kind == LobeKind::delta_transmit;
+  const LobeFamily& family = family_of(lobe.kind);
+  if (family.fresnel) return lobe.fresnel == FresnelKind::dielectric && lobe.variant != kThinSlab;
+  return family.refracts;
 }
+
+}  // namespace
 
 Lobe lobe_of(LobeKind kind, Rgb color) {
   Lobe lobe;
@@ -22,14 +25,13 @@ Lobe lobe_of(LobeKind kind, Rgb color) {
   return lobe;
 }
 
-}  // namespace
-
 void ClosureBuilder::add(int material, const SurfacePoint& at, float weight) {
   if (!(weight > 0)) return;
   if (material < 0 || static_cast<std::size_t>(material) >= set_.materials.size())
     throw InternalError("material index " + std::to_string(material) + " of " +
                         std::to_string(set_.materials.size()));
-  std::visit([&](const auto& m) { leaf(m, at, weight); }, set_.materials[static_cast<std::size_t>(material)]);
+  std::visit([&](const auto& m) { add_lobes(m, *this, at, weight); },
+             set_.materials[static_cast<std::size_t>(material)]);
 }
 
 Closure ClosureBuilder::finish(const SurfacePoint& at) {
@@ -50,7 +52,7 @@ void ClosureBuilder::use_frame(const SurfacePoint& at, float weight) {
 void ClosureBuilder::push(Lobe lobe, const SurfacePoint& at, float weight) {
   if (lobe.kind != LobeKind::delta_pass || lobe.variant == kThinSlab) use_frame(at, weight);
   lobe.color *= weight;
-  if (lobe.kind == LobeKind::oren_nayar) lobe.conductor_eta *= weight;
+  if (family_of(lobe.kind).two_colors) lobe.conductor_eta *= weight;
   if (index_has_a_side(lobe) && dot(at.ng, out_.ng) < 0) lobe.eta = 1 / lobe.eta;
   if (absorb(out_, lobe)) return;
   if (out_.count == kMaxLobes)
@@ -59,83 +61,83 @@ void ClosureBuilder::push(Lobe lobe, const SurfacePoint& at, float weight) {
     out_.add(lobe);
 }
 
-void ClosureBuilder::leaf(const NullMaterial&, const SurfacePoint& at, float weight) {
-  push(lobe_of(LobeKind::delta_pass, Rgb(1)), at, weight);
+void add_lobes(const NullMaterial&, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  out.push(lobe_of(LobeKind::delta_pass, Rgb(1)), at, weight);
 }
 
-void ClosureBuilder::leaf(const DiffuseMaterial& m, const SurfacePoint& at, float weight) {
-  if (front(at))
-    push(lobe_of(LobeKind::diffuse, reflectance(set_.textures, m.reflectance, at.uv)), at, weight);
+void add_lobes(const DiffuseMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (out.front(at))
+    out.push(lobe_of(LobeKind::diffuse, reflectance(out.textures(), m.reflectance, at.uv)), at, weight);
 }
 
-void ClosureBuilder::leaf(const RoughDiffuseMaterial& m, const SurfacePoint& at, float weight) {
-  if (!front(at)) return;
-  const Rgb rho = reflectance(set_.textures, m.reflectance, at.uv);
+void add_lobes(const RoughDiffuseMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (!out.front(at)) return;
+  const Rgb rho = reflectance(out.textures(), m.reflectance, at.uv);
   Lobe lobe = lobe_of(LobeKind::oren_nayar, rho);
   lobe.conductor_eta = rho * rho;
   // The Gaussian slope width α of a Beckmann surface is √2 times the standard deviation of its slopes.
-  lobe.alpha_u = lobe.alpha_v = std::max(0.0f, number(set_.textures, m.alpha, at.uv)) * 0.70710678f;
-  push(lobe, at, weight);
+  lobe.alpha_u = lobe.alpha_v = std::max(0.0f, number(out.textures(), m.alpha, at.uv)) * 0.70710678f;
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const ConductorMaterial& m, const SurfacePoint& at, float weight) {
-  if (!front(at)) return;
+void add_lobes(const ConductorMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (!out.front(at)) return;
   Lobe lobe = lobe_of(m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect,
-                      reflectance(set_.textures, m.specular_reflectance, at.uv));
+                      reflectance(out.textures(), m.specular_reflectance, at.uv));
   lobe.fresnel = FresnelKind::conductor;
   lobe.conductor_eta = m.eta, lobe.conductor_k = m.k;
   if (!m.smooth) {
     lobe.distribution = m.distribution;
-    lobe.alpha_u = rough_alpha(set_.textures, m.alpha_u, at.uv);
-    lobe.alpha_v = rough_alpha(set_.textures, m.alpha_v, at.uv);
+    lobe.alpha_u = rough_alpha(out.textures(), m.alpha_u, at.uv);
+    lobe.alpha_v = rough_alpha(out.textures(), m.alpha_v, at.uv);
   }
-  push(lobe, at, weight);
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const DielectricMaterial& m, const SurfacePoint& at, float weight) {
-  const Rgb reflected = reflectance(set_.textures, m.specular_reflectance, at.uv);
-  const Rgb transmitted = reflectance(set_.textures, m.specular_transmittance, at.uv);
+void add_lobes(const DielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const Rgb reflected = reflectance(out.textures(), m.specular_reflectance, at.uv);
+  const Rgb transmitted = reflectance(out.textures(), m.specular_transmittance, at.uv);
   Lobe lobe = lobe_of(m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect, reflected);
   lobe.fresnel = FresnelKind::dielectric;
   lobe.eta = m.eta;
   if (!m.smooth) {
     // A rough interface between equal indices bends nothing, and the microfacet formula has no limit there.
-    if (std::abs(m.eta - 1) < 1e-3f) return push(lobe_of(LobeKind::delta_pass, transmitted), at, weight);
+    if (std::abs(m.eta - 1) < 1e-3f) return out.push(lobe_of(LobeKind::delta_pass, transmitted), at, weight);
     lobe.distribution = m.distribution;
-    lobe.alpha_u = rough_alpha(set_.textures, m.alpha_u, at.uv);
-    lobe.alpha_v = rough_alpha(set_.textures, m.alpha_v, at.uv);
+    lobe.alpha_u = rough_alpha(out.textures(), m.alpha_u, at.uv);
+    lobe.alpha_v = rough_alpha(out.textures(), m.alpha_v, at.uv);
   }
-  push(lobe, at, weight);
+  out.push(lobe, at, weight);
   lobe.kind = m.smooth ? LobeKind::delta_transmit : LobeKind::microfacet_transmit;
   lobe.color = transmitted;
-  push(lobe, at, weight);
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const ThinDielectricMaterial& m, const SurfacePoint& at, float weight) {
-  Lobe lobe = lobe_of(LobeKind::delta_reflect, reflectance(set_.textures, m.specular_reflectance, at.uv));
+void add_lobes(const ThinDielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  Lobe lobe = lobe_of(LobeKind::delta_reflect, reflectance(out.textures(), m.specular_reflectance, at.uv));
   lobe.fresnel = FresnelKind::dielectric;
   lobe.variant = kThinSlab;
   lobe.eta = m.eta;
-  push(lobe, at, weight);
+  out.push(lobe, at, weight);
   lobe.kind = LobeKind::delta_pass;
-  lobe.color = reflectance(set_.textures, m.specular_transmittance, at.uv);
-  push(lobe, at, weight);
+  lobe.color = reflectance(out.textures(), m.specular_transmittance, at.uv);
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const PlasticMaterial& m, const SurfacePoint& at, float weight) {
-  if (!front(at)) return;
-  const float alpha = m.smooth ? 0.0f : rough_alpha(set_.textures, m.alpha, at.uv);
+void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (!out.front(at)) return;
+  const float alpha = m.smooth ? 0.0f : rough_alpha(out.textures(), m.alpha, at.uv);
   Lobe coat = lobe_of(m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect,
-                      reflectance(set_.textures, m.specular_reflectance, at.uv));
+                      reflectance(out.textures(), m.specular_reflectance, at.uv));
   coat.fresnel = FresnelKind::dielectric;
   coat.distribution = m.distribution;
   coat.alpha_u = coat.alpha_v = alpha;
   coat.eta = m.eta;
-  push(coat, at, weight);
-  const Rgb base = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
-  push(m.lossless ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
-                  : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear),
-       at, weight);
+  out.push(coat, at, weight);
+  const Rgb base = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
+  out.push(m.lossless ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
+                      : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear),
+           at, weight);
 }
 
 namespace {
@@ -149,73 +151,74 @@ void conserve(Rgb& diffuse, Rgb& specular) {
 
 }  // namespace
 
-void ClosureBuilder::leaf(const PhongMaterial& m, const SurfacePoint& at, float weight) {
-  if (!front(at)) return;
-  Rgb diffuse = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
-  Rgb specular = reflectance(set_.textures, m.specular_reflectance, at.uv);
+void add_lobes(const PhongMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (!out.front(at)) return;
+  Rgb diffuse = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
+  Rgb specular = reflectance(out.textures(), m.specular_reflectance, at.uv);
   conserve(diffuse, specular);
-  push(lobe_of(LobeKind::diffuse, diffuse), at, weight);
+  out.push(lobe_of(LobeKind::diffuse, diffuse), at, weight);
   Lobe lobe = lobe_of(LobeKind::phong, specular);
-  lobe.alpha_u = std::clamp(number(set_.textures, m.exponent, at.uv), 0.0f, 1e6f);
-  push(lobe, at, weight);
+  lobe.alpha_u = std::clamp(number(out.textures(), m.exponent, at.uv), 0.0f, 1e6f);
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const WardMaterial& m, const SurfacePoint& at, float weight) {
-  if (!front(at)) return;
-  Rgb diffuse = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
-  Rgb specular = reflectance(set_.textures, m.specular_reflectance, at.uv);
+void add_lobes(const WardMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (!out.front(at)) return;
+  Rgb diffuse = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
+  Rgb specular = reflectance(out.textures(), m.specular_reflectance, at.uv);
   conserve(diffuse, specular);
-  push(lobe_of(LobeKind::diffuse, diffuse), at, weight);
+  out.push(lobe_of(LobeKind::diffuse, diffuse), at, weight);
   Lobe lobe = lobe_of(LobeKind::ward, specular);
   lobe.variant = static_cast<std::uint8_t>(m.variant);
-  lobe.alpha_u = rough_alpha(set_.textures, m.alpha_u, at.uv);
-  lobe.alpha_v = rough_alpha(set_.textures, m.alpha_v, at.uv);
-  push(lobe, at, weight);
+  lobe.alpha_u = rough_alpha(out.textures(), m.alpha_u, at.uv);
+  lobe.alpha_v = rough_alpha(out.textures(), m.alpha_v, at.uv);
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const DiffuseTransmitterMaterial& m, const SurfacePoint& at, float weight) {
-  Rgb reflected = reflectance(set_.textures, m.reflectance, at.uv);
-  Rgb transmitted = reflectance(set_.textures, m.transmittance, at.uv);
+void add_lobes(const DiffuseTransmitterMaterial& m, ClosureBuilder& out, const SurfacePoint& at,
+               float weight) {
+  Rgb reflected = reflectance(out.textures(), m.reflectance, at.uv);
+  Rgb transmitted = reflectance(out.textures(), m.transmittance, at.uv);
   conserve(reflected, transmitted);
-  push(lobe_of(LobeKind::diffuse, reflected), at, weight);
-  push(lobe_of(LobeKind::diffuse_transmit, transmitted), at, weight);
+  out.push(lobe_of(LobeKind::diffuse, reflected), at, weight);
+  out.push(lobe_of(LobeKind::diffuse_transmit, transmitted), at, weight);
 }
 
-void ClosureBuilder::leaf(const HairMaterial& m, const SurfacePoint& at, float weight) {
-  Rgb diffuse = reflectance(set_.textures, m.diffuse_reflectance, at.uv);
-  Rgb specular = reflectance(set_.textures, m.specular_reflectance, at.uv);
+void add_lobes(const HairMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  Rgb diffuse = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
+  Rgb specular = reflectance(out.textures(), m.specular_reflectance, at.uv);
   conserve(diffuse, specular);
-  push(lobe_of(LobeKind::hair_diffuse, diffuse), at, weight);
+  out.push(lobe_of(LobeKind::hair_diffuse, diffuse), at, weight);
   Lobe lobe = lobe_of(LobeKind::hair_specular, specular);
-  lobe.alpha_u = std::clamp(number(set_.textures, m.exponent, at.uv), 0.0f, 1e5f);
+  lobe.alpha_u = std::clamp(number(out.textures(), m.exponent, at.uv), 0.0f, 1e5f);
   lobe.alpha_v = hair_specular_scale(lobe.alpha_u);
-  push(lobe, at, weight);
+  out.push(lobe, at, weight);
 }
 
-void ClosureBuilder::leaf(const MaskMaterial& m, const SurfacePoint& at, float weight) {
-  const float opacity = fraction(set_.textures, m.opacity, at.uv);
-  add(m.nested, at, weight * opacity);
-  if (opacity < 1) push(lobe_of(LobeKind::delta_pass, Rgb(1)), at, weight * (1 - opacity));
+void add_lobes(const MaskMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const float opacity = fraction(out.textures(), m.opacity, at.uv);
+  out.add(m.nested, at, weight * opacity);
+  if (opacity < 1) out.push(lobe_of(LobeKind::delta_pass, Rgb(1)), at, weight * (1 - opacity));
 }
 
-void ClosureBuilder::leaf(const TwoSidedMaterial& m, const SurfacePoint& at, float weight) {
-  if (front(at))
-    add(m.front, at, weight);
+void add_lobes(const TwoSidedMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  if (out.front(at))
+    out.add(m.front, at, weight);
   else
-    add(m.back, turned(at), weight);
+    out.add(m.back, turned(at), weight);
 }
 
-void ClosureBuilder::leaf(const BumpMaterial& m, const SurfacePoint& at, float weight) {
-  add(m.nested, bumped(set_.textures, m, at), weight);
+void add_lobes(const BumpMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  out.add(m.nested, bumped(out.textures(), m, at), weight);
 }
 
-void ClosureBuilder::leaf(const NormalMapMaterial& m, const SurfacePoint& at, float weight) {
-  add(m.nested, normal_mapped(set_.textures, m, at), weight);
+void add_lobes(const NormalMapMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  out.add(m.nested, normal_mapped(out.textures(), m, at), weight);
 }
 
-void ClosureBuilder::leaf(const MixtureMaterial& m, const SurfacePoint& at, float weight) {
-  const std::vector<float> weights = mixture_weights(set_.textures, m, at.uv);
-  for (std::size_t k = 0; k < weights.size(); ++k) add(m.parts[k].nested, at, weight * weights[k]);
+void add_lobes(const MixtureMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const std::vector<float> weights = mixture_weights(out.textures(), m, at.uv);
+  for (std::size_t k = 0; k < weights.size(); ++k) out.add(m.parts[k].nested, at, weight * weights[k]);
 }
 
 }  // namespace lumirank::scatter

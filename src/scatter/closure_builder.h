@@ -14,37 +14,23 @@ class ClosureBuilder {
   void add(int material, const SurfacePoint& at, float weight);
   Closure finish(const SurfacePoint& at);
 
- private:
-  void leaf(const DiffuseMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const NullMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const RoughDiffuseMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const ConductorMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const DielectricMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const ThinDielectricMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const PlasticMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const PhongMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const WardMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const PrincipledMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const PrincipledThinMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const DiffuseTransmitterMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const CoatingMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const SheenMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const HairMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const MaskMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const TwoSidedMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const BumpMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const NormalMapMaterial& m, const SurfacePoint& at, float weight);
-  void leaf(const MixtureMaterial& m, const SurfacePoint& at, float weight);
-
+  // For add_lobes() of the materials (material.h).
+  const TextureSet& textures() const { return set_.textures; }
   bool front(const SurfacePoint& at) const { return dot(wo_, at.ng) > 0; }
-  void use_frame(const SurfacePoint& at, float weight);
   void push(Lobe lobe, const SurfacePoint& at, float weight);
+  // A builder of the same, for what is nested.
+  ClosureBuilder inside() const { return ClosureBuilder(set_, wo_); }
+
+ private:
+  void use_frame(const SurfacePoint& at, float weight);
 
   const MaterialSet& set_;
   Vec3f wo_;
   Closure out_;
   float frame_weight_ = 0;
 };
+
+Lobe lobe_of(LobeKind kind, Rgb color);
 
 // Inputs with their textures looked up. Reflectances are held within [0, 1], so that no surface makes energy;
 // what is not a number counts as 0.

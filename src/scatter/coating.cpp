@@ -14,11 +14,11 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "scatter/albedo_table.h"
-#include "scatter/charlie_sheen.h"
 #include "scatter/closure_builder.h"
 #include "scatter/coat.h"
 #include "scatter/interface.h"
+#include "scatter/lobes/charlie_sheen.h"
+#include "scatter/lobes/family.h"
 #include "scatter/microfacet.h"
 
 namespace lumirank::scatter {
@@ -94,42 +94,18 @@ Rgb glossy_return(const Layer& layer, NormalDistribution distribution, float alp
   return all > 0 ? sum * (weight / all) : Rgb(0);
 }
 
-float phong_alpha(float exponent) { return std::sqrt(2 / (exponent + 2)); }
-
-// Of a glossy lobe.
-float round_alpha(const Lobe& lobe) {
-  return lobe.kind == LobeKind::phong ? phong_alpha(lobe.alpha_u) : std::sqrt(lobe.alpha_u * lobe.alpha_v);
-}
-
 // Directions that a rough layer bends on the way in and out: the variance of slopes that it adds to facets
 // underneath, as in Belcour 2018. A facet that tilts by δ turns the direction inside by (1 -
 // cos/(eta·cos'))·δ, so more at a slant: taken at the mean cosine.
-float widened(const Layer& layer, float alpha) {
+Widening widening(const Layer& layer) {
   constexpr float cosine = 2.0f / 3;
   const float turned = 1 - cosine / (layer.coat.bend * coat_cosine(layer.coat, cosine));
-  const float scattered = turned * layer.alpha;
-  return std::sqrt(alpha * alpha + 0.5f * scattered * scattered);
+  return {layer.distribution, turned * layer.alpha};
 }
 
 void widen(const Layer& layer, Lobe& lobe) {
-  if (!(layer.alpha > 0)) return;
-  switch (lobe.kind) {
-    case LobeKind::delta_reflect:
-      if (lobe.variant == kThinSlab) return;
-      lobe.kind = LobeKind::microfacet_reflect;
-      lobe.distribution = layer.distribution;
-      lobe.alpha_u = lobe.alpha_v = std::max(kMinAlpha, widened(layer, 0));
-      return;
-    case LobeKind::microfacet_reflect:
-    case LobeKind::ward:
-      lobe.alpha_u = widened(layer, lobe.alpha_u), lobe.alpha_v = widened(layer, lobe.alpha_v);
-      return;
-    case LobeKind::phong:
-      lobe.alpha_u = std::max(0.0f, 2 / square(widened(layer, phong_alpha(lobe.alpha_u))) - 2);
-      return;
-    default:
-      return;
-  }
+  const auto family_widen = family_of(lobe.kind).widen;
+  if (layer.alpha > 0 && family_widen) family_widen(lobe, widening(layer));
 }
 
 constexpr float kTrapped = 1.5f, kBeyond = 0.7f;
@@ -149,41 +125,18 @@ Base glossy_base(const Layer& layer, Rgb albedo, Rgb slanted, NormalDistribution
   return {albedo, albedo * beyond * (kBeyond * again), kTrapped * mean(albedo) * again * again * sharp};
 }
 
-// What the layer needs to know of a nested lobe.
-Base look_at(const Layer& layer, LobeView view) {
-  const Lobe& lobe = view.lobe;
-  switch (lobe.kind) {
-    case LobeKind::diffuse:
-    case LobeKind::oren_nayar:
-    case LobeKind::disney_diffuse:
-      return {lobe.color, lobe.color * layer.diffuse_return};
-    case LobeKind::charlie_sheen: {
-      const Rgb albedo = charlie_sheen_albedo(lobe, 2.0f / 3);
-      return {albedo, albedo * layer.diffuse_return};
-    }
-    case LobeKind::interfaced_diffuse: {
-      const Rgb albedo = lobe.color * (lobe.alpha_v * lobe.alpha_v);
-      return {albedo, albedo * layer.diffuse_return};
-    }
-    case LobeKind::microfacet_reflect: {
-      Lobe round = lobe;
-      round.alpha_u = round.alpha_v = std::min(1.0f, round_alpha(lobe));
-      const LobeView seen{round, view.eta, view.outside};
-      return glossy_base(layer, microfacet_reflect_albedo(seen, 1), microfacet_reflect_albedo(seen, 0.5f),
-                         lobe.distribution, round.alpha_u);
-    }
-    case LobeKind::ward:
-      return glossy_base(layer, lobe.color, lobe.color, NormalDistribution::beckmann, round_alpha(lobe));
-    case LobeKind::phong:
-      return glossy_base(layer, lobe.color, lobe.color, NormalDistribution::beckmann, round_alpha(lobe));
-    default:
-      // Sheen and clear coat send back next to nothing, and what is transmitted is gone.
-      return {};
-  }
+UnderCoat under_coat(LobeView view) {
+  const auto family_under_coat = family_of(view.lobe.kind).under_coat;
+  return family_under_coat ? family_under_coat(view) : UnderCoat{};
 }
 
-bool is_glossy(LobeKind kind) {
-  return kind == LobeKind::microfacet_reflect || kind == LobeKind::ward || kind == LobeKind::phong;
+// What the layer needs to know of a nested lobe. Sheen and clear coat send back next to nothing, and what is
+// transmitted is gone.
+Base base_of(const Layer& layer, const UnderCoat& lobe) {
+  if (lobe.sort == UnderCoat::Sort::glossy)
+    return glossy_base(layer, lobe.albedo, lobe.slanted, lobe.distribution, lobe.alpha);
+  return lobe.sort == UnderCoat::Sort::diffuse ? Base{lobe.albedo, lobe.albedo * layer.diffuse_return}
+                                               : Base{};
 }
 
 // A Lambertian lobe under the layer; without absorption it is plastic's base, which needs no coat.
@@ -229,26 +182,26 @@ Rgb coating_passage(const TextureSet& textures, const CoatingMaterial& m, const 
   return here.covered > 0 ? coat_passage(here.layer.coat, std::abs(dot(w, at.shading.n))) : Rgb(1);
 }
 
-void ClosureBuilder::leaf(const CoatingMaterial& m, const SurfacePoint& at, float weight) {
-  const LayerHere here = layer_at(set_.textures, m, at);
-  if (here.covered == 0) return add(m.nested, at, weight);
+void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const LayerHere here = layer_at(out.textures(), m, at);
+  if (here.covered == 0) return out.add(m.nested, at, weight);
   const Layer& layer = here.layer;
 
-  ClosureBuilder inner(set_, wo_);
+  ClosureBuilder inner = out.inside();
   inner.add(m.nested, at, 1);
   const Closure nested = inner.finish(at);
   SurfacePoint point = at;
   point.shading = nested.frame, point.ng = nested.ng;
 
-  if (front(at)) {
+  if (out.front(at)) {
     Lobe own;
     own.kind = m.smooth ? LobeKind::delta_reflect : LobeKind::microfacet_reflect;
-    own.color = reflectance(set_.textures, m.specular_reflectance, at.uv) * here.covered;
+    own.color = reflectance(out.textures(), m.specular_reflectance, at.uv) * here.covered;
     own.fresnel = FresnelKind::dielectric;
     own.distribution = m.distribution;
     own.alpha_u = here.alpha_u, own.alpha_v = here.alpha_v;
     own.eta = m.eta;
-    if (m.eta != 1) push(own, point, weight);
+    if (m.eta != 1) out.push(own, point, weight);
   }
 
   Rgb albedo(0), returned(0);
@@ -256,43 +209,43 @@ void ClosureBuilder::leaf(const CoatingMaterial& m, const SurfacePoint& at, floa
     Lobe lobe = nested.lobes[k];
     if (lobe.coat) throw InternalError("a coating over a coating");
     // From behind there is no layer before what is reflected there.
-    if (!front(at) && !transmits(lobe.kind)) {
-      push(lobe, point, weight);
+    if (!out.front(at) && !transmits(lobe.kind)) {
+      out.push(lobe, point, weight);
       continue;
     }
     widen(layer, lobe);
-    Base base = look_at(layer, view_from(lobe, true));
+    const UnderCoat nested_lobe = under_coat(view_from(lobe, true));
+    Base base = base_of(layer, nested_lobe);
     if (lobe.veil) {
       const float left = veil_factor(lobe.veil, 2.0f / 3);
       base.albedo *= left, base.returned *= left, base.trapped *= left;
     }
     albedo += base.albedo, returned += base.returned;
     if (lobe.kind == LobeKind::diffuse && !lobe.veil) {
-      push(diffuse_under(layer, lobe.color), point, weight);
+      out.push(diffuse_under(layer, lobe.color), point, weight);
       continue;
     }
     lobe.coat = layer.coat;
-    if (is_glossy(lobe.kind)) {
+    if (nested_lobe.sort == UnderCoat::Sort::glossy) {
       std::copy(layer.twice, layer.twice + 6, lobe.coat.t);
       lobe.coat.trapped = base.trapped;
       // Normals of GGX have long tails.
-      const bool long_tail =
-          lobe.kind == LobeKind::microfacet_reflect && lobe.distribution == NormalDistribution::ggx;
-      lobe.coat.width = (long_tail ? 1.0f : 0.6f) * round_alpha(lobe) / lobe.coat.bend;
+      const bool long_tail = nested_lobe.distribution == NormalDistribution::ggx;
+      lobe.coat.width = (long_tail ? 1.0f : 0.6f) * nested_lobe.width / lobe.coat.bend;
       for (int c = 0; c < 3; ++c) {
         const float stays = layer.least * std::exp(-2 * layer.coat.depth[c]);
         lobe.color[c] /= 1 - std::min(base.albedo[c], 1.0f) * stays;
       }
     }
-    push(lobe, point, weight);
+    out.push(lobe, point, weight);
   }
-  if (!front(at)) return;
+  if (!out.front(at)) return;
   Rgb again(0);
   for (int c = 0; c < 3; ++c) {
     const float a = std::min(albedo[c], 1.0f);
     again[c] = a * returned[c] / (1 - a * layer.diffuse_return[c]);
   }
-  push(diffuse_under(layer, again), point, weight);
+  out.push(diffuse_under(layer, again), point, weight);
 }
 
 }  // namespace lumirank::scatter

@@ -1,4 +1,5 @@
-// The families of lobes, each as a value / density / draw triple in the local frame. Inside this room only.
+// Lobes as value, density and draw in the local frame, whatever their family (lobes/family.h). Inside this
+// room only.
 //
 // A lobe acts alike on both sides of the surface (one-sidedness is the material's business): the callers
 // mirror directions so that wo.z > 0. Then wi.z > 0 for reflection and wi.z < 0 for transmission. `eta` is
@@ -31,7 +32,7 @@ Rgb lobe_albedo(LobeView view, Vec3f wo);
 // black.
 float lobe_importance(LobeView view, float cos_o);
 inline bool transmits(LobeKind kind) {
-  return shines_through(kind) || kind == LobeKind::delta_transmit || kind == LobeKind::delta_pass;
+  return sort_of(kind) == LobeSort::shines_through || sort_of(kind) == LobeSort::delta_through;
 }
 
 // A delta lobe's single direction (local) and coefficient without radiance scaling. False if there is none
@@ -59,35 +60,7 @@ bool draws_cosine(LobeKind kind);
 // Albedo by a fixed rule of 55 draws.
 Rgb quadrature_albedo(LobeView view, Vec3f wo);
 
-// The families.
-Rgb oren_nayar_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-Rgb microfacet_reflect_value(LobeView view, Vec3f wo, Vec3f wi);
-float microfacet_reflect_pdf(LobeView view, Vec3f wo, Vec3f wi);
-bool microfacet_reflect_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
-Rgb microfacet_transmit_value(LobeView view, Vec3f wo, Vec3f wi);
-float microfacet_transmit_pdf(LobeView view, Vec3f wo, Vec3f wi);
-bool microfacet_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
-Rgb thin_transmit_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-float thin_transmit_pdf(LobeView view, Vec3f wo, Vec3f wi);
-bool thin_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
-Rgb phong_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-float phong_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
-bool phong_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
-Rgb ward_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-float ward_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
-bool ward_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
-Rgb sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-Rgb charlie_sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-Rgb charlie_sheen_albedo(const Lobe& lobe, float cos_o);
-Rgb disney_diffuse_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-Rgb clearcoat_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-float clearcoat_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
-bool clearcoat_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
-// Local x runs along the fibre; wo is not mirrored.
-Rgb hair_diffuse_value(const Lobe& lobe);
-Rgb hair_specular_value(const Lobe& lobe, Vec3f wo, Vec3f wi);
-float hair_specular_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi);
-bool hair_specular_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi);
+// Of fibres: local x runs along them, and wo is not mirrored.
 float hair_specular_scale(float exponent);  // what alpha_v must be
 float fibre_sine(Vec3f w);                  // of the angle between w and the fibre
 

@@ -1,14 +1,15 @@
 // The geometry of bounds: which angles a cone of directions leaves open. What lobes make of them is in
-// lobe_bound_terms.cpp.
+// lobes/, family by family.
 #include "scatter/lobe_bound.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "scatter/charlie_sheen.h"
 #include "scatter/coat.h"
 #include "scatter/lobe.h"
-#include "scatter/lobe_bound_terms.h"
+#include "scatter/lobes/bound_terms.h"
+#include "scatter/lobes/charlie_sheen.h"
+#include "scatter/lobes/family.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -59,7 +60,7 @@ AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, const ConeWidth& wid
     if (tilt.cosine > by.sine)
       r.most_tilt_sin = std::min(1.0f, tilt.sine * by.cosine + tilt.cosine * by.sine);
   }
-  if (t.lobe->kind == LobeKind::phong) {
+  if (family_of(t.lobe->kind).bound_by_mirror) {
     const float off = 2 * std::asin(std::min(1.0f, 0.5f * length(a - n * (2 * t.cos_o) + t.wo)));
     r.cos_mirror = std::cos(std::clamp(off - width.angle - kAngleSlack, 0.0f, kPi));
   }
@@ -82,27 +83,15 @@ AngleRange ring(const LobeTerm& t, float from, float to) {
   return r;
 }
 
-// About how far a lobe reaches from its mirror direction.
-float width_of(const LobeTerm& t) {
-  switch (t.lobe->kind) {
-    case LobeKind::phong:
-      return std::sqrt(2 / (t.lobe->alpha_u + 2));
-    case LobeKind::sheen:
-    case LobeKind::charlie_sheen:
-      return 1;
-    default:
-      return std::clamp(t.widest, 1e-4f, 1.0f);
-  }
-}
-
 // Bounds under a coat: `inside` are the angles there, the cosines those outside.
 Rgb under_coat(const LobeTerm& t, const AngleRange& inside, float cos_hi, Slant slant) {
-  Rgb most = term_bound(t, inside, Slant::none);
+  const auto bound = family_of(t.lobe->kind).bound;
+  Rgb most = bound(t, inside, Slant::none);
   if (slant == Slant::none) return most;
   most *= cos_hi;
   // In a denser layer the cosine inside is the larger one.
   if (t.lobe->coat.bend >= 1) {
-    const Rgb other = term_bound(t, inside, Slant::cosine);
+    const Rgb other = bound(t, inside, Slant::cosine);
     for (int c = 0; c < 3; ++c) most[c] = std::min(most[c], other[c]);
   }
   return most;
@@ -131,6 +120,7 @@ ClosureBound::ClosureBound(std::span<const Lobe> lobes, std::span<const Rgb> col
 }
 
 void ClosureBound::add(const Lobe& lobe, Rgb color, bool adjoint) {
+  const LobeFamily& family = family_of(lobe.kind);
   LobeTerm t;
   t.lobe = &lobe, t.wo = wo_, t.cos_o = cos_o_, t.roughness = lobe_roughness(lobe);
   t.eta = view_from(lobe, outside_).eta;
@@ -138,8 +128,7 @@ void ClosureBound::add(const Lobe& lobe, Rgb color, bool adjoint) {
   // Of a grazing cosine few digits are left.
   Rgb factor(kRounding * (1 + 4e-7f / cos_o_));
   // And what a power makes of a cosine's last digit.
-  if (lobe.kind == LobeKind::phong || lobe.kind == LobeKind::hair_specular)
-    factor *= 1 + 6e-7f * lobe.alpha_u;
+  if (family.power) factor *= 1 + 6e-7f * lobe.alpha_u;
   if (lobe.coat) {
     const Coat& coat = lobe.coat;
     const bool once = transmits(lobe.kind);
@@ -156,11 +145,11 @@ void ClosureBound::add(const Lobe& lobe, Rgb color, bool adjoint) {
   }
   if (lobe.veil) factor *= veil_factor(lobe.veil, t.cos_o);
   // Radiance is that much denser on the far side; see microfacet_transmit_value().
-  if (adjoint && lobe.kind == LobeKind::microfacet_transmit) factor *= t.eta * t.eta;
-  factor *= factor_of_wo(lobe, t.cos_o, t.narrowest);
+  if (adjoint && family.refracts) factor *= t.eta * t.eta;
+  factor *= family.factor_of_wo(lobe, t.cos_o, t.narrowest);
   t.scale = color * factor;
-  if (lobe.kind == LobeKind::microfacet_reflect) t.at_normal = lobe_fresnel({lobe, t.eta, outside_}, 1);
-  if (lobe.kind == LobeKind::oren_nayar) t.at_normal = lobe.conductor_eta * factor;
+  if (family.fresnel) t.at_normal = lobe_fresnel({lobe, t.eta, outside_}, 1);
+  if (family.two_colors) t.at_normal = lobe.conductor_eta * factor;
   if (is_black(t.scale) && is_black(t.at_normal)) return;
   through_ = through_ || shines_through(lobe.kind);
   terms_[static_cast<std::size_t>(count_++)] = t;
@@ -174,19 +163,21 @@ float ClosureBound::crossed(const LobeTerm& t, float cos_lo) const {
 
 Rgb ClosureBound::on_fibre(const LobeTerm& t, const DirectionCone& cone, Slant slant) const {
   const float about = latitude(cone.axis, n_);
-  return fibre_term_bound(t, latitude(wo_, n_), std::max(-kPi / 2, about - cone.angle - kAngleSlack),
-                          std::min(kPi / 2, about + cone.angle + kAngleSlack), slant);
+  return family_of(t.lobe->kind)
+      .fibre_bound(t, latitude(wo_, n_), std::max(-kPi / 2, about - cone.angle - kAngleSlack),
+                   std::min(kPi / 2, about + cone.angle + kAngleSlack), slant);
 }
 
 Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
                             float cos_lo, float cos_hi, Slant slant) const {
   const Coat& coat = t.lobe->coat;
   if (!coat) {
-    if (!needs_cosine_only(t.lobe->kind))
-      return term_bound(t, range_about(n_, t, cone.axis, width, cos_lo, cos_hi), slant);
+    const LobeFamily& family = family_of(t.lobe->kind);
+    if (!family.bound_by_cosine)
+      return family.bound(t, range_about(n_, t, cone.axis, width, cos_lo, cos_hi), slant);
     AngleRange r;
     r.cos_lo = cos_lo, r.cos_hi = cos_hi;
-    return term_bound(t, r, slant);
+    return family.bound(t, r, slant);
   }
   const float inside_lo = coat_cosine(coat, cos_lo), inside_hi = coat_cosine(coat, cos_hi);
   const float cosine = dot(cone.axis, n_);
@@ -215,16 +206,17 @@ Rgb ClosureBound::refracted(const LobeTerm& t, const DirectionCone& cone, float 
     r.tilt_sin = least_tilt.sine, r.tilt_cos = std::max(0.0f, least_tilt.cosine);
   }
   const float least = std::max({len - reach, std::abs(t.eta - 1) - kAngleSlack, 1e-8f});
-  return term_bound(t, r, slant) * (crossed(t, cos_lo) / (least * least));
+  return family_of(t.lobe->kind).bound(t, r, slant) * (crossed(t, cos_lo) / (least * least));
 }
 
 Rgb ClosureBound::through_sheet(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
                                 float cos_lo, float cos_hi, Slant slant) const {
+  const LobeFamily& family = family_of(t.lobe->kind);
   AngleRange r;
   r.cos_lo = cos_lo, r.cos_hi = cos_hi;
-  if (!needs_cosine_only(t.lobe->kind))
+  if (!family.bound_by_cosine)
     r = range_about(n_, t, cone.axis - n_ * (2 * dot(cone.axis, n_)), width, cos_lo, cos_hi);
-  return term_bound(t, r, slant) * crossed(t, cos_lo);
+  return family.bound(t, r, slant) * crossed(t, cos_lo);
 }
 
 Rgb ClosureBound::within(const DirectionCone& cone, Slant slant, float sharp) const {
@@ -243,20 +235,20 @@ Rgb ClosureBound::within(const DirectionCone& cone, Slant slant, float sharp) co
     } else if (!shines_through(t.lobe->kind)) {
       if (before) sum += reflected(t, cone, width, lo, hi, slant);
     } else if (behind) {
-      sum += t.lobe->kind == LobeKind::microfacet_transmit
-                 ? refracted(t, cone, behind_lo, behind_hi, slant)
-                 : through_sheet(t, cone, width, behind_lo, behind_hi, slant);
+      sum += family_of(t.lobe->kind).refracts ? refracted(t, cone, behind_lo, behind_hi, slant)
+                                              : through_sheet(t, cone, width, behind_lo, behind_hi, slant);
     }
   }
   return sum;
 }
 
 Rgb ClosureBound::in_rings(const LobeTerm& t, Slant slant) const {
+  const LobeFamily& family = family_of(t.lobe->kind);
   const Coat& coat = t.lobe->coat;
   const bool within = coat && !transmits(t.lobe->kind);
   Rgb most(0);
   float from = 0;
-  for (float to = width_of(t); from < kPi; to *= 2) {
+  for (float to = family.reach(t); from < kPi; to *= 2) {
     if (to > 2) to = kPi;
     const AngleRange r = ring(t, from, to);
     float cos_lo = r.cos_lo, cos_hi = r.cos_hi;
@@ -267,7 +259,7 @@ Rgb ClosureBound::in_rings(const LobeTerm& t, Slant slant) const {
       cos_lo = outside(cos_lo), cos_hi = std::min(1.0f, outside(cos_hi) + 1e-6f);
     }
     const Rgb here =
-        (within ? under_coat(t, r, cos_hi, slant) : term_bound(t, r, slant)) * crossed(t, cos_lo);
+        (within ? under_coat(t, r, cos_hi, slant) : family.bound(t, r, slant)) * crossed(t, cos_lo);
     for (int c = 0; c < 3; ++c) most[c] = std::max(most[c], here[c]);
     from = to;
   }
@@ -281,7 +273,7 @@ Rgb ClosureBound::anywhere(Slant slant, float sharp) const {
     if (t.roughness < sharp) continue;
     if (fibre_) {
       sum += on_fibre(t, {n_, kPi}, slant);
-    } else if (t.lobe->kind == LobeKind::microfacet_transmit) {
+    } else if (family_of(t.lobe->kind).refracts) {
       sum += refracted(t, {-n_, kPi}, 0, 1, slant);
     } else {
       sum += in_rings(t, slant);

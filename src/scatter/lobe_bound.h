@@ -23,7 +23,7 @@ struct DirectionCone {
 // What is multiplied with f.
 enum class Slant : std::uint8_t { none, cosine };
 
-struct ConeWidth;  // lobe_bound_terms.h
+struct ConeWidth;  // lobes/bound_terms.h
 
 // One lobe at one wo. Under a coat, directions and cosines are those inside.
 struct LobeTerm {

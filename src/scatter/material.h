@@ -2,9 +2,12 @@
 // A material becomes a Closure at a surface point.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
 #include "base/frame.h"
 #include "base/rgb.h"
 #include "scatter/closure.h"
@@ -31,14 +34,23 @@ struct SurfacePoint {
   SurfaceUv uv;
 };
 
+// A material is a struct, with how its lobes are added to a closure at a point, scaled by `weight` > 0.
+class ClosureBuilder;
+
 struct NullMaterial {};
+void add_lobes(const NullMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct DiffuseMaterial {
   ColorInput reflectance;
 };
+void add_lobes(const DiffuseMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct RoughDiffuseMaterial {
   ColorInput reflectance;
   FloatInput alpha;
 };
+void add_lobes(const RoughDiffuseMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct ConductorMaterial {
   Rgb eta, k;
   ColorInput specular_reflectance;
@@ -46,6 +58,8 @@ struct ConductorMaterial {
   FloatInput alpha_u, alpha_v;
   bool smooth = false;
 };
+void add_lobes(const ConductorMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct DielectricMaterial {
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
@@ -53,10 +67,14 @@ struct DielectricMaterial {
   FloatInput alpha_u, alpha_v;
   bool smooth = true;
 };
+void add_lobes(const DielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct ThinDielectricMaterial {
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
 };
+void add_lobes(const ThinDielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct PlasticMaterial {
   float eta;
   ColorInput diffuse_reflectance, specular_reflectance;
@@ -66,31 +84,54 @@ struct PlasticMaterial {
   bool smooth = true;
   bool lossless = false;  // see PlasticDesc
 };
+void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct PhongMaterial {
   ColorInput diffuse_reflectance, specular_reflectance;
   FloatInput exponent;
 };
+void add_lobes(const PhongMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct WardMaterial {
   int variant = 2;  // 0 ward, 1 ward-duer, 2 balanced
   ColorInput diffuse_reflectance, specular_reflectance;
   FloatInput alpha_u, alpha_v;
 };
+void add_lobes(const WardMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct PrincipledMaterial {
   ColorInput base_color;
   FloatInput roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, clearcoat,
       clearcoat_gloss, flatness;
   float eta = 1.5f;
 };
+void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
+// A measured isotropic BRDF (lobes/measured.cpp).
+struct MeasuredTable;
+struct MeasuredMaterial {
+  std::shared_ptr<const MeasuredTable> table;
+};
+void add_lobes(const MeasuredMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+// The table in the bytes of a file of the MERL database. InputError, at `where`, if that is not what they
+// are; `filename` only names them.
+std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const std::string& filename,
+                                                const SourceLocation& where);
 // A thin sheet that reflects and lets through diffusely, alike on both sides.
 struct DiffuseTransmitterMaterial {
   ColorInput reflectance, transmittance;
 };
+void add_lobes(const DiffuseTransmitterMaterial& m, ClosureBuilder& out, const SurfacePoint& at,
+               float weight);
+
 // Mitsuba 3's principledthin: a sheet without thickness, alike on both sides. diff_trans within [0, 2].
 struct PrincipledThinMaterial {
   ColorInput base_color;
   FloatInput roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness, diff_trans;
   float eta = 1.5f;
 };
+void add_lobes(const PrincipledThinMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 // A dielectric layer over another material (coating.cpp).
 struct CoatingMaterial {
   int nested = -1;
@@ -102,34 +143,48 @@ struct CoatingMaterial {
   FloatInput alpha_u, alpha_v;
   bool smooth = true;
 };
+void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 // Sheen (charlie_sheen.h) over an opaque material without coating, sheen or hair.
 struct SheenMaterial {
   int nested = -1;
   ColorInput color;
   FloatInput roughness;  // √α
 };
+void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct HairMaterial {  // for fibres only: the point's shading.s runs along them
   ColorInput diffuse_reflectance, specular_reflectance;
   FloatInput exponent;
 };
+void add_lobes(const HairMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct MaskMaterial {
   FloatInput opacity;
   int nested;
 };
+void add_lobes(const MaskMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct TwoSidedMaterial {
   int front, back;
 };
+void add_lobes(const TwoSidedMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct BumpMaterial {
   int texture;
   float scale;
   int nested;
 };
+void add_lobes(const BumpMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct NormalMapMaterial {
   int texture;
   int nested;
   float scale = 1;         // of the normal's first two components
   bool follow_uv = false;  // second axis against dp/dv where uvs are mirrored; see NormalMapDesc
 };
+void add_lobes(const NormalMapMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct MixtureMaterial {
   struct Part {
     FloatInput weight;
@@ -138,12 +193,13 @@ struct MixtureMaterial {
   };
   std::vector<Part> parts;
 };
+void add_lobes(const MixtureMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 using Material =
     std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
-                 PrincipledThinMaterial, DiffuseTransmitterMaterial, CoatingMaterial, SheenMaterial,
-                 HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
+                 PrincipledThinMaterial, DiffuseTransmitterMaterial, MeasuredMaterial, CoatingMaterial,
+                 SheenMaterial, HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
                  MixtureMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.

@@ -3,27 +3,23 @@
 
 #include "base/error.h"
 #include "scatter/closure_builder.h"
+#include "scatter/lobes/family.h"
 
 namespace lumirank::scatter {
 namespace {
 
-bool nearly_diffuse(LobeKind kind) {
-  return kind == LobeKind::diffuse || kind == LobeKind::oren_nayar || kind == LobeKind::interfaced_diffuse ||
-         kind == LobeKind::disney_diffuse;
-}
-
 bool same_sort(const Lobe& a, const Lobe& b) {
   return a.kind == b.kind && a.fresnel == b.fresnel && a.distribution == b.distribution &&
-         a.variant == b.variant && static_cast<bool>(a.coat) == static_cast<bool>(b.coat) &&
+         a.variant == b.variant && a.table == b.table &&
+         static_cast<bool>(a.coat) == static_cast<bool>(b.coat) &&
          static_cast<bool>(a.veil) == static_cast<bool>(b.veil);
 }
 
 bool equal_but_color(const Lobe& a, const Lobe& b) {
   if (!same_sort(a, b) || a.coat != b.coat || a.veil != b.veil) return false;
-  if (a.kind == LobeKind::diffuse) return true;
-  if (a.kind == LobeKind::oren_nayar) return a.alpha_u == b.alpha_u;
   return a.alpha_u == b.alpha_u && a.alpha_v == b.alpha_v && a.eta == b.eta &&
-         a.conductor_eta == b.conductor_eta && a.conductor_k == b.conductor_k && a.extra == b.extra;
+         (family_of(a.kind).two_colors || a.conductor_eta == b.conductor_eta) &&
+         a.conductor_k == b.conductor_k && a.extra == b.extra;
 }
 
 Lobe average(const Lobe& a, const Lobe& b) {
@@ -38,7 +34,7 @@ Lobe average(const Lobe& a, const Lobe& b) {
   if (a.veil)
     out.veil = Veil(lerp(a.veil.share_value(), b.veil.share_value(), t),
                     lerp(a.veil.roughness_value(), b.veil.roughness_value(), t));
-  if (a.kind == LobeKind::oren_nayar) {
+  if (family_of(a.kind).two_colors) {
     out.conductor_eta = a.conductor_eta + b.conductor_eta;
   } else {
     out.conductor_eta = lerp(a.conductor_eta, b.conductor_eta, t);
@@ -53,7 +49,7 @@ bool absorb(Closure& closure, const Lobe& lobe) {
   for (int k = 0; k < closure.count; ++k) {
     Lobe& have = closure.lobes[k];
     if (!equal_but_color(have, lobe)) continue;
-    if (have.kind == LobeKind::oren_nayar) have.conductor_eta += lobe.conductor_eta;
+    if (family_of(have.kind).two_colors) have.conductor_eta += lobe.conductor_eta;
     have.color += lobe.color;
     return true;
   }
@@ -74,7 +70,7 @@ void merge_lobes(Closure& closure, const Lobe& extra) {
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) {
       if (!same_sort(all[i], all[j])) continue;
-      const float gap = nearly_diffuse(all[i].kind) ? -1.0f
+      const float gap = family_of(all[i].kind).matt ? -1.0f
                                                     : std::abs(all[i].alpha_u - all[j].alpha_u) +
                                                           std::abs(all[i].alpha_v - all[j].alpha_v);
       if (gap < least) least = gap, first = i, second = j;

@@ -22,8 +22,8 @@ Rgb tinted_f0(Rgb tint, float eta) { return clamp_below(tint * square((eta - 1) 
 
 }  // namespace
 
-void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, float weight) {
-  const TextureSet& textures = set_.textures;
+void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const TextureSet& textures = out.textures();
   const auto input = [&](const FloatInput& f) { return fraction(textures, f, at.uv); };
   const Rgb base = reflectance(textures, m.base_color, at.uv);
   const float roughness = input(m.roughness), metallic = input(m.metallic), spec_trans = input(m.spec_trans);
@@ -42,12 +42,12 @@ void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, f
   const bool bends = std::abs(m.eta - 1) >= 1e-3f;
   if (!bends) through.kind = LobeKind::delta_pass;
 
-  if (!front(at)) {
+  if (!out.front(at)) {
     if (clear == 0) return;
     spec.fresnel = FresnelKind::dielectric;
     spec.color = Rgb(clear);
-    if (bends) push(spec, at, weight);
-    push(through, at, weight);
+    if (bends) out.push(spec, at, weight);
+    out.push(through, at, weight);
     return;
   }
 
@@ -55,39 +55,39 @@ void ClosureBuilder::leaf(const PrincipledMaterial& m, const SurfacePoint& at, f
   const float spec_tint = input(m.spec_tint);
   spec.fresnel = FresnelKind::dielectric;
   spec.color = Rgb((1 - metallic) * (1 - spec_tint));
-  push(spec, at, weight);
+  out.push(spec, at, weight);
   spec.fresnel = FresnelKind::schlick;
   spec.color = Rgb((1 - metallic) * spec_tint);
   spec.conductor_eta = tinted_f0(tint, m.eta);
-  push(spec, at, weight);
+  out.push(spec, at, weight);
   spec.color = Rgb(metallic);
   spec.conductor_eta = base;
-  push(spec, at, weight);
-  push(through, at, weight);
+  out.push(spec, at, weight);
+  out.push(through, at, weight);
 
   Lobe diffuse;
   diffuse.kind = LobeKind::disney_diffuse;
   diffuse.color = base * opaque;
   diffuse.alpha_u = roughness;
   diffuse.extra = input(m.flatness);
-  push(diffuse, at, weight);
+  out.push(diffuse, at, weight);
 
   Lobe sheen;
   sheen.kind = LobeKind::sheen;
   sheen.color = lerp(Rgb(1), tint, input(m.sheen_tint)) * (input(m.sheen) * (1 - metallic));
-  push(sheen, at, weight);
+  out.push(sheen, at, weight);
 
   Lobe coat;
   coat.kind = LobeKind::clearcoat;
   coat.color = Rgb(0.25f * input(m.clearcoat));
   coat.alpha_u = coat.alpha_v = lerp(0.1f, 0.001f, input(m.clearcoat_gloss));
-  push(coat, at, weight);
+  out.push(coat, at, weight);
 }
 
 // The share spec_trans of the sheet is a rough window, which reflects colourless light and tints what it lets
 // through; the rest is matt and sends diff_trans/2 of its colour to the other side.
-void ClosureBuilder::leaf(const PrincipledThinMaterial& m, const SurfacePoint& at, float weight) {
-  const TextureSet& textures = set_.textures;
+void add_lobes(const PrincipledThinMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const TextureSet& textures = out.textures();
   const auto input = [&](const FloatInput& f) { return fraction(textures, f, at.uv); };
   const Rgb base = reflectance(textures, m.base_color, at.uv), tint = tint_of(base);
   const float roughness = input(m.roughness), anisotropic = input(m.anisotropic);
@@ -99,15 +99,15 @@ void ClosureBuilder::leaf(const PrincipledThinMaterial& m, const SurfacePoint& a
   spec.distribution = NormalDistribution::ggx;
   set_roughness(spec, roughness, anisotropic);
   // Light comes from outside on either side.
-  spec.eta = front(at) ? m.eta : 1 / m.eta;
+  spec.eta = out.front(at) ? m.eta : 1 / m.eta;
   const float spec_tint = input(m.spec_tint);
   spec.fresnel = FresnelKind::dielectric;
   spec.color = Rgb(window * (1 - spec_tint));
-  push(spec, at, weight);
+  out.push(spec, at, weight);
   spec.fresnel = FresnelKind::schlick;
   spec.color = Rgb(window * spec_tint);
   spec.conductor_eta = tinted_f0(tint, m.eta);
-  push(spec, at, weight);
+  out.push(spec, at, weight);
 
   Lobe through;
   through.kind = LobeKind::thin_transmit;
@@ -116,22 +116,22 @@ void ClosureBuilder::leaf(const PrincipledThinMaterial& m, const SurfacePoint& a
   set_roughness(through, std::clamp((0.65f * m.eta - 0.35f) * roughness, 0.0f, 1.0f), anisotropic);
   through.eta = m.eta;
   through.color = base * window;
-  push(through, at, weight);
+  out.push(through, at, weight);
 
   Lobe diffuse;
   diffuse.kind = LobeKind::disney_diffuse;
   diffuse.color = base * (matt - back);
   diffuse.alpha_u = roughness;
   diffuse.extra = input(m.flatness);
-  push(diffuse, at, weight);
+  out.push(diffuse, at, weight);
   Lobe sheen;
   sheen.kind = LobeKind::sheen;
   sheen.color = lerp(Rgb(1), tint, input(m.sheen_tint)) * (input(m.sheen) * (matt - back));
-  push(sheen, at, weight);
+  out.push(sheen, at, weight);
   Lobe behind;
   behind.kind = LobeKind::diffuse_transmit;
   behind.color = base * back;
-  push(behind, at, weight);
+  out.push(behind, at, weight);
 }
 
 }  // namespace lumirank::scatter

@@ -1,34 +1,34 @@
 // A layer of sheen over an opaque material: every nested lobe behind a veil, and the sheen's own lobe.
 #include "base/error.h"
-#include "scatter/charlie_sheen.h"
 #include "scatter/closure_builder.h"
 #include "scatter/lobe.h"
+#include "scatter/lobes/charlie_sheen.h"
 
 namespace lumirank::scatter {
 
-void ClosureBuilder::leaf(const SheenMaterial& m, const SurfacePoint& at, float weight) {
-  const Rgb color = reflectance(set_.textures, m.color, at.uv);
-  if (!front(at) || is_black(color)) return add(m.nested, at, weight);
+void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  const Rgb color = reflectance(out.textures(), m.color, at.uv);
+  if (!out.front(at) || is_black(color)) return out.add(m.nested, at, weight);
 
-  ClosureBuilder inner(set_, wo_);
+  ClosureBuilder inner = out.inside();
   inner.add(m.nested, at, 1);
   const Closure nested = inner.finish(at);
   SurfacePoint point = at;
   point.shading = nested.frame, point.ng = nested.ng;
-  const float roughness = std::clamp(number(set_.textures, m.roughness, at.uv), kMinSheenRoughness, 1.0f);
+  const float roughness = std::clamp(number(out.textures(), m.roughness, at.uv), kMinSheenRoughness, 1.0f);
   const Veil veil(max_component(color), roughness);
 
   Lobe own;
   own.kind = LobeKind::charlie_sheen;
   own.color = color;
   own.alpha_u = own.alpha_v = roughness * roughness;
-  push(own, point, weight);
+  out.push(own, point, weight);
   for (int k = 0; k < nested.count; ++k) {
     Lobe lobe = nested.lobes[k];
     if (lobe.coat || lobe.veil || transmits(lobe.kind) || is_hair(lobe.kind))
       throw InternalError("sheen over a coating, a sheen, hair or what lets light pass");
     lobe.veil = veil;
-    push(lobe, point, weight);
+    out.push(lobe, point, weight);
   }
 }
 

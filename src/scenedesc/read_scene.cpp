@@ -3,6 +3,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "scenedesc/readers.h"
 #include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc {

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::world {
 
@@ -93,16 +94,11 @@ bool MaterialBuilder::holds_hair(int bsdf, std::size_t depth) const {
     return false;
   const auto& kind = desc_.bsdfs[static_cast<std::size_t>(bsdf)].kind;
   if (std::holds_alternative<sd::HairDesc>(kind)) return true;
-  if (const auto* m = std::get_if<sd::CoatingDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::SheenDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::MaskDesc>(&kind)) return holds_hair(m->nested, depth + 1);
+  // Of two sides the front alone lies on fibres.
   if (const auto* m = std::get_if<sd::TwoSidedDesc>(&kind)) return holds_hair(m->front, depth + 1);
-  if (const auto* m = std::get_if<sd::BumpMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::NormalMapDesc>(&kind)) return holds_hair(m->nested, depth + 1);
-  if (const auto* m = std::get_if<sd::MixtureDesc>(&kind))
-    for (const auto& part : m->parts)
-      if (holds_hair(part.bsdf, depth + 1)) return true;
-  return false;
+  bool found = false;
+  sd::for_each_nested(kind, [&](int nested) { found = found || holds_hair(nested, depth + 1); });
+  return found;
 }
 
 int MaterialBuilder::instead_around_hair(const sd::BsdfDesc& b) {
@@ -276,6 +272,10 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
     }
     sc::Material operator()(const sd::DiffuseTransmitterDesc& d) const {
       return sc::DiffuseTransmitterMaterial{color(d.reflectance), color(d.transmittance)};
+    }
+    sc::Material operator()(const sd::MeasuredDesc& d) const {
+      if (d.file.missing) return sc::DiffuseMaterial{sc::ColorInput{Rgb(0.5f), -1}};
+      return sc::MeasuredMaterial{sc::parse_merl(sd::read_file(d.file.name, where), d.file.name, where)};
     }
     sc::Material operator()(const sd::CoatingDesc& d) const {
       sc::CoatingMaterial m;

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "scatter/merl_table.h"
+#include "scatter/microfacet.h"
+
 namespace lumirank::scatter {
 namespace {
 
@@ -114,6 +117,21 @@ BsdfCase hair(std::string name, float diffuse, float specular, float exponent) {
   BsdfCase c = single("hair_" + name, HairMaterial{gray(diffuse), gray(specular), number(exponent)});
   c.inside_too = c.fibre = true;
   return c;
+}
+
+// A table of a microfacet conductor, and of Lambert's law, which may be brighter than white.
+std::string merl_of_conductor(float alpha) {
+  return merl_bytes(24, 20, 16, [&](Vec3f o, Vec3f i) {
+    const Vec3f m = normalize(o + i);
+    return Rgb(0.9f, 0.6f, 0.3f) *
+           (ggx_d(m, alpha, alpha) * ggx_g1(o, alpha, alpha) * ggx_g1(i, alpha, alpha) / (4 * o.z * i.z));
+  });
+}
+std::string merl_of_diffuse(float reflectance) {
+  return merl_bytes(4, 4, 4, [&](Vec3f, Vec3f) { return Rgb(1, 0.7f, 0.4f) * (reflectance * kInvPi); });
+}
+BsdfCase measured(std::string name, const std::string& bytes) {
+  return single("measured_" + name, MeasuredMaterial{parse_merl(bytes, name, {})});
 }
 
 std::vector<BsdfCase> build() {
@@ -235,6 +253,12 @@ std::vector<BsdfCase> build() {
     coated_sheen.material = 2;
     list.push_back(coated_sheen);
   }
+  list.push_back(measured("diffuse", merl_of_diffuse(0.8f)));
+  list.push_back(measured("too_bright", merl_of_diffuse(2)));
+  list.push_back(measured("conductor_0.1", merl_of_conductor(0.1f)));
+  list.push_back(measured("conductor_0.5", merl_of_conductor(0.5f)));
+  list.push_back(nested("coating_measured", MeasuredMaterial{parse_merl(merl_of_conductor(0.3f), "", {})},
+                        layer(kGgx, 0.1f, 1.5f, 0.1f, 1)));
   list.push_back(hair("diffuse", 1, 0, 0));
   list.push_back(hair("specular_0", 0, 1, 0));
   list.push_back(hair("specular_3", 0, 1, 3));

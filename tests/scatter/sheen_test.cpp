@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scatter/bsdf_list.h"
-#include "scatter/charlie_sheen.h"
+#include "scatter/lobes/charlie_sheen.h"
 
 namespace lumirank::scatter {
 namespace {

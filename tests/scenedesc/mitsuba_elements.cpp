@@ -1,6 +1,7 @@
 // Parameters, includes, warnings, defaults and conversions of the Mitsuba reader.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -8,6 +9,7 @@
 #include "scenedesc/data/ior.h"
 #include "scenedesc/mitsuba/solar.h"
 #include "scenedesc/readers.h"
+#include "scenedesc/writer/mitsuba_writer.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -132,7 +134,7 @@ TEST(MitsubaDefaults, ConductorsAreCopperIn06AndMirrorsIn3) {
              now = std::get<ConductorDesc>(parse(text).bsdfs.at(0).kind);
   EXPECT_EQ(now.eta, Rgb(0));
   EXPECT_EQ(now.k, Rgb(1));
-  const auto copper = *mitsuba::metal_index("Cu");
+  const auto copper = *metal_index("Cu");
   EXPECT_FLOAT_EQ(old.eta.g, copper.eta.g / 1.000277f);
 }
 
@@ -269,11 +271,30 @@ TEST(MitsubaCoating, AbsorptionIsTimesThickness) {
       InputError);
 }
 
+TEST(MitsubaMeasured, NamesItsFile) {
+  const std::string file = testing::TempDir() + "skin.binary";
+  std::ofstream(file) << "a table";
+  const SceneDesc scene = parse(
+      kCamera + "<bsdf type=\"merl\"><string name=\"filename\" value=\"skin.binary\"/></bsdf>", "0.6.0");
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto& table = std::get<MeasuredDesc>(scene.bsdfs.at(0).kind);
+  EXPECT_EQ(table.file.name, file);
+  EXPECT_FALSE(table.file.missing);
+  EXPECT_NE(describe(scene).find("merl filename " + file), std::string::npos);
+  const auto files = files_of(scene);
+  EXPECT_NE(std::find(files.begin(), files.end(), file), files.end());
+  const WrittenScene written = write_mitsuba(scene, testing::TempDir() + "out.xml");
+  ASSERT_EQ(written.warnings.size(), 1u);
+  EXPECT_NE(written.warnings[0].what.find("MERL"), std::string::npos);
+  EXPECT_NE(written.xml.find("\"diffuse\""), std::string::npos);
+  EXPECT_THROW(parse(kCamera + "<bsdf type=\"merl\"/>"), InputError);
+}
+
 // Fresnel reflectance at normal incidence: silver above 0.9 in every channel, gold and copper red before
 // green before blue, as these metals look.
 TEST(MitsubaMetals, LookAsTheyShould) {
   const auto reflectance = [](const char* name) {
-    const auto m = *mitsuba::metal_index(name);
+    const auto m = *metal_index(name);
     Rgb r;
     for (int i = 0; i < 3; ++i)
       r[i] = ((m.eta[i] - 1) * (m.eta[i] - 1) + m.k[i] * m.k[i]) /
@@ -302,7 +323,7 @@ TEST(MitsubaMetals, LookAsTheyShould) {
     EXPECT_GT(r.r, 0.9f);
     EXPECT_LT(r.b, 0.6f);
   }
-  EXPECT_FALSE(mitsuba::metal_index("Unobtainium").has_value());
+  EXPECT_FALSE(metal_index("Unobtainium").has_value());
 }
 
 TEST(MitsubaSpectrum, FilesAndPairsAreTheSame) {

@@ -44,6 +44,10 @@ std::vector<LoadingCase> missing_files() {
               4);
   add_missing(cases, "roughness", "roughness_refused", xml, bsdf("roughconductor\">" + picture("alpha")),
               squares, 4);
+  add_missing(cases, "measured", "measured_refused", xml,
+              bsdf("merl\">\n<string name=\"filename\" value=\"absent\"/>"), "BRDF table not found: ", 4);
+  cases.push_back({"cut_table", xml, bsdf("merl\">\n<string name=\"filename\" value=\"cut.binary\"/>"),
+                   refused, "ends within its header", 3});
   add_missing(cases, "opacity", "opacity_refused", xml,
               bsdf("mask\">" + picture("opacity") + "<bsdf type=\"diffuse\"/>"), squares, 4);
   add_missing(cases, "bump", "bump_refused", xml,

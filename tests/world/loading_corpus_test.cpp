@@ -23,6 +23,7 @@ void write_corpus_files(const std::string& folder) {
     std::ofstream(folder + "/" + name, std::ios::binary) << bytes;
   };
   write("empty.obj", "");
+  write("cut.binary", "MERL");
   write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
   write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
   write("two_corners.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");

@@ -7,7 +7,7 @@
 #include "base/rgb.h"
 #include "base/spectrum.h"
 
-namespace lumirank::scenedesc::mitsuba {
+namespace lumirank::scenedesc {
 
 // The names of Mitsuba's list: "bk7", "water", "air", …; case does not matter.
 std::optional<float> dielectric_index(const std::string& name);
@@ -26,4 +26,4 @@ struct MetalSpectra {
 };
 std::optional<MetalSpectra> metal_spectra(const std::string& name);
 
-}  // namespace lumirank::scenedesc::mitsuba
+}  // namespace lumirank::scenedesc

@@ -23,7 +23,7 @@
 #include "base/spectrum.h"
 #include "scenedesc/data/ior.h"
 
-namespace lumirank::scenedesc::mitsuba {
+namespace lumirank::scenedesc {
 
 namespace {
 
@@ -159,4 +159,4 @@ std::string metal_names() {
   return names;
 }
 
-}  // namespace lumirank::scenedesc::mitsuba
+}  // namespace lumirank::scenedesc

@@ -1,11 +1,12 @@
 // The spectra that pbrt knows by name.
+#include "scenedesc/data/named_spectra.h"
+
 #include <array>
 #include <map>
 
 #include "scenedesc/data/ior.h"
-#include "scenedesc/pbrt/spectra.h"
 
-namespace lumirank::scenedesc::pbrt {
+namespace lumirank::scenedesc {
 
 namespace {
 
@@ -53,9 +54,9 @@ std::optional<SampledSpectrum> named_metal(const std::string& name) {
   const std::size_t dash = name.rfind('-');
   const std::string metal = name.substr(6, dash < 6 ? 0 : dash - 6), part = name.substr(dash + 1);
   if (part != "eta" && part != "k") return std::nullopt;
-  const auto measured = mitsuba::metal_spectra(metal);
+  const auto measured = metal_spectra(metal);
   if (!measured || metal.find('_') != std::string::npos) return std::nullopt;
   return part == "eta" ? measured->n : measured->k;
 }
 
-}  // namespace lumirank::scenedesc::pbrt
+}  // namespace lumirank::scenedesc

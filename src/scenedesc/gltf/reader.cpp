@@ -4,7 +4,9 @@
 #include <array>
 
 #include "scenedesc/gltf/container.h"
+#include "scenedesc/gltf/read_gltf.h"
 #include "scenedesc/gltf/uri.h"
+#include "scenedesc/schema/expansion.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {

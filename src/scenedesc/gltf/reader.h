@@ -12,7 +12,9 @@
 #include "scenedesc/gltf/accessors.h"
 #include "scenedesc/gltf/buffers.h"
 #include "scenedesc/gltf/element.h"
-#include "scenedesc/readers.h"
+#include "scenedesc/meshes/mesh_reader.h"
+#include "scenedesc/schema/read_options.h"
+#include "scenedesc/schema/scene_desc.h"
 #include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::gltf {

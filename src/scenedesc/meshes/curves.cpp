@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "scenedesc/meshes/mesh_parts.h"
+#include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/meshes/scan.h"
-#include "scenedesc/readers.h"
 #include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {

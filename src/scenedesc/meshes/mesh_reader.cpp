@@ -1,7 +1,7 @@
 // Opens mesh files and applies what the scene says about them.
+#include "scenedesc/meshes/mesh_reader.h"
 #include "base/error.h"
 #include "scenedesc/meshes/mesh_parts.h"
-#include "scenedesc/readers.h"
 #include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {

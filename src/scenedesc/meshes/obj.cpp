@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "scenedesc/meshes/mesh_parts.h"
+#include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/meshes/scan.h"
-#include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "scenedesc/meshes/mesh_parts.h"
+#include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/meshes/ply_body.h"
-#include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {

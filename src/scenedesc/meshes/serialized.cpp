@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scenedesc/meshes/mesh_parts.h"
-#include "scenedesc/readers.h"
+#include "scenedesc/meshes/mesh_reader.h"
 
 namespace lumirank::scenedesc {
 namespace {

@@ -1,28 +1,20 @@
-// The BSDF plugins, one function each; the table in bsdfs.cpp names them.
+// The BSDF plugins that are more than a list of fields, one function each; the table in bsdfs.cpp names them.
 #pragma once
 
 #include "scenedesc/mitsuba/plugin.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
-using BsdfKind = decltype(BsdfDesc::kind);
-
 BsdfKind diffuse(Reader& reader, Plugin& p);
 BsdfKind rough_diffuse(Reader& reader, Plugin& p);
-BsdfKind dielectric(Reader& reader, Plugin& p);
-BsdfKind thin_dielectric(Reader& reader, Plugin& p);
 BsdfKind conductor(Reader& reader, Plugin& p);
 BsdfKind plastic(Reader& reader, Plugin& p);
-BsdfKind phong(Reader& reader, Plugin& p);
 BsdfKind ward(Reader& reader, Plugin& p);
-BsdfKind diffuse_transmitter(Reader& reader, Plugin& p);
 BsdfKind principled(Reader& reader, Plugin& p);
 BsdfKind principled_thin(Reader& reader, Plugin& p);
 BsdfKind hair(Reader& reader, Plugin& p);
-BsdfKind kajiya_kay(Reader& reader, Plugin& p);  // Lumirank's own: "kajiyakay"
 
 BsdfKind coating(Reader& reader, Plugin& p);
-BsdfKind mask(Reader& reader, Plugin& p);
 BsdfKind two_sided(Reader& reader, Plugin& p);
 BsdfKind bump_map(Reader& reader, Plugin& p);
 BsdfKind normal_map(Reader& reader, Plugin& p);
@@ -38,6 +30,8 @@ struct Roughness {
 };
 // "distribution", "alpha", "alpha_u" and "alpha_v" of a rough… plugin.
 Roughness roughness(Reader& reader, Plugin& p, float fallback);
+// The index of the one BSDF nested in a plugin; InputError if there is none.
+int only_bsdf(Reader& reader, Plugin& p);
 // Whether the plugin's name begins with "rough".
 bool is_rough(const Plugin& p);
 

@@ -1,4 +1,4 @@
-#include "scenedesc/mitsuba/bsdf_kinds.h"
+#include "scenedesc/mitsuba/bsdf_fields.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -9,30 +9,31 @@ const std::map<std::string, Builder>& builders() {
   static const std::map<std::string, Builder> all = {
       {"diffuse", diffuse},
       {"roughdiffuse", rough_diffuse},
-      {"dielectric", dielectric},
-      {"roughdielectric", dielectric},
-      {"thindielectric", thin_dielectric},
+      {"dielectric", plain_bsdf<DielectricDesc>},
+      {"roughdielectric", plain_bsdf<DielectricDesc>},
+      {"thindielectric", plain_bsdf<ThinDielectricDesc>},
       {"conductor", conductor},
       {"roughconductor", conductor},
       {"plastic", plastic},
       {"roughplastic", plastic},
-      {"phong", phong},
+      {"phong", plain_bsdf<PhongDesc>},
       {"ward", ward},
       {"principled", principled},
       {"principledthin", principled_thin},
-      {"difftrans", diffuse_transmitter},
+      {"difftrans", plain_bsdf<DiffuseTransmitterDesc>},
+      {"merl", plain_bsdf<MeasuredDesc>},
       {"hair", hair},
-      {"kajiyakay", kajiya_kay},
+      {"kajiyakay", plain_bsdf<HairDesc>},  // only Lumirank has it
       {"coating", coating},
       {"roughcoating", coating},
-      {"mask", mask},
+      {"mask", plain_bsdf<MaskDesc>},
       {"twosided", two_sided},
       {"bumpmap", bump_map},
       {"bump", bump_map},
       {"normalmap", normal_map},
       {"mixturebsdf", mixture},
       {"blendbsdf", blend},
-      {"null", [](Reader&, Plugin&) -> BsdfKind { return NullBsdfDesc{}; }},
+      {"null", plain_bsdf<NullBsdfDesc>},
   };
   return all;
 }

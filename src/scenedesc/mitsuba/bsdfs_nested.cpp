@@ -1,18 +1,11 @@
 // BSDFs that change or mix others.
 #include <cmath>
 
-#include "scenedesc/mitsuba/bsdf_kinds.h"
+#include "scenedesc/mitsuba/bsdf_fields.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
 namespace {
-
-int only_bsdf(Reader& reader, Plugin& p) {
-  const Element* nested = p.take_one("bsdf");
-  if (!nested)
-    throw InputError(p.where(), p.title() + " has no BSDF in it", "nest a <bsdf>, or a <ref> to one");
-  return reader.build_bsdf(*nested);
-}
 
 int only_texture(Reader& reader, Plugin& p, std::initializer_list<const char*> names) {
   for (const char* name : names)
@@ -23,10 +16,16 @@ int only_texture(Reader& reader, Plugin& p, std::initializer_list<const char*> n
 
 }  // namespace
 
+int only_bsdf(Reader& reader, Plugin& p) {
+  const Element* nested = p.take_one("bsdf");
+  if (!nested)
+    throw InputError(p.where(), p.title() + " has no BSDF in it", "nest a <bsdf>, or a <ref> to one");
+  return reader.build_bsdf(*nested);
+}
+
 BsdfKind coating(Reader& reader, Plugin& p) {
   CoatingDesc out;
-  out.eta = relative_index(p, "bk7");
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
+  read_fields(reader, p, out);
   const float thickness = p.number("thickness", 1);
   if (!(thickness >= 0))
     throw InputError(p.where_of("thickness"), "\"thickness\" of " + p.title() + " is negative");
@@ -40,20 +39,6 @@ BsdfKind coating(Reader& reader, Plugin& p) {
     out.absorption.texture =
         reader.add_texture("", p.where_of("sigma_a"), ScaleTextureDesc{out.absorption, Rgb(thickness)});
   }
-  if (is_rough(p)) {
-    const Roughness r = roughness(reader, p, 0.1f);
-    out.distribution = r.distribution, out.alpha_u = r.alpha_u, out.alpha_v = r.alpha_v;
-  }
-  out.nested = only_bsdf(reader, p);
-  return out;
-}
-
-BsdfKind mask(Reader& reader, Plugin& p) {
-  MaskDesc out;
-  out.opacity = p.scalar("opacity", 0.5f);
-  if (out.opacity.texture == kNone && !(out.opacity.value >= 0 && out.opacity.value <= 1))
-    throw InputError(p.where_of("opacity"), "\"opacity\" of " + p.title() + " is not between 0 and 1");
-  out.nested = only_bsdf(reader, p);
   return out;
 }
 
@@ -73,14 +58,14 @@ BsdfKind bump_map(Reader& reader, Plugin& p) {
   BumpMapDesc out;
   out.scale = p.number("scale", 1);
   out.texture = only_texture(reader, p, {"map", "texture", "bump", "nested_texture"});
-  out.nested = only_bsdf(reader, p);
+  read_fields(reader, p, out);
   return out;
 }
 
 BsdfKind normal_map(Reader& reader, Plugin& p) {
   NormalMapDesc out;
   out.texture = only_texture(reader, p, {"normalmap", "map", "texture"});
-  out.nested = only_bsdf(reader, p);
+  read_fields(reader, p, out);
   return out;
 }
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "scenedesc/data/ior.h"
-#include "scenedesc/mitsuba/bsdf_kinds.h"
+#include "scenedesc/mitsuba/bsdf_fields.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -63,41 +63,38 @@ Roughness roughness(Reader& reader, Plugin& p, float fallback) {
 
 bool is_rough(const Plugin& p) { return p.type().rfind("rough", 0) == 0; }
 
-BsdfKind diffuse(Reader&, Plugin& p) {
+void check_range(Plugin& p, const char* name, const FloatInput& found, Range range) {
+  if (found.texture != kNone || range == Range::any) return;
+  const std::string what = std::string("\"") + name + "\" of " + p.title();
+  if (!(found.value >= 0) && range == Range::not_negative)
+    throw InputError(p.where_of(name), what + " is negative", "give 0 or more");
+  const float max = range == Range::to_2 ? 2 : 1;
+  const std::string limits = max == 1 ? "0 and 1" : "0 and 2";
+  if (range != Range::not_negative && !(found.value >= 0 && found.value <= max))
+    throw InputError(p.where_of(name), what + " is not between " + limits, "give a number between " + limits);
+}
+
+namespace {
+
+// 0.6 takes either name.
+void diffuse_reflectance(Plugin& p, ColorInput& reflectance) {
+  if (!p.has("reflectance")) reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
+}
+
+}  // namespace
+
+BsdfKind diffuse(Reader& reader, Plugin& p) {
   DiffuseDesc out;
-  // 0.6 takes either name.
-  out.reflectance = p.has("reflectance") ? p.reflectance("reflectance", Rgb(0.5f))
-                                         : p.reflectance("diffuse_reflectance", Rgb(0.5f));
+  read_fields(reader, p, out);
+  diffuse_reflectance(p, out.reflectance);
   return out;
 }
 
-BsdfKind rough_diffuse(Reader&, Plugin& p) {
+BsdfKind rough_diffuse(Reader& reader, Plugin& p) {
   RoughDiffuseDesc out;
-  out.reflectance = p.has("reflectance") ? p.reflectance("reflectance", Rgb(0.5f))
-                                         : p.reflectance("diffuse_reflectance", Rgb(0.5f));
-  out.alpha = p.scalar("alpha", 0.2f);
-  check_alpha(p, "alpha", out.alpha);
+  read_fields(reader, p, out);
+  diffuse_reflectance(p, out.reflectance);
   p.ignore({"use_fast_approx"});
-  return out;
-}
-
-BsdfKind dielectric(Reader& reader, Plugin& p) {
-  DielectricDesc out;
-  out.eta = relative_index(p, "bk7");
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
-  out.specular_transmittance = p.reflectance("specular_transmittance", Rgb(1));
-  if (is_rough(p)) {
-    const Roughness r = roughness(reader, p, 0.1f);
-    out.distribution = r.distribution, out.alpha_u = r.alpha_u, out.alpha_v = r.alpha_v;
-  }
-  return out;
-}
-
-BsdfKind thin_dielectric(Reader&, Plugin& p) {
-  ThinDielectricDesc out;
-  out.eta = relative_index(p, "bk7");
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
-  out.specular_transmittance = p.reflectance("specular_transmittance", Rgb(1));
   return out;
 }
 
@@ -131,20 +128,13 @@ BsdfKind conductor(Reader& reader, Plugin& p) {
                                          : (reader.dialect().camel_case() ? *dielectric_index("air") : 1.0f);
   out.eta = metal.eta / outside;
   out.k = metal.k / outside;
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
-  if (is_rough(p)) {
-    const Roughness r = roughness(reader, p, 0.1f);
-    out.distribution = r.distribution, out.alpha_u = r.alpha_u, out.alpha_v = r.alpha_v;
-  }
+  read_fields(reader, p, out);
   return out;
 }
 
 BsdfKind plastic(Reader& reader, Plugin& p) {
   PlasticDesc out;
-  out.eta = relative_index(p, "polypropylene");
-  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(1));
-  out.nonlinear = p.flag("nonlinear", false);
+  read_fields(reader, p, out);
   if (is_rough(p)) {
     if (p.has("alpha_u") || p.has("alpha_v"))
       throw InputError(p.where_of(p.has("alpha_u") ? "alpha_u" : "alpha_v"),
@@ -155,17 +145,7 @@ BsdfKind plastic(Reader& reader, Plugin& p) {
   return out;
 }
 
-BsdfKind phong(Reader&, Plugin& p) {
-  PhongDesc out;
-  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(0.2f));
-  out.exponent = p.scalar("exponent", 30);
-  if (out.exponent.texture == kNone && out.exponent.value < 0)
-    throw InputError(p.where_of("exponent"), "\"exponent\" of " + p.title() + " is negative");
-  return out;
-}
-
-BsdfKind ward(Reader&, Plugin& p) {
+BsdfKind ward(Reader& reader, Plugin& p) {
   WardDesc out;
   const std::string variant = p.text("variant").value_or("balanced");
   if (variant == "ward")
@@ -176,8 +156,7 @@ BsdfKind ward(Reader&, Plugin& p) {
     throw InputError(p.where_of("variant"),
                      "the variant \"" + variant + "\" of " + p.title() + " is not known",
                      "ward, ward-duer and balanced are");
-  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.5f));
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(0.2f));
+  read_fields(reader, p, out);
   const FloatInput alpha = p.scalar("alpha", 0.1f);
   out.alpha_u = p.has("alpha_u") ? p.scalar("alpha_u", 0.1f) : alpha;
   out.alpha_v = p.has("alpha_v") ? p.scalar("alpha_v", 0.1f) : alpha;
@@ -186,12 +165,6 @@ BsdfKind ward(Reader&, Plugin& p) {
       throw InputError(p.where_of(p.has(name) ? name : "alpha"),
                        std::string("\"") + name + "\" of " + p.title() + " is not positive",
                        "Ward's model has no mirror limit");
-  return out;
-}
-
-BsdfKind diffuse_transmitter(Reader&, Plugin& p) {
-  DiffuseTransmitterDesc out;
-  out.transmittance = p.reflectance("transmittance", Rgb(0.5f));
   return out;
 }
 

@@ -1,27 +1,11 @@
 // The two BSDFs after Burley.
 #include <cmath>
 
-#include "scenedesc/mitsuba/bsdf_kinds.h"
+#include "scenedesc/mitsuba/bsdf_fields.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
 namespace {
-
-struct Input {
-  const char* name;
-  FloatInput* value;
-  float most = 1;
-};
-
-void read(Plugin& p, std::initializer_list<Input> inputs) {
-  for (const Input& input : inputs) {
-    *input.value = p.scalar(input.name, input.value->value);
-    const FloatInput& found = *input.value;
-    if (found.texture == kNone && !(found.value >= 0 && found.value <= input.most))
-      throw InputError(p.where_of(input.name), std::string("\"") + input.name + "\" of " + p.title() +
-                                                   " is not between 0 and " + (input.most == 1 ? "1" : "2"));
-  }
-}
 
 std::optional<float> eta_of(Plugin& p) {
   const auto eta = p.number("eta");
@@ -37,19 +21,9 @@ void ignore_sampling(Plugin& p) {
 
 }  // namespace
 
-BsdfKind principled(Reader&, Plugin& p) {
+BsdfKind principled(Reader& reader, Plugin& p) {
   PrincipledDesc out;
-  out.base_color = p.reflectance("base_color", Rgb(0.5f));
-  read(p, {{"roughness", &out.roughness},
-           {"anisotropic", &out.anisotropic},
-           {"metallic", &out.metallic},
-           {"spec_trans", &out.spec_trans},
-           {"spec_tint", &out.spec_tint},
-           {"sheen", &out.sheen},
-           {"sheen_tint", &out.sheen_tint},
-           {"clearcoat", &out.clearcoat},
-           {"clearcoat_gloss", &out.clearcoat_gloss},
-           {"flatness", &out.flatness}});
+  read_fields(reader, p, out);
   if (const auto eta = eta_of(p)) {
     if (p.has("specular"))
       throw InputError(p.where_of("specular"), p.title() + " has both \"eta\" and \"specular\"",
@@ -66,17 +40,9 @@ BsdfKind principled(Reader&, Plugin& p) {
   return out;
 }
 
-BsdfKind principled_thin(Reader&, Plugin& p) {
+BsdfKind principled_thin(Reader& reader, Plugin& p) {
   PrincipledThinDesc out;
-  out.base_color = p.reflectance("base_color", Rgb(0.5f));
-  read(p, {{"roughness", &out.roughness},
-           {"anisotropic", &out.anisotropic},
-           {"spec_trans", &out.spec_trans},
-           {"spec_tint", &out.spec_tint},
-           {"sheen", &out.sheen},
-           {"sheen_tint", &out.sheen_tint},
-           {"flatness", &out.flatness},
-           {"diff_trans", &out.diff_trans, 2}});
+  read_fields(reader, p, out);
   out.eta = eta_of(p).value_or(1.5f);
   ignore_sampling(p);
   return out;

@@ -1,5 +1,4 @@
-// Curves and hair: Mitsuba 3's curve shapes and its "hair" BSDF, 0.6's "hair" shape, and the BSDF
-// "kajiyakay", which only Lumirank has.
+// Curves and hair: Mitsuba 3's curve shapes and its "hair" BSDF, and 0.6's "hair" shape.
 #include "scenedesc/schema/hair.h"
 
 #include <cmath>
@@ -54,16 +53,6 @@ BsdfKind hair(Reader& reader, Plugin& p) {
   reader.warn(p.where(), "the BSDF \"hair\"",
               "Kajiya-Kay hair of the same brightness: diffuse " + show(out.diffuse_reflectance.value) +
                   ", specular " + show(out.specular_reflectance.value) + ", exponent " + exponent);
-  return out;
-}
-
-BsdfKind kajiya_kay(Reader&, Plugin& p) {
-  HairDesc out;
-  out.diffuse_reflectance = p.reflectance("diffuse_reflectance", Rgb(0.4f));
-  out.specular_reflectance = p.reflectance("specular_reflectance", Rgb(0.1f));
-  out.exponent = p.scalar("exponent", 40);
-  if (out.exponent.texture == kNone && !(out.exponent.value >= 0))
-    throw InputError(p.where_of("exponent"), "\"exponent\" of " + p.title() + " is negative");
   return out;
 }
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/mitsuba/read_mitsuba.h"
+#include "scenedesc/schema/expansion.h"
 #include "scenedesc/schema/files.h"
 #include "scenedesc/schema/warnings.h"
 

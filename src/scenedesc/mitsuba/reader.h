@@ -9,7 +9,8 @@
 
 #include "scenedesc/mitsuba/element.h"
 #include "scenedesc/mitsuba/values.h"
-#include "scenedesc/readers.h"
+#include "scenedesc/schema/read_options.h"
+#include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::scenedesc::mitsuba {
 

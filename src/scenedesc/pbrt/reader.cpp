@@ -4,6 +4,8 @@
 #include <cctype>
 #include <filesystem>
 
+#include "scenedesc/pbrt/read_pbrt.h"
+#include "scenedesc/schema/expansion.h"
 #include "scenedesc/schema/files.h"
 #include "scenedesc/schema/warnings.h"
 

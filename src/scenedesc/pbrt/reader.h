@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/pbrt/params.h"
 #include "scenedesc/pbrt/spectra.h"
-#include "scenedesc/readers.h"
+#include "scenedesc/schema/read_options.h"
+#include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::scenedesc::pbrt {
 

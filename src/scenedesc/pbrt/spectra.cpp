@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenedesc/data/named_spectra.h"
 #include "scenedesc/pbrt/reader.h"
 
 namespace lumirank::scenedesc::pbrt {

@@ -42,10 +42,6 @@ struct ConductorIndex {
 // normal incidence is that of the spectra under D65.
 ConductorIndex conductor_index(Params& p, const char* eta, const char* k);
 
-// Named spectra of pbrt.
-std::optional<Rgb> named_illuminant(const std::string& name);         // luminance 1
-std::optional<float> named_glass(const std::string& name);            // "glass-BK7", at 587.6 nm
-std::optional<SampledSpectrum> named_metal(const std::string& name);  // "metal-Cu-eta", "metal-Cu-k"
 // Nanometres and values from a text file of pairs.
 SampledSpectrum spectrum_file(Params& p, const char* name, const std::string& file);
 

@@ -1,8 +1,9 @@
+#include "scenedesc/schema/describe.h"
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
-
-#include "scenedesc/readers.h"
+#include <type_traits>
 
 namespace lumirank::scenedesc {
 
@@ -41,12 +42,6 @@ std::string show(const UvTransform& t) {
   for (int i = 0; i < 6; ++i) text += (i ? (i % 3 ? " " : "; ") : "") + num(t.m[i]);
   return text + "]";
 }
-std::string rough(Distribution d, const FloatInput& u, const FloatInput& v) {
-  if (u.texture == kNone && v.texture == kNone && u.value == 0 && v.value == 0) return ", smooth";
-  const bool same = u.value == v.value && u.texture == v.texture;
-  return std::string(d == Distribution::ggx ? ", ggx " : ", beckmann ") + show(u) +
-         (same ? "" : " × " + show(v));
-}
 std::string b(int index) { return index == kNone ? "none" : "bsdf " + std::to_string(index); }
 const char* show(TextureChannel channel) {
   constexpr const char* kNames[] = {
@@ -79,93 +74,51 @@ std::string kind(const TextureDesc& t) {
       t.kind);
 }
 
+std::string show(float value) { return num(value); }
+std::string show(bool value) { return value ? "true" : "false"; }
+const char* show(Distribution d) { return d == Distribution::ggx ? "ggx" : "beckmann"; }
+const char* show(WardDesc::Variant v) {
+  constexpr const char* kNames[] = {"ward", "ward-duer", "balanced"};
+  return kNames[static_cast<int>(v)];
+}
+
+bool is_zero(const FloatInput& f) { return f.texture == kNone && f.value == 0; }
+
+template <typename Desc>
+std::string bsdf_kind(const Desc& desc) {
+  bool smooth = false;  // then the distribution of microfacets means nothing
+  if constexpr (requires {
+                  desc.distribution;
+                  desc.alpha_u;
+                })
+    smooth = is_zero(desc.alpha_u) && is_zero(desc.alpha_v);
+  else if constexpr (requires { desc.distribution; })
+    smooth = is_zero(desc.alpha);
+  std::string text, separator = " ";
+  for_each_field(desc, [&](const auto& field, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if (smooth && field.role == Role::roughness) {
+      text += std::is_same_v<Value, Distribution> ? separator + "smooth" : "";
+    } else if constexpr (std::is_same_v<Value, FileInput>) {
+      text += separator + field.name + " " + value.name;
+    } else if constexpr (std::is_same_v<Value, int>) {
+      text += separator + field.name + " " + (field.role == Role::nested ? b(value) : std::to_string(value));
+    } else {
+      text += separator + field.name + " " + show(value);
+    }
+    separator = ", ";
+  });
+  return Desc::kInfo.name + text;
+}
+std::string bsdf_kind(const MixtureDesc& mixture) {
+  std::string text = "mixture";
+  for (const auto& part : mixture.parts)
+    text += std::string(" ") + (part.complement ? "(1 - " + show(part.weight) + ")" : show(part.weight)) +
+            " of " + b(part.bsdf);
+  return text;
+}
 std::string kind(const BsdfDesc& desc) {
-  return std::visit(
-      Overloaded{[](const NullBsdfDesc&) { return std::string("null"); },
-                 [](const DiffuseDesc& x) { return "diffuse " + show(x.reflectance); },
-                 [](const RoughDiffuseDesc& x) {
-                   return "roughdiffuse " + show(x.reflectance) + ", alpha " + show(x.alpha);
-                 },
-                 [](const ConductorDesc& x) {
-                   return "conductor eta " + show(x.eta) + ", k " + show(x.k) + ", reflectance " +
-                          show(x.specular_reflectance) + rough(x.distribution, x.alpha_u, x.alpha_v);
-                 },
-                 [](const DielectricDesc& x) {
-                   return "dielectric eta " + num(x.eta) + ", reflectance " + show(x.specular_reflectance) +
-                          ", transmittance " + show(x.specular_transmittance) +
-                          rough(x.distribution, x.alpha_u, x.alpha_v);
-                 },
-                 [](const ThinDielectricDesc& x) {
-                   return "thindielectric eta " + num(x.eta) + ", reflectance " +
-                          show(x.specular_reflectance) + ", transmittance " + show(x.specular_transmittance);
-                 },
-                 [](const PlasticDesc& x) {
-                   return "plastic eta " + num(x.eta) + ", diffuse " + show(x.diffuse_reflectance) +
-                          ", specular " + show(x.specular_reflectance) + (x.nonlinear ? ", nonlinear" : "") +
-                          (x.lossless ? ", lossless" : "") + rough(x.distribution, x.alpha, x.alpha);
-                 },
-                 [](const PhongDesc& x) {
-                   return "phong diffuse " + show(x.diffuse_reflectance) + ", specular " +
-                          show(x.specular_reflectance) + ", exponent " + show(x.exponent);
-                 },
-                 [](const WardDesc& x) {
-                   return "ward diffuse " + show(x.diffuse_reflectance) + ", specular " +
-                          show(x.specular_reflectance) + ", alpha " + show(x.alpha_u) + " × " +
-                          show(x.alpha_v);
-                 },
-                 [](const PrincipledDesc& x) {
-                   return "principled " + show(x.base_color) + ", roughness " + show(x.roughness) +
-                          ", metallic " + show(x.metallic) + ", spec_trans " + show(x.spec_trans) +
-                          ", anisotropic " + show(x.anisotropic) + ", spec_tint " + show(x.spec_tint) +
-                          ", sheen " + show(x.sheen) + " (tint " + show(x.sheen_tint) + "), clearcoat " +
-                          show(x.clearcoat) + " (gloss " + show(x.clearcoat_gloss) + "), flatness " +
-                          show(x.flatness) + ", eta " + num(x.eta);
-                 },
-                 [](const HairDesc& x) {
-                   return "hair diffuse " + show(x.diffuse_reflectance) + ", specular " +
-                          show(x.specular_reflectance) + ", exponent " + show(x.exponent);
-                 },
-                 [](const PrincipledThinDesc& x) {
-                   return "principledthin " + show(x.base_color) + ", roughness " + show(x.roughness) +
-                          ", anisotropic " + show(x.anisotropic) + ", spec_trans " + show(x.spec_trans) +
-                          ", spec_tint " + show(x.spec_tint) + ", sheen " + show(x.sheen) + " (tint " +
-                          show(x.sheen_tint) + "), flatness " + show(x.flatness) + ", diff_trans " +
-                          show(x.diff_trans) + ", eta " + num(x.eta);
-                 },
-                 [](const DiffuseTransmitterDesc& x) {
-                   return "diffuse sheet " + show(x.reflectance) + ", transmittance " + show(x.transmittance);
-                 },
-                 [](const CoatingDesc& x) {
-                   return "coating eta " + num(x.eta) + ", reflectance " + show(x.specular_reflectance) +
-                          ", absorption " + show(x.absorption) + ", weight " + show(x.weight) +
-                          rough(x.distribution, x.alpha_u, x.alpha_v) + " over " + b(x.nested);
-                 },
-                 [](const SheenDesc& x) {
-                   const std::string look = show(x.color) + ", roughness " + show(x.roughness);
-                   return "sheen " + look + " over " + b(x.nested);
-                 },
-                 [](const MaskDesc& x) { return "mask " + show(x.opacity) + " over " + b(x.nested); },
-                 [](const TwoSidedDesc& x) {
-                   return "twosided " + b(x.front) + (x.back == x.front ? "" : " and " + b(x.back));
-                 },
-                 [](const BumpMapDesc& x) {
-                   return "bumpmap texture " + std::to_string(x.texture) + " × " + num(x.scale) + " over " +
-                          b(x.nested);
-                 },
-                 [](const NormalMapDesc& x) {
-                   return "normalmap texture " + std::to_string(x.texture) +
-                          (x.scale == 1 ? "" : " × " + num(x.scale)) + (x.follow_uv ? ", following v" : "") +
-                          " over " + b(x.nested);
-                 },
-                 [](const MixtureDesc& x) {
-                   std::string text = "mixture";
-                   for (const auto& part : x.parts)
-                     text += std::string(" ") +
-                             (part.complement ? "(1 - " + show(part.weight) + ")" : show(part.weight)) +
-                             " of " + b(part.bsdf);
-                   return text;
-                 }},
-      desc.kind);
+  return std::visit([](const auto& x) { return bsdf_kind(x); }, desc.kind);
 }
 
 std::string kind(const ShapeDesc& s) {

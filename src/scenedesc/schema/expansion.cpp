@@ -1,10 +1,11 @@
 // How much one BSDF, texture or group stands for once every use of a shared part counts. A few lines of a
 // scene file can double a part twenty times: the file is small, and every look-up takes a million steps.
+#include "scenedesc/schema/expansion.h"
+
 #include <algorithm>
 #include <vector>
 
 #include "base/error.h"
-#include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -69,29 +70,16 @@ void check_bsdfs(const SceneDesc& scene) {
                      "mixtures of mixtures multiply; simplify them");
   };
   const auto measure = [&](std::size_t slot, auto size_of) {
-    Size out{1, 1};
-    const auto nested = [&](int bsdf) {
-      const Size in = size_of(bsdf);
-      out = {std::max<std::size_t>(in.parts, 1), in.levels + 1};
-    };
     const auto& kind = scene.bsdfs[slot].kind;
-    if (const auto* coat = std::get_if<CoatingDesc>(&kind)) nested(coat->nested);
-    if (const auto* sheen = std::get_if<SheenDesc>(&kind)) nested(sheen->nested);
-    if (const auto* mask = std::get_if<MaskDesc>(&kind)) nested(mask->nested);
-    if (const auto* bump = std::get_if<BumpMapDesc>(&kind)) nested(bump->nested);
-    if (const auto* map = std::get_if<NormalMapDesc>(&kind)) nested(map->nested);
-    if (const auto* two = std::get_if<TwoSidedDesc>(&kind)) {
-      const Size front = size_of(two->front), back = size_of(two->back);
-      out = {std::max<std::size_t>({front.parts, back.parts, 1}), std::max(front.levels, back.levels) + 1};
-    }
-    if (const auto* mixture = std::get_if<MixtureDesc>(&kind)) {
-      out = {0, 1};
-      for (const auto& part : mixture->parts) {
-        const Size in = size_of(part.bsdf);
-        out = {out.parts + std::max<std::size_t>(in.parts, 1), std::max(out.levels, in.levels + 1)};
-        if (out.parts > kPlainBsdfs) break;  // a list of ten thousand parts is no reason to go on
-      }
-    }
+    // A mixture stands for all its parts together, another BSDF for the largest of those nested in it.
+    const bool sums = std::holds_alternative<MixtureDesc>(kind);
+    Size out{sums ? std::size_t{0} : std::size_t{1}, 1};
+    for_each_nested(kind, [&](int bsdf) {
+      if (out.parts > kPlainBsdfs) return;  // a list of ten thousand parts is no reason to go on
+      const Size in = size_of(bsdf);
+      out.parts = sums ? out.parts + std::max<std::size_t>(in.parts, 1) : std::max(out.parts, in.parts);
+      out.levels = std::max(out.levels, in.levels + 1);
+    });
     if (out.parts > kPlainBsdfs || out.levels > kBsdfLevels) refuse(slot);
     return out;
   };

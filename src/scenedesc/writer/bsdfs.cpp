@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <type_traits>
 
 #include "scenedesc/schema/hair.h"
 #include "scenedesc/writer/writer.h"
@@ -31,21 +33,14 @@ void MitsubaWriter::roughness(Distribution distribution, const FloatInput& u, co
 // Whether light passes, so that Mitsuba's "twosided" refuses it.
 bool MitsubaWriter::transmits(int index) const {
   if (index == kNone) return false;
-  const auto& kind = scene_.bsdfs[static_cast<std::size_t>(index)].kind;
-  if (std::holds_alternative<DielectricDesc>(kind) || std::holds_alternative<ThinDielectricDesc>(kind) ||
-      std::holds_alternative<NullBsdfDesc>(kind) || std::holds_alternative<MaskDesc>(kind) ||
-      std::holds_alternative<PrincipledThinDesc>(kind))
-    return true;
+  const BsdfKind& kind = scene_.bsdfs[static_cast<std::size_t>(index)].kind;
+  if (std::visit([](const auto& desc) { return desc.kInfo.transmits; }, kind)) return true;
   if (const auto* p = std::get_if<PrincipledDesc>(&kind))
     return p->spec_trans.texture != kNone || p->spec_trans.value > 0;
-  if (const auto* bump = std::get_if<BumpMapDesc>(&kind)) return transmits(bump->nested);
-  if (const auto* normal = std::get_if<NormalMapDesc>(&kind)) return transmits(normal->nested);
-  if (const auto* coat = std::get_if<CoatingDesc>(&kind)) return transmits(coat->nested);
-  if (const auto* sheen = std::get_if<SheenDesc>(&kind)) return transmits(sheen->nested);
-  if (const auto* mix = std::get_if<MixtureDesc>(&kind))
-    return std::any_of(mix->parts.begin(), mix->parts.end(),
-                       [&](const auto& p) { return transmits(p.bsdf); });
-  return false;
+  if (std::holds_alternative<TwoSidedDesc>(kind)) return false;
+  bool any = false;
+  for_each_nested(kind, [&](int nested) { any = any || transmits(nested); });
+  return any;
 }
 
 void MitsubaWriter::bsdf(int index) {
@@ -54,141 +49,158 @@ void MitsubaWriter::bsdf(int index) {
 }
 
 void MitsubaWriter::kind_of(const BsdfDesc& desc, const std::string& id) {
-  const auto nested = [&](int k) { xml_.reference(bsdf_ids_[static_cast<std::size_t>(k)]); };
-  const auto& kind = desc.kind;
-  if (std::holds_alternative<NullBsdfDesc>(kind)) {
-    open_bsdf("null", id);
-  } else if (const auto* diffuse = std::get_if<DiffuseDesc>(&kind)) {
-    open_bsdf("diffuse", id);
-    color("reflectance", diffuse->reflectance);
-  } else if (const auto* rough = std::get_if<RoughDiffuseDesc>(&kind)) {
-    warn(desc.where, "rough diffuse surfaces (Oren-Nayar)", "diffuse");
-    open_bsdf("diffuse", id);
-    color("reflectance", rough->reflectance);
-  } else if (const auto* metal = std::get_if<ConductorDesc>(&kind)) {
-    open_bsdf(is_smooth(metal->alpha_u, metal->alpha_v) ? "conductor" : "roughconductor", id);
-    if (metal->eta == Rgb(0) && metal->k == Rgb(1))
-      xml_.string("material", "none");
-    else
-      xml_.color("eta", metal->eta), xml_.color("k", metal->k);
-    color("specular_reflectance", metal->specular_reflectance);
-    roughness(metal->distribution, metal->alpha_u, metal->alpha_v);
-  } else if (const auto* glass = std::get_if<DielectricDesc>(&kind)) {
-    open_bsdf(is_smooth(glass->alpha_u, glass->alpha_v) ? "dielectric" : "roughdielectric", id);
-    xml_.number("int_ior", glass->eta), xml_.number("ext_ior", 1);
-    color("specular_reflectance", glass->specular_reflectance);
-    color("specular_transmittance", glass->specular_transmittance);
-    roughness(glass->distribution, glass->alpha_u, glass->alpha_v);
-  } else if (const auto* thin = std::get_if<ThinDielectricDesc>(&kind)) {
-    open_bsdf("thindielectric", id);
-    xml_.number("int_ior", thin->eta), xml_.number("ext_ior", 1);
-    color("specular_reflectance", thin->specular_reflectance);
-    color("specular_transmittance", thin->specular_transmittance);
-  } else if (const auto* plastic = std::get_if<PlasticDesc>(&kind)) {
-    const bool smooth = is_smooth(plastic->alpha, plastic->alpha);
-    if (plastic->lossless && !smooth) return lossless_plastic(*plastic, desc, id);
-    open_bsdf(smooth ? "plastic" : "roughplastic", id);
-    xml_.number("int_ior", plastic->eta), xml_.number("ext_ior", 1);
-    color("diffuse_reflectance", plastic->diffuse_reflectance);
-    color("specular_reflectance", plastic->specular_reflectance);
-    xml_.flag("nonlinear", plastic->nonlinear && !plastic->lossless);
-    if (!smooth) {
-      xml_.string("distribution", plastic->distribution == Distribution::ggx ? "ggx" : "beckmann");
-      constant("alpha", plastic->alpha, desc.where, "a textured roughness of plastic");
+  std::visit([&](const auto& d) { write(d, desc, id); }, desc.kind);
+}
+
+void MitsubaWriter::nested(int index) { xml_.reference(bsdf_ids_[static_cast<std::size_t>(index)]); }
+
+// What is 0 where that is Mitsuba's default too is left out: Mitsuba leaves the lobe out.
+template <typename Desc>
+void MitsubaWriter::fields(const Desc& d) {
+  const Desc plain{};
+  for_each_field(d, [&](const auto& field, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, ColorInput>) {
+      if (field.role == Role::reflectance) color(field.name, value);
+    } else if constexpr (std::is_same_v<Value, FloatInput>) {
+      const bool left_out = value.texture == kNone && value.value == 0 && (plain.*field.member).value == 0;
+      if (field.role == Role::number && !left_out) scalar(field.name, value);
+    } else if constexpr (std::is_same_v<Value, float>) {
+      if (field.role == Role::index) xml_.number("int_ior", value), xml_.number("ext_ior", 1);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      if (field.role == Role::flag) xml_.flag(field.name, value);
+    } else if constexpr (std::is_same_v<Value, int>) {
+      if (field.role == Role::nested) nested(value);
     }
-  } else if (const auto* phong = std::get_if<PhongDesc>(&kind)) {
-    // A Beckmann lobe of about the width of cosⁿ about the mirror direction.
-    warn(desc.where, "Phong's model", "a mixture of diffuse and rough conductor");
-    const float n = phong->exponent.texture == kNone ? phong->exponent.value : 30;
-    const FloatInput alpha{std::sqrt(2 / (n + 2)) * 2, kNone};
-    return dull_and_glossy(id, phong->diffuse_reflectance, phong->specular_reflectance, alpha, alpha);
-  } else if (const auto* ward = std::get_if<WardDesc>(&kind)) {
-    warn(desc.where, "Ward's model", "a mixture of diffuse and rough conductor");
-    return dull_and_glossy(id, ward->diffuse_reflectance, ward->specular_reflectance, ward->alpha_u,
-                           ward->alpha_v);
-  } else if (const auto* p = std::get_if<PrincipledDesc>(&kind)) {
-    open_bsdf("principled", id);
-    color("base_color", p->base_color);
-    const std::pair<const char*, const FloatInput*> inputs[] = {
-        {"roughness", &p->roughness},   {"anisotropic", &p->anisotropic},
-        {"metallic", &p->metallic},     {"spec_trans", &p->spec_trans},
-        {"spec_tint", &p->spec_tint},   {"sheen", &p->sheen},
-        {"sheen_tint", &p->sheen_tint}, {"clearcoat", &p->clearcoat},
-        {"flatness", &p->flatness},     {"clearcoat_gloss", &p->clearcoat_gloss}};
-    // What is 0 is left out: Mitsuba leaves the lobe out.
-    for (const auto& [name, input] : inputs)
-      if (input->texture != kNone || input->value != 0 || input == &p->roughness) scalar(name, *input);
-    xml_.number("eta", p->eta);
-  } else if (const auto* sheet = std::get_if<PrincipledThinDesc>(&kind)) {
-    open_bsdf("principledthin", id);
-    color("base_color", sheet->base_color);
-    const std::pair<const char*, const FloatInput*> inputs[] = {
-        {"roughness", &sheet->roughness},   {"anisotropic", &sheet->anisotropic},
-        {"spec_trans", &sheet->spec_trans}, {"spec_tint", &sheet->spec_tint},
-        {"sheen", &sheet->sheen},           {"sheen_tint", &sheet->sheen_tint},
-        {"flatness", &sheet->flatness},     {"diff_trans", &sheet->diff_trans}};
-    for (const auto& [name, input] : inputs)
-      if (input->texture != kNone || input->value != 0 || input == &sheet->roughness) scalar(name, *input);
-    xml_.number("eta", sheet->eta);
-  } else if (const auto* paper = std::get_if<DiffuseTransmitterDesc>(&kind)) {
-    warn(desc.where, "diffuse transmission", "diffuse reflection alone");
+  });
+  if constexpr (requires {
+                  d.alpha_u;
+                  d.distribution;
+                })
+    roughness(d.distribution, d.alpha_u, d.alpha_v);
+}
+
+// The first color among the fields, for a diffuse BSDF in place of one that Mitsuba 3 does not have.
+template <typename Desc>
+ColorInput MitsubaWriter::matt_color(const Desc& d) {
+  std::optional<ColorInput> found;
+  for_each_field(d, [&](const auto&, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, ColorInput>)
+      if (!found) found = value;
+  });
+  return found.value_or(ColorInput{Rgb(0.5f)});
+}
+
+template <typename Desc>
+void MitsubaWriter::write(const Desc& d, const BsdfDesc& desc, const std::string& id) {
+  if constexpr (Desc::kInfo.lacking != nullptr) {
+    warn(desc.where, Desc::kInfo.lacking, Desc::kInfo.stand_in);
     open_bsdf("diffuse", id);
-    color("reflectance", paper->reflectance);
-  } else if (const auto* hair = std::get_if<HairDesc>(&kind)) {
-    if (hair->diffuse_reflectance.texture != kNone) {
-      warn(desc.where, "Kajiya and Kay's hair, textured", "diffuse");
-      open_bsdf("diffuse", id);
-      color("reflectance", hair->diffuse_reflectance);
-    } else {
-      HairDesc plain = *hair;
-      const bool painted = plain.specular_reflectance.texture != kNone || plain.exponent.texture != kNone;
-      if (plain.specular_reflectance.texture != kNone)
-        plain.specular_reflectance = HairDesc{}.specular_reflectance;
-      if (plain.exponent.texture != kNone) plain.exponent = HairDesc{}.exponent;
-      warn(desc.where, "Kajiya and Kay's hair",
-           painted ? "Mitsuba's hair, of one gloss" : "Mitsuba's hair of the same brightness");
-      const HairAbsorption fibre = hair_to_absorption(plain);
-      open_bsdf("hair", id);
-      xml_.color("sigma_a", fibre.sigma_a);
-      xml_.number("int_ior", fibre.eta), xml_.number("ext_ior", 1);
-      xml_.number("longitudinal_roughness", fibre.beta_m);
+    color("reflectance", matt_color(d));
+  } else {
+    std::string name = Desc::kInfo.name;
+    if constexpr (requires {
+                    d.alpha_u;
+                    d.distribution;
+                  })
+      if (!is_smooth(d.alpha_u, d.alpha_v)) name = "rough" + name;
+    open_bsdf(name.c_str(), id);
+    fields(d);
+    if constexpr (std::is_same_v<Desc, PrincipledDesc> || std::is_same_v<Desc, PrincipledThinDesc>)
+      xml_.number("eta", d.eta);
+    if constexpr (std::is_same_v<Desc, ConductorDesc>) {
+      if (d.eta == Rgb(0) && d.k == Rgb(1))
+        xml_.string("material", "none");
+      else
+        xml_.color("eta", d.eta), xml_.color("k", d.k);
     }
-  } else if (const auto* coat = std::get_if<CoatingDesc>(&kind)) {
-    return coating(*coat, desc, id);
-  } else if (const auto* sheen = std::get_if<SheenDesc>(&kind)) {
-    warn(desc.where, "sheen of cloth", "the BSDF below it alone");
-    return kind_of(scene_.bsdfs[static_cast<std::size_t>(sheen->nested)], id);
-  } else if (const auto* mask = std::get_if<MaskDesc>(&kind)) {
-    open_bsdf("mask", id);
-    scalar("opacity", mask->opacity);
-    nested(mask->nested);
-  } else if (const auto* both = std::get_if<TwoSidedDesc>(&kind)) {
-    if (transmits(both->front) || transmits(both->back)) {
-      warn(desc.where, "\"twosided\" around a BSDF that lets light pass", "that BSDF alone");
-      const BsdfDesc& inner = scene_.bsdfs[static_cast<std::size_t>(both->front)];
-      return kind_of(inner, id);
-    }
-    open_bsdf("twosided", id);
-    nested(both->front);
-    if (both->back != both->front) nested(both->back);
-  } else if (const auto* bump = std::get_if<BumpMapDesc>(&kind)) {
-    const Input height = resolve(bump->texture);
-    if (height.texture == kNone) return kind_of(scene_.bsdfs[static_cast<std::size_t>(bump->nested)], id);
-    open_bsdf("bumpmap", id);
-    reference(height.texture, "arbitrary");
-    xml_.number("scale", bump->scale);
-    nested(bump->nested);
-  } else if (const auto* normal = std::get_if<NormalMapDesc>(&kind)) {
-    const Input map = resolve(normal->texture);
-    if (map.texture == kNone) return kind_of(scene_.bsdfs[static_cast<std::size_t>(normal->nested)], id);
-    if (normal->scale != 1) warn(desc.where, "a scale of normal maps", "1");
-    if (normal->follow_uv) warn(desc.where, "normal maps that follow mirrored uvs", "those of Mitsuba");
-    open_bsdf("normalmap", id);
-    reference(map.texture, "normalmap");
-    nested(normal->nested);
-  } else if (const auto* mix = std::get_if<MixtureDesc>(&kind)) {
-    return mixture(*mix, desc, id);
   }
+  xml_.close();
+}
+
+void MitsubaWriter::write(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id) {
+  const bool smooth = is_smooth(d.alpha, d.alpha);
+  if (d.lossless && !smooth) return lossless_plastic(d, desc, id);
+  PlasticDesc written = d;
+  written.nonlinear = d.nonlinear && !d.lossless;
+  open_bsdf(smooth ? "plastic" : "roughplastic", id);
+  fields(written);
+  if (!smooth) {
+    xml_.string("distribution", d.distribution == Distribution::ggx ? "ggx" : "beckmann");
+    constant("alpha", d.alpha, desc.where, "a textured roughness of plastic");
+  }
+  xml_.close();
+}
+
+void MitsubaWriter::write(const PhongDesc& d, const BsdfDesc& desc, const std::string& id) {
+  // A Beckmann lobe of about the width of cosⁿ about the mirror direction.
+  warn(desc.where, "Phong's model", "a mixture of diffuse and rough conductor");
+  const float n = d.exponent.texture == kNone ? d.exponent.value : 30;
+  const FloatInput alpha{std::sqrt(2 / (n + 2)) * 2, kNone};
+  dull_and_glossy(id, d.diffuse_reflectance, d.specular_reflectance, alpha, alpha);
+}
+
+void MitsubaWriter::write(const WardDesc& d, const BsdfDesc& desc, const std::string& id) {
+  warn(desc.where, "Ward's model", "a mixture of diffuse and rough conductor");
+  dull_and_glossy(id, d.diffuse_reflectance, d.specular_reflectance, d.alpha_u, d.alpha_v);
+}
+
+void MitsubaWriter::write(const HairDesc& d, const BsdfDesc& desc, const std::string& id) {
+  if (d.diffuse_reflectance.texture != kNone) {
+    warn(desc.where, "Kajiya and Kay's hair, textured", "diffuse");
+    open_bsdf("diffuse", id);
+    color("reflectance", d.diffuse_reflectance);
+    return xml_.close();
+  }
+  HairDesc plain = d;
+  const bool painted = plain.specular_reflectance.texture != kNone || plain.exponent.texture != kNone;
+  if (plain.specular_reflectance.texture != kNone)
+    plain.specular_reflectance = HairDesc{}.specular_reflectance;
+  if (plain.exponent.texture != kNone) plain.exponent = HairDesc{}.exponent;
+  warn(desc.where, "Kajiya and Kay's hair",
+       painted ? "Mitsuba's hair, of one gloss" : "Mitsuba's hair of the same brightness");
+  const HairAbsorption fibre = hair_to_absorption(plain);
+  open_bsdf("hair", id);
+  xml_.color("sigma_a", fibre.sigma_a);
+  xml_.number("int_ior", fibre.eta), xml_.number("ext_ior", 1);
+  xml_.number("longitudinal_roughness", fibre.beta_m);
+  xml_.close();
+}
+
+void MitsubaWriter::write(const SheenDesc& d, const BsdfDesc& desc, const std::string& id) {
+  warn(desc.where, "sheen of cloth", "the BSDF below it alone");
+  kind_of(scene_.bsdfs[static_cast<std::size_t>(d.nested)], id);
+}
+
+void MitsubaWriter::write(const TwoSidedDesc& d, const BsdfDesc& desc, const std::string& id) {
+  if (transmits(d.front) || transmits(d.back)) {
+    warn(desc.where, "\"twosided\" around a BSDF that lets light pass", "that BSDF alone");
+    return kind_of(scene_.bsdfs[static_cast<std::size_t>(d.front)], id);
+  }
+  open_bsdf("twosided", id);
+  nested(d.front);
+  if (d.back != d.front) nested(d.back);
+  xml_.close();
+}
+
+void MitsubaWriter::write(const BumpMapDesc& d, const BsdfDesc&, const std::string& id) {
+  const Input height = resolve(d.texture);
+  if (height.texture == kNone) return kind_of(scene_.bsdfs[static_cast<std::size_t>(d.nested)], id);
+  open_bsdf("bumpmap", id);
+  reference(height.texture, "arbitrary");
+  xml_.number("scale", d.scale);
+  fields(d);
+  xml_.close();
+}
+
+void MitsubaWriter::write(const NormalMapDesc& d, const BsdfDesc& desc, const std::string& id) {
+  const Input map = resolve(d.texture);
+  if (map.texture == kNone) return kind_of(scene_.bsdfs[static_cast<std::size_t>(d.nested)], id);
+  if (d.scale != 1) warn(desc.where, "a scale of normal maps", "1");
+  if (d.follow_uv) warn(desc.where, "normal maps that follow mirrored uvs", "those of Mitsuba");
+  open_bsdf("normalmap", id);
+  reference(map.texture, "normalmap");
+  fields(d);
   xml_.close();
 }
 
@@ -241,7 +253,7 @@ void MitsubaWriter::dull_and_glossy(const std::string& id, const ColorInput& dul
   xml_.close();
 }
 
-void MitsubaWriter::coating(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id) {
+void MitsubaWriter::write(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id) {
   const BsdfDesc& inner = scene_.bsdfs[static_cast<std::size_t>(d.nested)];
   const auto* diffuse = std::get_if<DiffuseDesc>(&inner.kind);
   if (!diffuse || d.weight.texture != kNone || d.weight.value != 1) {
@@ -262,8 +274,7 @@ void MitsubaWriter::coating(const CoatingDesc& d, const BsdfDesc& desc, const st
   xml_.close();
 }
 
-void MitsubaWriter::mixture(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id) {
-  const auto nested = [&](int k) { xml_.reference(bsdf_ids_[static_cast<std::size_t>(k)]); };
+void MitsubaWriter::write(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id) {
   // A pair of complementary weights, either way round: the first has the complement.
   if (d.parts.size() == 2 && d.parts[0].complement != d.parts[1].complement &&
       same(d.parts[0].weight, d.parts[1].weight)) {

@@ -1,6 +1,6 @@
 #include <cstring>
 
-#include "scenedesc/readers.h"
+#include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/writer/writer.h"
 
 namespace lumirank::scenedesc {

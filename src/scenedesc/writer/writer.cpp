@@ -80,6 +80,8 @@ std::vector<std::string> files_of(const SceneDesc& scene) {
   for (const TextureDesc& t : scene.textures)
     if (const auto* bitmap = std::get_if<BitmapTextureDesc>(&t.kind); bitmap && !bitmap->bytes)
       files.push_back(bitmap->filename);
+  for (const BsdfDesc& b : scene.bsdfs)
+    for_each_file(b.kind, [&](const FileInput& file) { files.push_back(file.name); });
   for (const ShapeDesc& s : scene.shapes) {
     if (const auto* mesh = std::get_if<MeshFileDesc>(&s.kind)) files.push_back(mesh->filename);
     if (const auto* curves = std::get_if<CurvesDesc>(&s.kind); curves && !curves->filename.empty())

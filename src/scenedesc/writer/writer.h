@@ -49,13 +49,30 @@ class MitsubaWriter {
   void bsdf(int index);
   void kind_of(const BsdfDesc& desc, const std::string& id);
   void open_bsdf(const char* type, const std::string& id);
+  void nested(int index);
+  // All fields of roles that readers treat alike.
+  template <typename Desc>
+  void fields(const Desc& d);
+  template <typename Desc>
+  static ColorInput matt_color(const Desc& d);
+  // A BSDF by its fields, and those that take more.
+  template <typename Desc>
+  void write(const Desc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const PhongDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const WardDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const HairDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const SheenDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const TwoSidedDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const BumpMapDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const NormalMapDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id);
   void roughness(Distribution distribution, const FloatInput& alpha_u, const FloatInput& alpha_v);
   bool transmits(int index) const;
   void dull_and_glossy(const std::string& id, const ColorInput& dull, const ColorInput& glossy,
                        const FloatInput& alpha_u, const FloatInput& alpha_v);
   void lossless_plastic(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id);
-  void coating(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id);
-  void mixture(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id);
   void blend_rest(const MixtureDesc& d, std::size_t from, double sum, const std::string& id);
 
   // shapes.cpp

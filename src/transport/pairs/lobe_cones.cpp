@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scatter/lobes/family.h"
+
 namespace lumirank::transport {
 namespace {
 
@@ -19,8 +21,7 @@ LobeCone lobe_cone(std::span<const scatter::Lobe> lobes) {
   for (const scatter::Lobe& lobe : lobes) {
     const float least = scatter::lobe_roughness(lobe);
     if (least >= kBroad) continue;
-    const bool two_widths =
-        lobe.kind == scatter::LobeKind::microfacet_reflect || lobe.kind == scatter::LobeKind::ward;
+    const bool two_widths = scatter::family_of(lobe.kind).two_widths && !scatter::shines_through(lobe.kind);
     const float wider = lobe.coat ? lobe.coat.bend : 1.0f;  // refraction into the open
     const float most = two_widths ? wider * std::max(lobe.alpha_u, lobe.alpha_v) : least;
     if (least * most < sharpest) {

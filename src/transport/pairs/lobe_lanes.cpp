@@ -7,7 +7,7 @@
 namespace lumirank::transport {
 namespace {
 
-using scatter::LobeKind;
+using scatter::LaneForm;
 using scatter::NormalDistribution;
 
 const Lane kZero{};
@@ -92,43 +92,45 @@ Lane3 microfacet(const ScatterGroup& group, const LobeForm& form, const LobeLane
 }
 
 Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe, const Meeting& at) {
-  switch (form.kind) {
-    case LobeKind::interfaced_diffuse:
+  switch (form.lanes) {
+    case LaneForm::interfaced_diffuse:
       return lobe.color * interface_transmittance(lobe, at.cos_i);
-    case LobeKind::oren_nayar:
+    case LaneForm::oren_nayar:
       return oren_nayar(lobe, at);
-    case LobeKind::microfacet_reflect:
+    case LaneForm::microfacet_reflect:
       return microfacet(group, form, lobe, at);
-    case LobeKind::thin_transmit: {
+    case LaneForm::thin_transmit: {
       const Lane f = fresnel_dielectric(at.cos_d, lobe.eta);
       const Lane d =
           normals(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
       const Lane g1 = masking(form.distribution, at.cos_i, stretched(group, at.i, lobe));
       return lobe.color * ((one() - f) * d * g1 / at.cos_i);
     }
-    case LobeKind::phong:
+    case LaneForm::phong:
       return lobe.color * phong(lobe, at);
-    case LobeKind::ward:
+    case LaneForm::ward:
       return lobe.color * ward(group, form.variant, lobe, at);
-    case LobeKind::sheen:
+    case LaneForm::sheen:
       return lobe.color * schlick_weight(at.cos_d);
-    case LobeKind::disney_diffuse:
+    case LaneForm::disney_diffuse:
       return lobe.color * disney_diffuse(lobe, at);
-    case LobeKind::clearcoat:
+    case LaneForm::clearcoat:
       return lobe.color * clearcoat(group, lobe, at);
-    default:
-      return lobe.color;
+    case LaneForm::constant:
+    case LaneForm::none:  // not evaluated here
+      break;
   }
+  return lobe.color;
 }
 
 // Folds what a lobe makes of wo alone into its colour and its constants.
 void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, const Lane3& wo, Lane cos_o) {
   const Lane inv_pi = splat(kInvPi);
-  switch (form.kind) {
-    case LobeKind::interfaced_diffuse:
+  switch (form.lanes) {
+    case LaneForm::interfaced_diffuse:
       lobe.color = lobe.color * (inv_pi * interface_transmittance(lobe, cos_o));
       return;
-    case LobeKind::oren_nayar: {
+    case LaneForm::oren_nayar: {
       const Lane s2 = lobe.alpha_u * lobe.alpha_u;
       lobe.color = lobe.color * inv_pi, lobe.a = lobe.a * inv_pi;
       lobe.b.x = one() - splat(0.5f) * s2 / (s2 + splat(0.33f));
@@ -137,32 +139,34 @@ void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, c
       lobe.eta = splat(0.17f) * s2 / (s2 + splat(0.13f));
       return;
     }
-    case LobeKind::microfacet_reflect:
-    case LobeKind::thin_transmit: {
+    case LaneForm::microfacet_reflect:
+    case LaneForm::thin_transmit: {
       const Lane g1 = masking(form.distribution, cos_o, stretched(group, across(group, wo, cos_o), lobe));
       lobe.color = lobe.color * (g1 / (splat(4) * cos_o));
       return;
     }
-    case LobeKind::phong:
+    case LaneForm::phong:
       lobe.color = lobe.color * ((lobe.alpha_u + splat(2)) * splat(0.5f * kInvPi));
       return;
-    case LobeKind::ward: {
+    case LaneForm::ward: {
       const Lane area = splat(kPi) * lobe.alpha_u * lobe.alpha_v;
       const Lane slant =
           form.variant == 0 ? splat(4) * sqrt(cos_o) : (form.variant == 1 ? splat(4) * cos_o : one());
       lobe.color = lobe.color * (one() / (area * slant));
       return;
     }
-    case LobeKind::clearcoat: {
+    case LaneForm::clearcoat: {
       const Lane a2 = lobe.alpha_u * lobe.alpha_u, sin2 = sin2_of(group, across(group, wo, cos_o));
       const Lane g1 = masking(NormalDistribution::ggx, cos_o, splat(kCoatMask2) * sin2);
       lobe.color = lobe.color * (g1 * inv_pi * (a2 - one()) / log_positive(a2));
       return;
     }
-    case LobeKind::sheen:
-      return;
-    default:
+    case LaneForm::constant:
+    case LaneForm::disney_diffuse:
       lobe.color = lobe.color * inv_pi;
+      return;
+    case LaneForm::sheen:
+    case LaneForm::none:
       return;
   }
 }
@@ -187,8 +191,6 @@ Lane3 under_coat(const ScatterGroup& group, const LobeForm& form, const LobeLane
   return select(enters, f, black());
 }
 
-bool is_matt(LobeKind kind) { return kind == LobeKind::diffuse || kind == LobeKind::interfaced_diffuse; }
-
 }  // namespace
 
 void prepare(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats) {
@@ -209,7 +211,7 @@ void prepare(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats) {
     prepare(group, form, lobes[k], coat.wo, coat.cos_o);
     const Lane3 passage = coat_passage(coat, group.cos_o, inside) * (one() / (coat.bend * coat.bend));
     lobes[k].color = select(enters, lobes[k].color * passage, black());
-    if (form.kind == LobeKind::oren_nayar) lobes[k].a = select(enters, lobes[k].a * passage, black());
+    if (form.lanes == LaneForm::oren_nayar) lobes[k].a = select(enters, lobes[k].a * passage, black());
   }
 }
 
@@ -249,7 +251,8 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
     Lane3 part = kind.coated ? under_coat(group, kind, lobe, group.coats[k], wi, at.cos_i)
                              : value(group, kind, lobe, at);
     // Matt lobes leave no direct light to tracing.
-    if (group.some_traced && !is_matt(kind.kind)) part = select(direct & lobe.traced, black(), part);
+    if (group.some_traced && !scatter::family_of(kind.kind).matt)
+      part = select(direct & lobe.traced, black(), part);
     f = f + part;
   }
   return select(lit, f, behind);

@@ -5,53 +5,29 @@
 namespace lumirank::transport {
 namespace {
 
-using scatter::LobeKind;
-
 bool has_lane_code(const scatter::Lobe& lobe) {
   if (lobe.veil) return false;
   if (lobe.coat && scatter::shines_through(lobe.kind)) return false;
-  switch (lobe.kind) {
-    case LobeKind::diffuse:
-    case LobeKind::interfaced_diffuse:
-    case LobeKind::oren_nayar:
-    case LobeKind::phong:
-    case LobeKind::ward:
-    case LobeKind::sheen:
-    case LobeKind::disney_diffuse:
-    case LobeKind::clearcoat:
-    case LobeKind::diffuse_transmit:
-    case LobeKind::thin_transmit:
-      return true;
-    case LobeKind::microfacet_reflect:
-      return lobe.variant == 0;
-    default:
-      return false;
-  }
-}
-
-bool needs_half_vector(LobeKind kind) {
-  return kind == LobeKind::microfacet_reflect || kind == LobeKind::ward || kind == LobeKind::sheen ||
-         kind == LobeKind::disney_diffuse || kind == LobeKind::clearcoat;
+  return scatter::family_of(lobe.kind).lanes != scatter::LaneForm::none;
 }
 
 bool is_anisotropic(const scatter::Lobe& lobe) {
-  return (lobe.kind == LobeKind::microfacet_reflect || lobe.kind == LobeKind::ward ||
-          lobe.kind == LobeKind::thin_transmit) &&
-         lobe.alpha_u != lobe.alpha_v;
+  return scatter::family_of(lobe.kind).two_widths && lobe.alpha_u != lobe.alpha_v;
 }
 
 ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
   ScatterForm form;
   form.in_lanes = std::all_of(lobes.begin(), lobes.end(), has_lane_code);
   for (const scatter::Lobe& lobe : lobes) {
+    const scatter::LobeFamily& family = scatter::family_of(lobe.kind);
     if (scatter::shines_through(lobe.kind)) form.sides = Sides::both;
     if (scatter::is_hair(lobe.kind)) form.sides = Sides::fibre;
     const bool coated = static_cast<bool>(lobe.coat);
-    form.microfacets = form.microfacets || (needs_half_vector(lobe.kind) && !coated);
+    form.microfacets = form.microfacets || (family.half_vector && !coated);
     form.anisotropic = form.anisotropic || is_anisotropic(lobe);
     form.coated = form.coated || coated;
     if (form.in_lanes)
-      form.lobes.push_back({lobe.kind, lobe.fresnel, lobe.distribution, lobe.variant, coated});
+      form.lobes.push_back({lobe.kind, family.lanes, lobe.fresnel, lobe.distribution, lobe.variant, coated});
   }
   // One form for all that goes lane by lane, but for the side on which rays start.
   if (!form.in_lanes) form.lobes.clear(), form.microfacets = form.anisotropic = form.coated = false;

@@ -6,11 +6,13 @@
 
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
+#include "scatter/lobes/family.h"
 
 namespace lumirank::transport {
 
 struct LobeForm {
   scatter::LobeKind kind;
+  scatter::LaneForm lanes;  // of the kind
   scatter::FresnelKind fresnel;
   scatter::NormalDistribution distribution;
   std::uint8_t variant;  // of ward

@@ -54,11 +54,12 @@ void read(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats, int lane, con
     const scatter::Lobe& lobe = shared[k];
     put(lobes[k].color, lane, colors[k]);
     lobes[k].alpha_u[lane] = lobe.alpha_u, lobes[k].alpha_v[lane] = lobe.alpha_v;
-    const bool inverse = lobe.kind == scatter::LobeKind::microfacet_reflect && !outside;
+    const scatter::LaneForm form = group.form->lobes[k].lanes;
+    const bool inverse = form == scatter::LaneForm::microfacet_reflect && !outside;
     lobes[k].eta[lane] = inverse ? 1 / lobe.eta : lobe.eta;
     put(lobes[k].a, lane, lobe.conductor_eta);
     put(lobes[k].b, lane, lobe.conductor_k);
-    if (lobe.kind == scatter::LobeKind::disney_diffuse) lobes[k].b.x[lane] = lobe.extra;
+    if (form == scatter::LaneForm::disney_diffuse) lobes[k].b.x[lane] = lobe.extra;
     if (lobe.coat) read(coats[k], lane, lobe.coat);
     const bool traced = scatter::lobe_roughness(lobe) < side.traced_below;
     lobes[k].traced[lane] = traced ? -1 : 0;

@@ -1,10 +1,11 @@
+// Indices of refraction of transparent materials by name.
 #include <algorithm>
 #include <cctype>
 #include <utility>
 
 #include "scenedesc/data/ior.h"
 
-namespace lumirank::scenedesc::mitsuba {
+namespace lumirank::scenedesc {
 
 namespace {
 
@@ -36,4 +37,4 @@ std::string dielectric_names() {
   return names;
 }
 
-}  // namespace lumirank::scenedesc::mitsuba
+}  // namespace lumirank::scenedesc

@@ -13,7 +13,9 @@
 //           lobes but at grazing light. (Kajiya and Kay have neither normalisation nor denominator.)
 #include <cmath>
 
-#include "scatter/lobe.h"
+#include "base/warp.h"
+#include "scatter/lobes/bound_terms.h"
+#include "scatter/lobes/family.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -61,22 +63,32 @@ float hair_specular_scale(float exponent) {
 
 float fibre_sine(Vec3f w) { return std::sqrt(w.y * w.y + w.z * w.z); }
 
-Rgb hair_diffuse_value(const Lobe& lobe) { return lobe.color * kInvPi2; }
+namespace {
 
-Rgb hair_specular_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+Rgb hair_diffuse_value(LobeView view, Vec3f, Vec3f) { return view.lobe.color * kInvPi2; }
+float hair_diffuse_pdf(LobeView, Vec3f, Vec3f) { return 1 / (4 * kPi); }
+bool hair_diffuse_sample(LobeView, Vec3f, Vec2f u, Vec3f& wi) {
+  wi = warp_sphere(u);
+  return true;
+}
+
+Rgb hair_specular_value(LobeView view, Vec3f wo, Vec3f wi) {
+  const Lobe& lobe = view.lobe;
   const float so = sine2(wo), si = sine2(wi);
   const float c = off_mirror(wo.x, std::sqrt(so), wi.x, std::sqrt(si));
   if (c <= 0) return Rgb(0);
   return lobe.color * (lobe.alpha_v * std::pow(c, lobe.alpha_u) / std::max(so, si));
 }
 
-float hair_specular_pdf(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+float hair_specular_pdf(LobeView view, Vec3f wo, Vec3f wi) {
+  const Lobe& lobe = view.lobe;
   const float phi_o = latitude(wo), delta = phi_o + latitude(wi);
   if (std::abs(delta) >= kPi / 2) return 0;
   return Logistic(lobe.alpha_u, phi_o).density(delta) / (2 * kPi * std::sqrt(sine2(wi)));
 }
 
-bool hair_specular_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi) {
+bool hair_specular_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
+  const Lobe& lobe = view.lobe;
   const float phi_o = latitude(wo);
   const float phi_i = Logistic(lobe.alpha_u, phi_o).draw(u.x) - phi_o;
   const float c = std::cos(phi_i), azimuth = 2 * kPi * u.y;
@@ -84,5 +96,46 @@ bool hair_specular_sample(const Lobe& lobe, Vec3f wo, Vec2f u, Vec3f& wi) {
   wi = {std::sin(phi_i), c * std::cos(azimuth), c * std::sin(azimuth)};
   return true;
 }
+
+float hair_diffuse_factor(const Lobe&, float, float) { return kInvPi * kInvPi; }
+float hair_specular_factor(const Lobe& lobe, float, float) { return lobe.alpha_v; }
+// Greatest sine of the angle to the fibre.
+float most_sine_of(float lo, float hi) {
+  return lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
+}
+Rgb hair_diffuse_bound(const LobeTerm& t, float, float lo, float hi, Slant slant) {
+  return t.scale * (slant == Slant::cosine ? most_sine_of(lo, hi) : 1.0f);
+}
+Rgb hair_specular_bound(const LobeTerm& t, float latitude_o, float lo, float hi, Slant slant) {
+  const float least_sine = std::min(std::cos(lo), std::cos(hi));  // of the angle to the fibre
+  const float most_sine = most_sine_of(lo, hi);
+  const float from = latitude_o + lo, to = latitude_o + hi;
+  const float off = from > 0 ? from : to < 0 ? -to : 0.0f;
+  if (off >= kPi / 2) return Rgb(0);
+  // c/max(co, c)² ≤ 1/max(co, c); the denominator does not count below 1e-8.
+  const float larger = std::max({t.cos_o, least_sine, 1e-4f});
+  const float share = slant == Slant::cosine
+                          ? std::min(1 / larger, most_sine / square(std::max(t.cos_o, 1e-4f)))
+                          : 1 / square(larger);
+  return t.scale * (std::pow(std::cos(off), t.lobe->alpha_u) * share);
+}
+float hair_specular_roughness(const Lobe& lobe) { return std::sqrt(2 / (lobe.alpha_u + 2)); }
+
+}  // namespace
+
+constinit const LobeFamily hair_diffuse_family{.value = hair_diffuse_value,
+                                               .pdf = hair_diffuse_pdf,
+                                               .sample = hair_diffuse_sample,
+                                               .albedo = color_albedo,
+                                               .factor_of_wo = hair_diffuse_factor,
+                                               .fibre_bound = hair_diffuse_bound};
+
+constinit const LobeFamily hair_specular_family{.value = hair_specular_value,
+                                                .pdf = hair_specular_pdf,
+                                                .sample = hair_specular_sample,
+                                                .factor_of_wo = hair_specular_factor,
+                                                .fibre_bound = hair_specular_bound,
+                                                .power = true,
+                                                .roughness = hair_specular_roughness};
 
 }  // namespace lumirank::scatter

@@ -1,9 +1,10 @@
-#include "scatter/charlie_sheen.h"
+#include "scatter/lobes/charlie_sheen.h"
 
 #include <cmath>
 #include <vector>
 
-#include "scatter/lobe.h"
+#include "scatter/lobes/bound_terms.h"
+#include "scatter/lobes/family.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -102,14 +103,46 @@ float veil_factor(const Veil& veil, float least_cosine) {
   return 1 - veil.share_value() * std::min(1.0f, raw_albedo(veil.roughness_value(), least_cosine));
 }
 
+namespace {
+
 // color · D·V / max(1, E(least cosine)); alpha_u is α.
-Rgb charlie_sheen_value(const Lobe& lobe, Vec3f wo, Vec3f wi) {
+Rgb charlie_sheen_value(LobeView view, Vec3f wo, Vec3f wi) {
+  const Lobe& lobe = view.lobe;
   const float e = raw_albedo(std::sqrt(lobe.alpha_u), std::min(wo.z, wi.z));
   return lobe.color * (raw_value(lobe.alpha_u, wo, wi) / std::max(1.0f, e));
 }
-
-Rgb charlie_sheen_albedo(const Lobe& lobe, float cos_o) {
-  return lobe.color * sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).held;
+Rgb charlie_sheen_albedo(LobeView view, Vec3f wo) {
+  return view.lobe.color * sheen_albedo(std::sqrt(view.lobe.alpha_u), wo.z).held;
 }
+float charlie_sheen_importance(LobeView view, float cos_o) {
+  const Lobe& lobe = view.lobe;
+  return mean(lobe.color) * std::max(kLeastImportance, sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).held);
+}
+float charlie_sheen_factor(const Lobe& lobe, float cos_o, float) {
+  // The albedo falls with the cosine, and the smaller one counts.
+  return (2 + 1 / lobe.alpha_u) * (0.5f * kInvPi) /
+         std::max(1.0f, sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).raw);
+}
+Rgb charlie_sheen_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
+  const float cosine = slant == Slant::cosine ? r.cos_hi : 1.0f;
+  const float d = std::pow(r.most_tilt_sin, 1 / t.lobe->alpha_u);
+  // c/(co + c - co·c) grows with c, and what is below it too.
+  const float c = slant == Slant::cosine ? r.cos_hi : r.cos_lo;
+  return t.scale * (d * cosine / (4 * (t.cos_o + c - t.cos_o * c)));
+}
+float charlie_sheen_reach(const LobeTerm&) { return 1; }
+UnderCoat charlie_sheen_under_coat(LobeView view) {
+  return {UnderCoat::Sort::diffuse, charlie_sheen_albedo(view, {0, 0, 2.0f / 3})};
+}
+
+}  // namespace
+
+constinit const LobeFamily charlie_sheen_family{.value = charlie_sheen_value,
+                                                .albedo = charlie_sheen_albedo,
+                                                .importance = charlie_sheen_importance,
+                                                .factor_of_wo = charlie_sheen_factor,
+                                                .bound = charlie_sheen_bound,
+                                                .reach = charlie_sheen_reach,
+                                                .under_coat = charlie_sheen_under_coat};
 
 }  // namespace lumirank::scatter

@@ -1,4 +1,4 @@
-// Bounds of single lobes over ranges of angles. Inside this room only.
+// What bounds of lobes are made of: ranges of angles, and terms that families share. Inside this room only.
 #pragma once
 
 #include <algorithm>
@@ -41,14 +41,12 @@ struct ConeWidth {
   }
 };
 
-bool needs_cosine_only(LobeKind kind);
-// The part of f that depends on wo alone, without the colour.
-float factor_of_wo(const Lobe& lobe, float cos_o, float narrowest);
-// At least scale · f / factor_of_wo, times the cosine if asked for. microfacet_transmit: without the
-// Jacobian's denominator.
-Rgb term_bound(const LobeTerm& term, const AngleRange& range, Slant slant);
-// Of a lobe of a fibre, at all w whose latitudes (radians) lie between the two.
-Rgb fibre_term_bound(const LobeTerm& term, float latitude_o, float latitude_lo, float latitude_hi,
-                     Slant slant);
+// eval_f() answers above it.
+inline constexpr float kLeastCosine = 1e-6f;
+
+// exp(-tan²/α²)/cos⁴ over all tilts.
+float gaussian_slopes(const AngleRange& range, float alpha);
+// G1 of a round distribution.
+float masking(NormalDistribution distribution, float cosine, float alpha);
 
 }  // namespace lumirank::scatter

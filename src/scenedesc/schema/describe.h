@@ -1,0 +1,13 @@
+// A scene description as text.
+#pragma once
+
+#include <string>
+
+#include "scenedesc/schema/scene_desc.h"
+
+namespace lumirank::scenedesc {
+
+// Human-readable listing, for `lumirank info` and debugging.
+std::string describe(const SceneDesc& scene);
+
+}  // namespace lumirank::scenedesc
