@@ -83,7 +83,7 @@ void Separation::start(const CorruptedMatrix& matrix, const SeparationSettings& 
   x_.resize(kMostRank * matrix.rows);
   values_.resize(kMostRank);
   const RangeFound found =
-      find_range(matrix.d, matrix.rows, matrix.columns, std::min(settings.most_rank, kMostRank),
+      find_range(matrix.d, matrix.rows, matrix.columns, std::min(settings.max_rank, kMostRank),
                  settings.seed, {x_, gathered_, y_, block_, values_});
   rank_ = found.rank;
   norm_ = found.norm;
@@ -161,7 +161,7 @@ void Separation::run(const CorruptedMatrix& matrix, const SeparationSettings& se
     const double residual = iterate(matrix, settings, static_cast<float>(threshold)) / norm_;
     residuals_.push_back(residual);
     converged_ = residual < settings.tolerance ||
-                 (settings.least_progress > 0 && k > 2 && residual > (1 - settings.least_progress) * last);
+                 (settings.min_progress > 0 && k > 2 && residual > (1 - settings.min_progress) * last);
     last = residual;
   }
   finish(matrix);

@@ -66,7 +66,7 @@ TEST(Commands, WrongOptionsOfRender) {
   };
   const Case cases[] = {
       {{"--method", "magic"}, "brute-force, instant-radiosity"},
-      {{"--set", "lamps=3"}, "valid parameters: slice-rows, clusters"},
+      {{"--set", "lamps=3"}, "valid parameters: slice-rows, initial-columns"},
       {{"--set", "rows"}, "KEY=VALUE"},
       {{"--set", "rows=many"}, "rows"},
       {{"--lights", "0"}, "1 …"},

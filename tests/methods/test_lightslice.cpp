@@ -56,8 +56,8 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColourAveraging) {
                 {{"columns", "40"},
                  {"slice-rows", "40"},
                  {"neighbours", "3"},
-                 {"colour", "scalar"},
-                 {"most-shown", "0"},
+                 {"color", "scalar"},
+                 {"max-sum-share", "0"},
                  {"zero-columns", "sample"},
                  {"zero-share", "0.3"}},
                 seed)

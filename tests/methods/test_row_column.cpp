@@ -21,9 +21,9 @@ Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const
 TEST(RowColumn, ExactClustersGiveTheExactSum) {
   const auto m = matrix::clustered_matrix({300, 400, 1}, 12);
   for (const char* clustering : {"combined", "splitting"})
-    for (const char* colour : {"averaged", "scalar"}) {
+    for (const char* color : {"averaged", "scalar"}) {
       const Estimate e =
-          run(m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"colour", colour}});
+          run(m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"color", color}});
       EXPECT_EQ(e.trace.numbers.at("columns"), 12);
       EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 64 * 0x1p-24);
     }
@@ -69,7 +69,7 @@ TEST(RowColumn, GroupsKeepTheirTotals) {
   m.group.resize(300);
   for (std::size_t j = 0; j < 300; ++j) m.group[j] = j < 100 ? 0 : 7;
   RowColumnSettings settings;
-  settings.colour = ColourMode::scalar;
+  settings.color = ColorMode::scalar;
   Exploration seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
   for (const SampledRow& row : RowSampler(m, 1).stratified(40)) seen.read(row, values);
@@ -94,16 +94,16 @@ struct Errors {
   std::vector<double> z_unseen;  // the same, at single rows
   std::size_t zero_columns;
 };
-Errors errors_over_draws(const matrix::DenseMatrix& coloured) {
+Errors errors_over_draws(const matrix::DenseMatrix& colored) {
   // Colourless: scalars are then the entries, up to the factor √3, which cancels.
-  std::vector<Rgb> grey(coloured.rows() * coloured.columns());
-  for (std::size_t i = 0; i < coloured.rows(); ++i)
-    for (std::size_t j = 0; j < coloured.columns(); ++j)
-      grey[i * coloured.columns() + j] = Rgb(coloured.at(i, j).g);
-  matrix::DenseMatrix m(coloured.rows(), coloured.columns(), std::move(grey));
-  m.power = coloured.power;
+  std::vector<Rgb> grey(colored.rows() * colored.columns());
+  for (std::size_t i = 0; i < colored.rows(); ++i)
+    for (std::size_t j = 0; j < colored.columns(); ++j)
+      grey[i * colored.columns() + j] = Rgb(colored.at(i, j).g);
+  matrix::DenseMatrix m(colored.rows(), colored.columns(), std::move(grey));
+  m.power = colored.power;
   RowColumnSettings settings;
-  settings.colour = ColourMode::scalar;
+  settings.color = ColorMode::scalar;
   Exploration seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
   std::vector<HeldOutRows> unseen;  // one row each

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
@@ -40,7 +39,7 @@ double error(const Settings& settings) {
 TEST(SamplingRecovery, AllColumnsAndAllSamplesAreBruteForce) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
-  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"most-columns", "400"}, {"scouts", "0"}});
+  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"max-columns", "400"}, {"cut-pixels", "0"}});
   EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
   EXPECT_EQ(e.trace.numbers.at("columns"), 400);
   EXPECT_DOUBLE_EQ(e.trace.numbers.at("sampling_rate"), 1);
@@ -49,12 +48,9 @@ TEST(SamplingRecovery, AllColumnsAndAllSamplesAreBruteForce) {
 TEST(SamplingRecovery, AllColumnsTracedAreBruteForce) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
-  for (const Settings& all : {Settings{{"alpha", "0"}, {"most-columns", "400"}},
-                              Settings{{"clusters", "rows"}, {"columns", "400"}}}) {
-    const Estimate e = estimate(m, all, 1, "slice-cuts");
-    EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
-    EXPECT_EQ(e.trace.numbers.at("columns"), 400);
-  }
+  const Estimate e = estimate(m, {{"alpha", "0"}, {"max-columns", "400"}}, 1, "slice-cuts");
+  EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
+  EXPECT_EQ(e.trace.numbers.at("columns"), 400);
 }
 
 // The error falls with the number of columns (all visibilities known), and with the number of samples (all
@@ -156,7 +152,6 @@ TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
                                                         {"constraint", "off"},
                                                         {"correction", "off"},
                                                         {"calibration", "off"},
-                                                        {"clusters", "rows"},
                                                         {"weighted", "off"},
                                                         {"uncertain", "0"},
                                                         {"bright", "0"},
@@ -203,7 +198,6 @@ TEST(SamplingRecovery, SameBitsForAnyNumberOfThreads) {
       });
   };
   same("sampling-recovery", {{"slice-rows", "60"}});
-  same("sampling-recovery", {{"slice-rows", "60"}, {"clusters", "rows"}, {"columns", "60"}});
   same("slice-cuts", {{"slice-rows", "60"}});
 }
 
@@ -230,7 +224,7 @@ TEST(SamplingRecovery, ARowIsOneSurfaceOfAPixel) {
 }
 
 TEST(SamplingRecovery, ClustersRespectTheLimits) {
-  const Estimate e = estimate(room(), {{"most-columns", "250"}, {"alpha", "0.0001"}});
+  const Estimate e = estimate(room(), {{"max-columns", "250"}, {"alpha", "0.0001"}});
   EXPECT_LE(e.trace.numbers.at("columns_max"), 250);
   EXPECT_GE(e.trace.numbers.at("columns"), 249);
 }
@@ -255,20 +249,13 @@ TEST(SamplingRecovery, MeetsATargetByItself) {
   EXPECT_TRUE(estimate(room(), {{"parameters", "automatic"}}).trace.numbers.contains("automatic.alpha"));
 }
 
-// With a threshold that every column passes, all is looked at.
-TEST(SamplingRecovery, BrightColumnsAreLookedAtWholly) {
+// With a threshold that every column passes, all is sampled.
+TEST(SamplingRecovery, BrightColumnsAreSampledWholly) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
   const Estimate e = estimate(
-      m, {{"alpha", "0"}, {"bright", "1e-9"}, {"most-columns", "400"}, {"scouts", "0"}, {"rho", "0.01"}});
+      m, {{"alpha", "0"}, {"bright", "1e-9"}, {"max-columns", "400"}, {"cut-pixels", "0"}, {"rho", "0.01"}});
   EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-4);
-}
-
-TEST(SamplingRecovery, ClustersByRowsHaveNoParametersByTarget) {
-  RunOptions options;
-  options.target_error = 0.05;
-  EXPECT_THROW(find_method("sampling-recovery").make({{"clusters", "rows"}})->run(room(), options),
-               InputError);
 }
 
 // A slice's parts fit together: clusters partition the lights, samples agree with the matrix, and what is
@@ -276,11 +263,11 @@ TEST(SamplingRecovery, ClustersByRowsHaveNoParametersByTarget) {
 TEST(SamplingRecovery, ASliceFitsTogether) {
   const RecoverySettings settings;
   const LightTree tree(room(), 1);
-  SliceRecovery slice(settings, &tree, room());
+  SliceRecovery slice(tree, room());
   std::vector<matrix::Index> rows;
   for (matrix::Index i = 100; i < 500; ++i) rows.push_back(i);
   std::vector<Rgb> sums(room().rows(), Rgb(-1));
-  slice.run(rows, 7, sums);
+  slice.run(settings, rows, 7, sums);
   std::vector<int> covered(room().columns());
   for (const auto& c : slice.cut().clusters())
     for (const matrix::Index j : tree.columns(c.node)) ++covered[j];

@@ -8,7 +8,7 @@
 namespace lumirank::methods {
 
 ColumnsKnown::ColumnsKnown(const matrix::LightingMatrix& matrix, Exploration& exploration,
-                           const RowColumnSettings& settings, std::uint64_t seed)
+                           const ClusterSettings& settings, std::uint64_t seed)
     : matrix_(matrix),
       exploration_(exploration),
       settings_(settings),
@@ -167,8 +167,8 @@ std::size_t ColumnsKnown::zero_draws(std::size_t columns) const {
 }
 
 Representatives ColumnsKnown::choose(const linalg::Splitter& clusters, std::uint64_t round) const {
-  const RepresentativeSettings choice{settings_.colour, seed_, round,
-                                      static_cast<float>(settings_.most_shown)};
+  const RepresentativeSettings choice{settings_.color, seed_, round,
+                                      static_cast<float>(settings_.max_contribution)};
   Representatives chosen =
       choose_representatives(clusters.partition(), exploration_.sketch(), weights_, choice);
   add_zero_columns(zero_, matrix_.column_features().power, zero_draws(clusters.clusters()), choice, chosen);

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "linalg/clustering.h"
+#include "methods/common/cluster_settings.h"
 #include "methods/common/held_out_rows.h"
 #include "methods/common/reduced_matrix.h"
 #include "methods/common/representatives.h"
-#include "methods/row_column/settings.h"
 
 namespace lumirank::methods {
 
@@ -16,7 +16,7 @@ namespace lumirank::methods {
 class ColumnsKnown {
  public:
   ColumnsKnown(const matrix::LightingMatrix& matrix, Exploration& exploration,
-               const RowColumnSettings& settings, std::uint64_t seed);
+               const ClusterSettings& settings, std::uint64_t seed);
 
   std::span<const matrix::Index> lit() const { return lit_; }
   std::span<const matrix::Index> zero() const { return zero_; }
@@ -52,7 +52,7 @@ class ColumnsKnown {
 
   const matrix::LightingMatrix& matrix_;
   const Exploration& exploration_;
-  const RowColumnSettings& settings_;
+  const ClusterSettings& settings_;
   std::uint64_t seed_;
   std::vector<matrix::Index> lit_, zero_;
   linalg::Points points_;

@@ -8,7 +8,7 @@
 #include "linalg/column_sketch.h"
 #include "linalg/partition.h"
 #include "matrix/lighting_matrix.h"
-#include "methods/row_column/settings.h"
+#include "methods/common/cluster_settings.h"
 
 namespace lumirank::methods {
 
@@ -19,10 +19,10 @@ struct Representatives {
 };
 
 struct RepresentativeSettings {
-  ColourMode colour = ColourMode::averaged;
+  ColorMode color = ColorMode::averaged;
   std::uint64_t seed = 1;
-  std::uint64_t round = 0;  // rounds are independent of each other
-  float most_shown = 0;     // see matrix::ScaledColumn
+  std::uint64_t round = 0;     // rounds are independent of each other
+  float max_contribution = 0;  // see matrix::ScaledColumn
 };
 
 // How likely a column is to stand for its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both

@@ -40,7 +40,7 @@ const Fields<LightcutsSettings> kLightcutsFields{
                                      "receiver's total. 0 with no limit of nodes is brute force."},
                                     &LightcutsSettings::error_bound, 0, 1),
     count_field<LightcutsSettings>({"most-nodes", "nodes", "Of a receiver's cut; time is in proportion."},
-                                   &LightcutsSettings::most_nodes, 1, kMostColumns),
+                                   &LightcutsSettings::most_nodes, 1, kMaxColumns),
     choice_field<LightcutsSettings>(
         {"reconstruction", "",
          "on: few receivers have a cut of their own; what cuts in the neighbourhood agree in is "

@@ -34,7 +34,7 @@ const Fields<MultidimensionalSettings> kMultidimensionalFields{
                                             "pixel's sum. 0 with no limit of pairs is brute force."},
                                            &MultidimensionalSettings::error_bound, 0, 1),
     count_field<MultidimensionalSettings>({"most-pairs", "pairs", "Of a pixel's cut; time is in proportion."},
-                                          &MultidimensionalSettings::most_pairs, 1, kMostColumns)};
+                                          &MultidimensionalSettings::most_pairs, 1, kMaxColumns)};
 
 // Pixels whose cuts are refined side by side: neighbours, which ask for like entries.
 constexpr std::size_t kPixelsTogether = 8;

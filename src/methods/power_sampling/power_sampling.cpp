@@ -34,7 +34,7 @@ const Fields<PowerSamplingSettings> kPowerSamplingFields{
                                         "Draws with replacement; time is in proportion. With a time or error "
                                         "target it is not used: rounds are added until "
                                         "the target is met."},
-                                       &PowerSamplingSettings::columns, 1, kMostColumns),
+                                       &PowerSamplingSettings::columns, 1, kMaxColumns),
     choice_field<PowerSamplingSettings>(
         {"drawing", "",
          "stratified: one draw in each equal part of the running sum of powers; independent: plain draws."},

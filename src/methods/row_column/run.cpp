@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/brute_force/brute_force.h"
+#include "methods/common/all_columns.h"
 #include "methods/common/timed_choices.h"
 
 namespace lumirank::methods {
@@ -127,7 +127,7 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
 void RowColumnRun::pass_over_all_columns() {
   RunOptions rest = options_;
   if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-9);
-  Estimate all = sum_all_columns(matrix_, rest);
+  Estimate all = brute_force(matrix_, rest);
   const auto done = static_cast<std::size_t>(all.trace.numbers.at("columns"));
   const bool whole = done == columns_;
   rendered_count_ += done;

@@ -9,6 +9,7 @@
 #include "methods/common/run_clock.h"
 #include "methods/row_column/blend.h"
 #include "methods/row_column/planner.h"
+#include "methods/row_column/settings.h"
 
 namespace lumirank::methods {
 

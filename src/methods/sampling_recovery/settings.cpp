@@ -1,71 +1,15 @@
 #include "methods/sampling_recovery/settings.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace lumirank::methods {
 
-RecoverySettings RecoverySettings::at(const Turn& turn) const {
-  RecoverySettings s = *this;
-  s.redraws = turn.number;
-  s.initial_columns = turn.scaled(initial_columns);
-  s.most_columns = turn.scaled(most_columns);
-  s.alpha = std::min(1.0, alpha / turn.quality);
-  return s;
-}
+namespace {
 
-const Fields<RecoverySettings>& recovery_fields() {
+Fields<RecoverySettings> own_fields() {
   using S = RecoverySettings;
   const std::vector<std::string> off_on{"off", "on"};
-  static const Fields<S> fields{
-      choice_field<S>(
-          {"parameters", "",
-           "automatic: alpha, rho, prediction-error, uncertain and initial-columns are found on a "
-           "few slices so that the target error is met (3 % where none is given); given: they are "
-           "taken as set; by-target: automatic if a target error is given."},
-          &S::parameters, {"by-target", "given", "automatic"}),
-      count_field<S>(
-          {"slice-rows", "pixels",
-           "Most pixels of a slice, whose columns are chosen and recovered together. Larger slices "
-           "share their columns' choice among more pixels, and have a higher rank."},
-          &S::slice_rows, 1, kMostRows),
-      choice_field<S>(
-          {"clusters", "",
-           "How a slice's lights are clustered. bounds: by bounds and sampled contributions, over "
-           "the light tree, as in the paper; rows: by one whole row of each slice, as LightSlice "
-           "does."},
-          &S::clusters, {"bounds", "rows"}),
-      count_field<S>({"columns", "columns", "Clusters of a slice where they are by rows."}, &S::columns, 1,
-                     kMostColumns),
-      count_field<S>({"neighbours", "slices", "Slices by whose rows one clusters, itself among them."},
-                     &S::neighbours, 1, 1000),
-      count_field<S>({"initial-columns", "columns",
-                      "Clusters of lights that a slice begins with, by bounds without visibility."},
-                     &S::initial_columns, 1, kMostColumns),
-      count_field<S>({"most-columns", "columns", "Where splitting ends at the latest."}, &S::most_columns, 1,
-                     kMostColumns),
-      choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
-                      &S::splitting, off_on),
-      number_field<S>({"alpha", "of all clusters' greatest contributions",
-                       "Clusters above this share are split; 0: all, down to single lights."},
-                      &S::alpha, 0, 1),
-      choice_field<S>(
-          {"sparse-visibility", "", "Whether clusters that a few shadow rays do not see are left unsplit."},
-          &S::sparse_visibility, off_on),
-      count_field<S>(
-          {"scouts", "pixels",
-           "Of a slice, evenly spread, by which its clusters are chosen; 0: all of them, as in the "
-           "paper. Without redraw always all."},
-          &S::scouts, 0, kMostRows),
-      choice_field<S>(
-          {"redraw", "",
-           "Whether clusters, once they are chosen, get other representatives than those by "
-           "which they were: those stayed unsplit for being dark. Unbiased, and a little noisier."},
-          &S::redraw, off_on),
-      number_field<S>(
-          {"rho", "of a column's entries",
-           "How many visibilities are sampled at a time, at least four: for splitting, and where the others "
-           "are predicted in each round of that. 1: all."},
-          &S::rho, 0, 1),
+  return {
       choice_field<S>({"prediction", "",
                        "Whether visibilities in between are predicted. off: they are taken as visible, after "
                        "five rounds of samples."},
@@ -94,11 +38,10 @@ const Fields<RecoverySettings>& recovery_fields() {
            "Entries whose prediction is expected to be wrong by more than this are sampled as well; "
            "0: none, as in the paper."},
           &S::uncertain, 0, 1),
-      number_field<S>(
-          {"bright", "of a slice's unoccluded light",
-           "Columns above this share are looked at wholly: the sun, lamps close by; 0: none, as in "
-           "the paper."},
-          &S::bright, 0, 1),
+      number_field<S>({"bright", "of a slice's unoccluded light",
+                       "Columns above this share are sampled wholly: the sun, lamps close by; 0: none, as in "
+                       "the paper."},
+                      &S::bright, 0, 1),
       choice_field<S>({"separation", "",
                        "Whether the predicted matrix is separated into one of low rank and sparse errors."},
                       &S::separation, off_on),
@@ -120,18 +63,23 @@ const Fields<RecoverySettings>& recovery_fields() {
           {"correction", "", "Whether entries are sampled where the separation's errors are dense."},
           &S::correction, off_on),
       number_field<S>({"density", "of entries", "What counts as dense there."}, &S::density, 0, 1)};
-  return fields;
 }
 
-const Fields<RecoverySettings>& slice_cut_fields() {
-  static const Fields<RecoverySettings> fields = [] {
-    const std::vector<std::string> of_clusters{"slice-rows",        "clusters",     "columns",   "neighbours",
-                                               "initial-columns",   "most-columns", "splitting", "alpha",
-                                               "sparse-visibility", "scouts",       "redraw",    "rho"};
-    Fields<RecoverySettings> some;
-    for (const auto& field : recovery_fields())
-      if (std::ranges::find(of_clusters, field.info.key) != of_clusters.end()) some.push_back(field);
-    return some;
+}  // namespace
+
+const Fields<RecoverySettings>& recovery_fields() {
+  using S = RecoverySettings;
+  static const Fields<S> fields = [] {
+    Fields<S> all{choice_field<S>(
+        {"parameters", "",
+         "automatic: alpha, rho, prediction-error, uncertain and initial-columns are found on a "
+         "few slices so that the target error is met (3 % where none is given); given: they are "
+         "taken as set; by-target: automatic if a target error is given."},
+        &S::parameters, {"by-target", "given", "automatic"})};
+    for (const auto& field : slice_cut_fields())
+      all.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
+    for (auto& field : own_fields()) all.push_back(std::move(field));
+    return all;
   }();
   return fields;
 }

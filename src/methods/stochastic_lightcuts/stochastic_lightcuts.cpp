@@ -33,7 +33,7 @@ struct StochasticSettings {
 const Fields<StochasticSettings> kStochasticFields{
     count_field<StochasticSettings>(
         {"nodes", "nodes", "Of a receiver's cut at most, and columns drawn; time is in proportion."},
-        &StochasticSettings::nodes, 1, kMostColumns),
+        &StochasticSettings::nodes, 1, kMaxColumns),
     number_field<StochasticSettings>(
         {"error-bound", "",
          "A node is split while its bound exceeds this share of the receiver's total. 0: until the cut is "
@@ -41,7 +41,7 @@ const Fields<StochasticSettings> kStochasticFields{
         &StochasticSettings::error_bound, 0, 1),
     count_field<StochasticSettings>(
         {"pilot", "columns", "By which the total is estimated beforehand, where an error bound needs it."},
-        &StochasticSettings::pilot, 1, kMostColumns)};
+        &StochasticSettings::pilot, 1, kMaxColumns)};
 
 // Receivers whose entries are asked for together: neighbours.
 constexpr std::size_t kRowsTogether = 16;
