@@ -104,8 +104,9 @@ void remove_temporary_files() noexcept;
 // Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
 std::string error_json(const std::string& image_file, const std::string& reference_file);
 
-// The methods with their parameters and papers.
-std::string methods_text();
-std::string methods_json();
+// The methods with their parameters and papers. all: also the parameters that are for experiments only, which
+// switch off steps of a method; settings take them in either case.
+std::string methods_text(bool all = false);
+std::string methods_json(bool all = false);
 
 }  // namespace lumirank

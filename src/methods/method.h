@@ -23,6 +23,8 @@ struct Parameter {
   std::string range;         // "1 …", "cost|random"
   std::string unit;          // "" or "rows"
   std::string help;          // what it does and what it costs
+  // Switches off a step of the paper, or what is ours alone: for experiments, listed on request only.
+  bool experiment = false;
 };
 
 // What a run did, beside its numbers: seconds and counts by stable keys ("seconds.rows", "rows", "columns",

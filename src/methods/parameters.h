@@ -67,6 +67,13 @@ Field<S> choice_field(FieldText text, E B::*member, std::vector<std::string> cho
           }};
 }
 
+// The same for experiments only (Parameter::experiment).
+template <typename S>
+Field<S> experiment(Field<S> field) {
+  field.info.experiment = true;
+  return field;
+}
+
 template <typename S>
 std::vector<Parameter> parameters_of(const Fields<S>& fields) {
   std::vector<Parameter> p;

@@ -30,24 +30,24 @@ const Fields<SliceCutSettings>& slice_cut_fields() {
                      &S::initial_columns, 1, kMaxColumns),
       count_field<S>({"max-columns", "columns", "Where splitting ends at the latest."}, &S::max_columns, 1,
                      kMaxColumns),
-      choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
-                      &S::splitting, off_on),
+      experiment(choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
+                      &S::splitting, off_on)),
       number_field<S>({"alpha", "of all clusters' greatest contributions",
                        "Clusters above this share are split; 0: all, down to single lights."},
                       &S::alpha, 0, 1),
-      choice_field<S>(
+      experiment(choice_field<S>(
           {"sparse-visibility", "", "Whether clusters that a few shadow rays do not see are left unsplit."},
-          &S::sparse_visibility, off_on),
+          &S::sparse_visibility, off_on)),
       count_field<S>(
           {"cut-pixels", "pixels",
            "Of a slice, evenly spread, by which its clusters are chosen; 0: all of them, as in the "
            "paper. Without redraw always all."},
           &S::cut_pixels, 0, kMaxRows),
-      choice_field<S>(
+      experiment(choice_field<S>(
           {"redraw", "",
            "Whether clusters, once they are chosen, get other representatives than those by "
            "which they were: those stayed unsplit for being dark. Unbiased, and a little noisier."},
-          &S::redraw, off_on),
+          &S::redraw, off_on)),
       number_field<S>({"rho", "of a column's entries",
                        "How many visibilities are sampled at a time, at least four. 1: all."},
                       &S::rho, 0, 1)};
