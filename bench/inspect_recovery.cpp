@@ -107,7 +107,8 @@ bench::InspectOptions read(int argc, char** argv) {
       o.settings[value.substr(0, at)] = value.substr(at + 1);
     } else {
       std::size_t number = 0;
-      if (!methods::parse_count(value, 0, methods::kMaxColumns, number)) throw InputError(name + " needs a number");
+      if (!methods::parse_count(value, 0, methods::kMaxColumns, number))
+        throw InputError(name + " needs a number");
       if (name == "--lights")
         o.lights = number;
       else if (name == "--spp")

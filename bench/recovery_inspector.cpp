@@ -19,18 +19,12 @@ RecoveryInspector::RecoveryInspector(const InspectOptions& options, const matrix
       settings_(methods::read_settings("sampling-recovery", methods::recovery_fields(), options.settings)),
       matrix_(matrix),
       tree_(matrix, options.seed),
-      slices_(methods::make_slices(matrix.row_features(), matrix.rows(), methods::max_slice_receivers(matrix, settings_.slice_rows, false))),
+      slices_(methods::make_slices(matrix.row_features(), matrix.rows(),
+                                   methods::max_slice_receivers(matrix, settings_.slice_rows, false))),
       sums_(matrix.rows()),
       pool_([this] {
-        return std::make_unique<Workspace>(Workspace{methods::SliceRecovery(tree_, matrix_),
-                                                     matrix_.reader(),
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {}});
+        return std::make_unique<Workspace>(
+            Workspace{methods::SliceRecovery(tree_, matrix_), matrix_.reader(), {}, {}, {}, {}, {}, {}, {}});
       }) {}
 
 // Predictors as the only step.

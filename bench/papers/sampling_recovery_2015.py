@@ -37,8 +37,8 @@ TRACED = "slice-cuts"
 # reading rows and clustering for each slice. slice-cuts has the
 # clusters of sampling-recovery and all their visibilities, one for each surface of a pixel.
 LADDERS = {
-    "lightcuts": ("most-nodes", (100, 300, 1000)),
-    "multidimensional-lightcuts": ("most-pairs", (60, 250, 500, 1000)),
+    "lightcuts": ("max-nodes", (100, 300, 1000)),
+    "multidimensional-lightcuts": ("max-pairs", (60, 250, 500, 1000)),
     "lightslice": ("columns:slice-rows:neighbours", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
     "stochastic-lightcuts": ("nodes", (8, 16, 64)),
     "row-column-sampling": ("rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
@@ -179,7 +179,7 @@ class Experiments:
         self.switched("Figure 3: light clusters", "Without splitting, without sparse visibility, with both.", "clusters",
                       [("splitting", ("off", "on")), ("sparse-visibility", ("off",))])
 
-    def look(self, scene):
+    def inspect(self, scene):
         """What inspect_recovery finds, and the folder of its pictures."""
         folder = self.out / "runs" / f"inspect_{scene.replace('/', '_')}"
         command = ["--size", self.inspect_size, "--lights", str(self.inspect_lights), "--spp", "4"]
@@ -192,7 +192,7 @@ class Experiments:
             mark.write_text(stamp)
         return json.loads((folder / "results.json").read_text()), folder
 
-    def entries_sampled(self, found):
+    def inspected(self, found):
         slices = found["per_slice"]
         return (f"{self.inspect_size}, {found['receivers']} receivers in {len(slices)} slices, {found['lights']} lights, "
                 f"{found['sums']['columns'] / len(slices):.0f} columns per slice; {percent(found['sums']['hidden'] / found['sums']['entries'])} of the entries that light could reach are hidden.")
@@ -203,10 +203,10 @@ class Experiments:
         page.say("The share of wrong predictions among the entries that were not sampled, against all visibilities of the reduced matrices. Predictions are drawn by their probability, as the "
                  "method does. Predictors stand alone: nothing is separated, corrected or sampled for being uncertain.")
         for scene in self.scenes:
-            found, folder = self.look(scene)
+            found, folder = self.inspect(scene)
             name = "inspect_" + scene.replace("/", "_")
             page.heading(scene)
-            page.say(self.entries_sampled(found))
+            page.say(self.inspected(found))
             image = read_pfm(folder / "image.pfm")
             page.picture(f"{name}_image", image, exposure(image[2]), "What the method renders")
             pictures = {p: read_pfm(folder / f"wrong_{p}.pfm") for p in PREDICTORS}
@@ -238,10 +238,10 @@ class Experiments:
         page.say("Columns along the light tree, rows along Hilbert's curve through the slice; grey where the light does not reach (E = 0). The slices stand at 25 % and 90 % of all by how mixed "
                  "their columns are. What is separated is visibility, 0 or 1.")
         for scene in self.scenes:
-            found, folder = self.look(scene)
+            found, folder = self.inspect(scene)
             stem = "inspect_" + scene.replace("/", "_")
             page.heading(scene)
-            page.say(self.entries_sampled(found))
+            page.say(self.inspected(found))
             width, height, values = read_pfm(folder / "image.pfm")
             shown = bytearray(to_display(values, exposure(values)))
             for which, tint in (("few", (230, 40, 40)), ("many", (50, 90, 255))):
@@ -293,7 +293,7 @@ class Experiments:
                  "entries that were sampled have no Z: these alone are mostly of a higher rank, so that no X·Y meets them and the residual cannot vanish. As the paper prints it (equations 6 and 11) only what was "
                  "sampled is fitted, and may have a Z. The rule stops below 1 %, or from the fourth iteration on when one brings less than 10 % of what is left.")
         for scene in self.scenes:
-            found, _ = self.look(scene)
+            found, _ = self.inspect(scene)
             c = found["convergence"]
             pick = lambda r: [(k + 1, v) for k, v in enumerate(r)]
             page.svg(bars(f"{scene}: {c['slices']:.0f} slices", "iterations", "slices", {"fit of all": c["slices_by_iterations"], "as printed": c["slices_by_iterations_as_printed"]},

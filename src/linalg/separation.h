@@ -21,7 +21,7 @@ enum class Entry : std::uint8_t {
 };
 
 struct SeparationSettings {
-  std::size_t max_rank = 16;   // at most kMostRank
+  std::size_t max_rank = 16;    // at most kMaxRank
   std::size_t iterations = 20;  // at most
   // Stops when ‖XY + Z − D‖ is below this share of ‖D‖, …
   double tolerance = 0.01;
@@ -51,7 +51,7 @@ struct CorruptedMatrix {
 // it allocates nothing.
 class Separation {
  public:
-  static constexpr std::size_t kMostRank = 24;
+  static constexpr std::size_t kMaxRank = 24;
 
   void run(const CorruptedMatrix& matrix, const SeparationSettings& settings);
 

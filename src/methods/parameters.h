@@ -103,7 +103,7 @@ S read_settings(const std::string& method, const Fields<S>& fields, const Settin
 struct MethodText {
   std::string name, summary;
   std::string paper = "";
-  std::string error_decided_by = "";  // as in MethodInfo
+  std::string error_parameters = "";  // as in MethodInfo
   bool combination = false;           // as in MethodInfo
 };
 
@@ -118,7 +118,7 @@ MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
             return std::make_unique<M>(read_settings(name, fields, settings));
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
-          text.error_decided_by,
+          text.error_parameters,
           text.combination};
 }
 

@@ -70,10 +70,10 @@ TEST(RowColumn, GroupsKeepTheirTotals) {
   for (std::size_t j = 0; j < 300; ++j) m.group[j] = j < 100 ? 0 : 7;
   RowColumnSettings settings;
   settings.color = ColorMode::scalar;
-  Exploration seen(m, {m.columns(), 40, false}, 1);
+  ReducedMatrix seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
   for (const SampledRow& row : RowSampler(m, 1).stratified(40)) seen.read(row, values);
-  const ColumnsKnown known(m, seen, settings, 1);
+  const ColumnClusters known(m, seen, settings, 1);
   const auto clusters = known.cluster(8, linalg::ClusteringAlgorithm::combined);
   ASSERT_EQ(clusters.clusters(), 8u);
   const Representatives chosen = known.choose(clusters, 0);
@@ -104,13 +104,13 @@ Errors errors_over_draws(const matrix::DenseMatrix& colored) {
   m.power = colored.power;
   RowColumnSettings settings;
   settings.color = ColorMode::scalar;
-  Exploration seen(m, {m.columns(), 40, false}, 1);
+  ReducedMatrix seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
   std::vector<HeldOutRows> unseen;  // one row each
   RowSampler sampler(m, 1);
   for (const SampledRow& row : sampler.next(40)) seen.read(row, values);
   for (const SampledRow& row : sampler.next(10)) unseen.emplace_back(m).read(row, values);
-  const ColumnsKnown known(m, seen, settings, 1);
+  const ColumnClusters known(m, seen, settings, 1);
   const auto clusters = known.cluster(25, linalg::ClusteringAlgorithm::combined);
 
   const int draws = 400;
@@ -128,17 +128,17 @@ Errors errors_over_draws(const matrix::DenseMatrix& colored) {
     const Representatives chosen = known.choose(clusters, static_cast<std::uint64_t>(t));
     std::vector<Rgb> sums(m.rows());
     m.accumulate(chosen.columns, sums);
-    const auto error = [&](const KnownRow& row) {
+    const auto error = [&](const ExactRow& row) {
       return static_cast<double>(sums[row.from.row].g) - static_cast<double>(row.sum.g);
     };
     double difference = 0, size = 0;
-    for (const KnownRow& row : seen.known().rows()) {
+    for (const ExactRow& row : seen.known().rows()) {
       difference += error(row) * error(row);
       size += static_cast<double>(row.sum.g) * static_cast<double>(row.sum.g);
     }
     on_seen.add(difference / size);
     for (std::size_t k = 0; k < unseen.size(); ++k) {
-      const KnownRow& row = unseen[k].known().rows()[0];
+      const ExactRow& row = unseen[k].known().rows()[0];
       on_unseen[k].add(std::pow(error(row) / static_cast<double>(row.sum.g), 2));
     }
   }

@@ -30,7 +30,7 @@ struct Workspace {
 class RowSums {
  public:
   explicit RowSums(const DenseMatrix& m)
-      : units_(UnitRows::single(m.rows())), matrix_(m), pool_([&m] {
+      : units_(RowGroups::single(m.rows())), matrix_(m), pool_([&m] {
           auto w = std::make_unique<Workspace>();
           w->reader = m.reader();
           w->columns.resize(m.columns());
@@ -39,32 +39,32 @@ class RowSums {
           return w;
         }) {}
 
-  UnitResult run(const RunOptions& options, std::vector<Rgb>& sums, double deadline = 0) {
+  RowGroupResult run(const RunOptions& options, std::vector<Rgb>& sums, double deadline = 0) {
     const RunClock timer(options);
     sums.assign(matrix_.rows(), Rgb(0));
-    return run_units(units_, {options, timer, deadline, "rows"}, sums, pool_,
-                     [&](std::size_t unit, Workspace& w) {
-                       const Index i = units_[unit][0];
-                       const std::vector<Index> rows(w.columns.size(), i);
-                       w.reader->entries(rows, w.columns, w.values);
-                       Rgb sum;
-                       for (const Rgb v : w.values) sum += v;
-                       sums[i] = sum;
-                       ++w.units;
-                       if (after_unit) after_unit(unit);
-                     });
+    return run_row_groups(units_, {options, timer, deadline, "rows"}, sums, pool_,
+                          [&](std::size_t unit, Workspace& w) {
+                            const Index i = units_[unit][0];
+                            const std::vector<Index> rows(w.columns.size(), i);
+                            w.reader->entries(rows, w.columns, w.values);
+                            Rgb sum;
+                            for (const Rgb v : w.values) sum += v;
+                            sums[i] = sum;
+                            ++w.units;
+                            if (after_unit) after_unit(unit);
+                          });
   }
   std::size_t units_run() const {
     std::size_t n = 0;
     pool_.for_each([&](const Workspace& w) { n += w.units; });
     return n;
   }
-  const UnitRows& units() const { return units_; }
+  const RowGroups& units() const { return units_; }
 
   std::function<void(std::size_t)> after_unit;
 
  private:
-  UnitRows units_;
+  RowGroups units_;
   const DenseMatrix& matrix_;
   WorkspacePool<Workspace> pool_;
 };
@@ -76,7 +76,7 @@ TEST(UnitPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
     with_threads(threads, [&] {
       RowSums pass(m);
       std::vector<Rgb> sums;
-      const UnitResult result = pass.run({}, sums);
+      const RowGroupResult result = pass.run({}, sums);
       EXPECT_EQ(result.done, m.rows());
       EXPECT_EQ(pass.units_run(), m.rows());
       EXPECT_FALSE(result.cancelled || result.out_of_time);
@@ -111,7 +111,7 @@ TEST(UnitPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
     std::size_t count = 0;
     pass.after_unit = [&](std::size_t) { cancel = ++count == 5; };
     std::vector<Rgb> sums;
-    const UnitResult result = pass.run(options, sums);
+    const RowGroupResult result = pass.run(options, sums);
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(result.done, 5u);
     // Rows 0, 64, …, 256 are done; a row takes the sum of the nearest of them, of two as near the earlier.
@@ -133,7 +133,7 @@ TEST(UnitPass, CancelledBeforeTheFirstUnitNothingIsTouched) {
   options.sinks.cancel = &cancel;
   RowSums pass(m);
   std::vector<Rgb> sums;
-  const UnitResult result = pass.run(options, sums);
+  const RowGroupResult result = pass.run(options, sums);
   EXPECT_TRUE(result.cancelled);
   EXPECT_EQ(result.done, 0u);
   EXPECT_EQ(sums, std::vector<Rgb>(10, Rgb(0)));
@@ -170,7 +170,7 @@ TEST(UnitPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
   options.time_seconds = 1e-9;
   options.choices = &written;
   std::vector<Rgb> sums;
-  UnitResult result;
+  RowGroupResult result;
   with_threads(1, [&] { result = RowSums(m).run(options, sums, options.time_seconds); });
   EXPECT_TRUE(result.out_of_time);
   EXPECT_EQ(result.done, 1u);
@@ -198,23 +198,23 @@ TEST(UnitPass, AFailureEndsThePassAndIsPassedOn) {
   EXPECT_THROW(pass.run({}, sums), std::runtime_error);
 }
 
-TEST(UnitRows, PixelsHoldTheirRowsInOrder) {
+TEST(RowGroups, PixelsHoldTheirRowsInOrder) {
   DenseMatrix m(6, 1, std::vector<Rgb>(6, Rgb(1)));
   m.pixel = {{0.5f, 0.5f}, {-0.5f, 0.5f}, {1.5f, 0.2f}, {0.9f, 0.1f}, {-0.9f, 0.9f}, {1.5f, 1.5f}};
-  const UnitRows units = UnitRows::pixels(m);
+  const RowGroups units = RowGroups::pixels(m);
   const std::vector<std::vector<Index>> expected{{0, 3}, {1, 4}, {2}, {5}};
   ASSERT_EQ(units.size(), expected.size());
   for (std::size_t u = 0; u < units.size(); ++u)
     EXPECT_EQ(std::vector<Index>(units[u].begin(), units[u].end()), expected[u]);
   m.pixel.clear();
-  EXPECT_EQ(UnitRows::pixels(m).size(), 6u);
-  EXPECT_EQ(UnitRows::single(0).size(), 0u);
+  EXPECT_EQ(RowGroups::pixels(m).size(), 6u);
+  EXPECT_EQ(RowGroups::single(0).size(), 0u);
 }
 
-TEST(UnitRows, MustCoverWhatTheyAreGiven) {
-  EXPECT_THROW(UnitRows({0, 1}, {0, 1}), InternalError);
-  EXPECT_THROW(UnitRows({0, 1}, {0, 0, 2}), InternalError);
-  EXPECT_THROW(UnitRows({}, {}), InternalError);
+TEST(RowGroups, MustCoverWhatTheyAreGiven) {
+  EXPECT_THROW(RowGroups({0, 1}, {0, 1}), InternalError);
+  EXPECT_THROW(RowGroups({0, 1}, {0, 0, 2}), InternalError);
+  EXPECT_THROW(RowGroups({}, {}), InternalError);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(Unbiased, PowerSampling) {
   }
 }
 
-TEST(Unbiased, RowColumnSamplingWithScalarColour) {
+TEST(Unbiased, RowColumnSamplingWithScalarColor) {
   for (const char* clustering : {"combined", "sampling", "splitting"}) {
     const std::map<std::string, std::string> settings{
         {"rows", "60"}, {"columns", "30"}, {"color", "scalar"}, {"clustering", clustering}};

@@ -14,7 +14,7 @@ namespace lumirank::methods {
 
 struct Representatives {
   std::vector<matrix::ScaledColumn> columns;  // in random order, so that every prefix is a fair sample
-  std::vector<double> energy;                 // s of the cluster that the column stands for; zero columns: 0
+  std::vector<double> energy;                 // s of the cluster that the column represents; zero columns: 0
   std::size_t zero_columns = 0;               // of these, drawn from the columns that were zero on all rows
 };
 
@@ -25,7 +25,7 @@ struct RepresentativeSettings {
   float max_contribution = 0;  // see matrix::ScaledColumn
 };
 
-// How likely a column is to stand for its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both
+// How likely a column is to represent its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both
 // sums over `lit`; 0 elsewhere. share = 0 is the paper's choice. Any other is as unbiased, and bounds the
 // factor of a column that is all but zero on the sampled rows and not elsewhere, which would otherwise be
 // drawn rarely and then scaled up without limit.

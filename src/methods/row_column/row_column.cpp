@@ -1,4 +1,4 @@
-// Row-column sampling: sections 3.2 to 4 of the paper. Read r rows (row_sampler, exploration), cluster the
+// Row-column sampling: sections 3.2 to 4 of the paper. Read r rows (row_sampler, reduced), cluster the
 // columns by them (linalg/clustering), pick a scaled representative of each cluster (representatives), render
 // these (column_pass).
 //

@@ -25,7 +25,7 @@ const Fields<RowColumnSettings>& row_column_fields() {
                        "or one of them alone."},
                       &S::clustering, {"combined", "sampling", "splitting"}),
       choice_field<S>({"color", "",
-                       "averaged: a representative gets its cluster's total colour (less colour noise, a "
+                       "averaged: a representative gets its cluster's total color (less color noise, a "
                        "little bias); scalar: "
                        "one factor for all channels (unbiased)."},
                       &S::color, {"averaged", "scalar"}),

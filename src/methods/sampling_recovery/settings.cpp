@@ -10,12 +10,13 @@ Fields<RecoverySettings> own_fields() {
   using S = RecoverySettings;
   const std::vector<std::string> off_on{"off", "on"};
   return {
-      experiment(choice_field<S>({"prediction", "",
-                       "Whether visibilities in between are predicted. off: they are taken as visible, after "
-                       "five rounds of samples."},
-                      &S::prediction, off_on)),
+      experiment(choice_field<S>(
+          {"prediction", "",
+           "Whether visibilities in between are predicted. off: they are taken as visible, after "
+           "five rounds of samples."},
+          &S::prediction, off_on)),
       experiment(choice_field<S>({"predictors", "", "Which may be chosen for a column."}, &S::predictors,
-                      {"all", "nearest", "plane", "bayes"})),
+                                 {"all", "nearest", "plane", "bayes"})),
       experiment(choice_field<S>(
           {"draw", "",
            "random: predictions are drawn by their probability, so that errors have no structure; "
@@ -28,10 +29,11 @@ Fields<RecoverySettings> own_fields() {
                        "A column is sampled on until its best predictor is wrong at less than this share of "
                        "the samples that it has not seen."},
                       &S::prediction_error, 0, 1),
-      experiment(choice_field<S>({"weighted", "",
-                       "Whether columns brighter than the mean may be wrong so much less often; off: all as "
-                       "often, as in the paper."},
-                      &S::weighted, off_on)),
+      experiment(choice_field<S>(
+          {"weighted", "",
+           "Whether columns brighter than the mean may be wrong so much less often; off: all as "
+           "often, as in the paper."},
+          &S::weighted, off_on)),
       count_field<S>({"rounds", "rounds", "Of sampling and validation, at most."}, &S::rounds, 1, 10'000),
       number_field<S>(
           {"uncertain", "of a pixel's light",
@@ -42,21 +44,25 @@ Fields<RecoverySettings> own_fields() {
                        "Columns above this share are sampled wholly: the sun, lamps close by; 0: none, as in "
                        "the paper."},
                       &S::bright, 0, 1),
-      experiment(choice_field<S>({"separation", "",
-                       "Whether the predicted matrix is separated into one of low rank and sparse errors."},
-                      &S::separation, off_on)),
-      experiment(choice_field<S>({"separated", "",
-                       "visibility: the matrix of 0s and 1s; shading: the same times the unoccluded "
-                       "contributions, as in the paper, whose own rank then counts too."},
-                      &S::separated, {"visibility", "shading"})),
-      experiment(choice_field<S>({"constraint", "",
-                       "Whether the separation uses that an error is all of an entry or nothing (equation "
-                       "12)."},
-                      &S::constraint, off_on)),
-      experiment(choice_field<S>({"fit", "",
-                       "all: predictions count, and may be sparsely wrong; exact: the sampled entries alone, "
-                       "as the paper prints it."},
-                      &S::fit, {"all", "exact"})),
+      experiment(choice_field<S>(
+          {"separation", "",
+           "Whether the predicted matrix is separated into one of low rank and sparse errors."},
+          &S::separation, off_on)),
+      experiment(
+          choice_field<S>({"separated", "",
+                           "visibility: the matrix of 0s and 1s; shading: the same times the unoccluded "
+                           "contributions, as in the paper, whose own rank then counts too."},
+                          &S::separated, {"visibility", "shading"})),
+      experiment(choice_field<S>(
+          {"constraint", "",
+           "Whether the separation uses that an error is all of an entry or nothing (equation "
+           "12)."},
+          &S::constraint, off_on)),
+      experiment(choice_field<S>(
+          {"fit", "",
+           "all: predictions count, and may be sparsely wrong; exact: the sampled entries alone, "
+           "as the paper prints it."},
+          &S::fit, {"all", "exact"})),
       count_field<S>({"rank", "", "Of the recovered matrix, at most (and at most 24)."}, &S::rank, 1, 1000),
       count_field<S>({"iterations", "", "Of the separation, at most."}, &S::iterations, 1, 10'000),
       experiment(choice_field<S>(

@@ -92,7 +92,7 @@ class LevelSearch {
     for (const std::size_t end : pixel_end_) {
       Rgb estimated(0), exact(0);
       for (; k < end; ++k) {
-        const KnownRow& known = known_.rows()[k];
+        const ExactRow& known = known_.rows()[k];
         const auto weight = static_cast<float>(known.share);
         estimated += sums_[known.from.row] * weight;
         exact += known.sum * weight;
@@ -150,7 +150,7 @@ class LevelSearch {
   const Slices& slices_;
   const RunOptions& options_;
   const LevelTrials& trials_;
-  KnownRows known_;
+  ExactRows known_;
   std::vector<Rgb> sums_;
   std::vector<std::size_t> chosen_;
   std::vector<std::size_t> pixel_end_;  // of the known rows, by pixel

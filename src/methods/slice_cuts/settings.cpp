@@ -30,8 +30,9 @@ const Fields<SliceCutSettings>& slice_cut_fields() {
                      &S::initial_columns, 1, kMaxColumns),
       count_field<S>({"max-columns", "columns", "Where splitting ends at the latest."}, &S::max_columns, 1,
                      kMaxColumns),
-      experiment(choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
-                      &S::splitting, off_on)),
+      experiment(
+          choice_field<S>({"splitting", "", "Whether clusters are split by their greatest contribution."},
+                          &S::splitting, off_on)),
       number_field<S>({"alpha", "of all clusters' greatest contributions",
                        "Clusters above this share are split; 0: all, down to single lights."},
                       &S::alpha, 0, 1),

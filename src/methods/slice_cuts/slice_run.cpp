@@ -27,7 +27,7 @@ std::uint64_t slice_key(std::uint64_t seed, std::size_t slice, std::uint64_t tur
 }
 
 std::size_t max_slice_receivers(const matrix::LightingMatrix& matrix, std::size_t slice_rows, bool timed) {
-  const std::size_t pixels = UnitRows::pixels(matrix).size();
+  const std::size_t pixels = RowGroups::pixels(matrix).size();
   const std::size_t per_pixel = pixels > 0 ? (matrix.rows() + pixels / 2) / pixels : 1;
   std::size_t rows = slice_rows;
   if (timed && rows == SliceCutSettings{}.slice_rows)  // not set by hand

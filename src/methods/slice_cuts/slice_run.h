@@ -50,7 +50,7 @@ class SliceRun {
     TurnMethod method{.phase = "slices", .entries_per_row = static_cast<double>(settings.initial_columns)};
     if (exact && columns > 0)
       method.exact_from = static_cast<double>(matrix_.columns()) / static_cast<double>(columns);
-    const UnitRows units(slices_.rows, slices_.first);
+    const RowGroups units(slices_.rows, slices_.first);
     result_ =
         run_in_turns(turns_, units, {options_, clock_, 0, method.phase}, method, estimate_.sums, pool,
                      [&](std::size_t s, Slice& slice, const Turn& turn, std::span<Rgb> sums) {
@@ -74,7 +74,7 @@ class SliceRun {
   RowsForError rows_;
   std::optional<LightTree> tree_;
   Slices slices_;
-  UnitResult result_;
+  RowGroupResult result_;
 };
 
 }  // namespace lumirank::methods

@@ -18,7 +18,7 @@ using matrix::ScaledColumn;
 namespace {
 
 constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
-constexpr float kLeastEntry = 1e-17f;        // its square is a number still
+constexpr float kMinEntry = 1e-17f;          // its square is a number still
 constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no colour to scale
 constexpr float kLargestSliceGain = 4;       // of a channel over the scalar factor
 
@@ -53,11 +53,11 @@ const Fields<SliceLightSettings>& slice_light_fields() {
                      &S::projection, 0, 1000),
       choice_field<S>(
           {"color", "",
-           "averaged: the representative gets its cluster's total colour; scalar: one factor for all "
+           "averaged: the representative gets its cluster's total color; scalar: one factor for all "
            "channels (unbiased)."},
           &S::color, {"averaged", "scalar"}),
       choice_field<S>({"zero-columns", "",
-                       "Columns that are zero on all rows that a slice looks at. sample: a few drawn by "
+                       "Columns that are zero on all rows that a slice reads. sample: a few drawn by "
                        "power, unbiased; ignore: taken as zero in the slice (biased, less noise)."},
                       &S::zero_columns, {"sample", "ignore"}),
       number_field<S>(
@@ -67,12 +67,11 @@ const Fields<SliceLightSettings>& slice_light_fields() {
                        "Share of the choice of representatives that goes by the rows of all slices "
                        "instead of by the slice's own few."},
                       &S::global_share, 0, 1),
-      number_field<S>(
-          {"max-sum-share", "of the sum",
-           "A representative may not add more to a receiver than this share of the "
-           "greatest sum among the rows that its slice looks at. Keeps specks away, and takes light "
-           "from receivers that are much brighter than those; 0: no bound, unbiased."},
-          &S::max_sum_share, 0, 1e9)};
+      number_field<S>({"max-sum-share", "of the sum",
+                       "A representative may not add more to a receiver than this share of the "
+                       "greatest sum among the rows that its slice reads. Keeps specks away, and takes light "
+                       "from receivers that are much brighter than those; 0: no bound, unbiased."},
+                      &S::max_sum_share, 0, 1e9)};
   return fields;
 }
 
@@ -84,8 +83,7 @@ SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions&
       seed_(options.seed),
       turn_seed_(options.seed),
       slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),
-      exploration_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection),
-                   options.seed),
+      reduced_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection), options.seed),
       rows_(slices_.count(), matrix.columns()) {
   const double begin = clock.seconds();
   const bool all = read_rows(options, clock, row_sum);
@@ -114,12 +112,12 @@ bool SliceLights::read_rows(const RunOptions& options, const RunClock& clock, st
       Rng rng(seed_, Stage::method, 1, s);
       const double share = static_cast<double>(slice.size()) * static_cast<double>(slices_.count()) /
                            static_cast<double>(matrix_.rows());
-      exploration_.read({slice[rng.next_below(slice.size())], static_cast<float>(std::sqrt(share))}, values);
+      reduced_.read({slice[rng.next_below(slice.size())], static_cast<float>(std::sqrt(share))}, values);
       parallel_for(values.size(), kSliceStretch, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j) scalars[j] = norm2(values[j]);
       });
       rows_.set(s, scalars);
-      last = exploration_.known().rows().back().sum;
+      last = reduced_.known().rows().back().sum;
       options.sinks.report("rows", static_cast<double>(s + 1) / static_cast<double>(slices_.count()));
     }
     for (const Index i : slice) row_sum[i] = last;
@@ -162,7 +160,7 @@ void SliceLights::find_neighbours() {
 
 void SliceLights::cluster() {
   const ClusterSettings settings;
-  const ColumnsKnown columns(matrix_, exploration_, settings, seed_);
+  const ColumnClusters columns(matrix_, reduced_, settings, seed_);
   const std::size_t clusters = settings_.initial_clusters > 0
                                    ? std::min(settings_.initial_clusters, settings_.columns)
                                    : std::max<std::size_t>(settings_.columns * 3 / 10, 1);
@@ -170,7 +168,7 @@ void SliceLights::cluster() {
     initial_ = columns.cluster(clusters, linalg::ClusteringAlgorithm::combined).partition();
   dark_.assign(columns.zero().begin(), columns.zero().end());
   rows_.permute(initial_.order);
-  const linalg::ColumnSketch& sketch = exploration_.sketch();
+  const linalg::ColumnSketch& sketch = reduced_.sketch();
   norms_.resize(matrix_.columns());
   parallel_for(norms_.size(), kSliceStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
@@ -203,7 +201,7 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
         w.point[r] = w.entries[r * kSliceStretch + k] / static_cast<float>(r + 1);
         most = std::max(most, w.point[r]);
       }
-      if (most > kLeastEntry)
+      if (most > kMinEntry)
         w.splitter.add(initial_.order[begin + k], w.point.data());
       else
         w.zero.push_back(initial_.order[begin + k]);
@@ -252,7 +250,7 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
 }
 
 void SliceLights::set_turn(std::size_t columns, std::uint64_t turn) {
-  settings_.columns = std::max(columns, least_columns());
+  settings_.columns = std::max(columns, min_columns());
   turn_seed_ = turn == 0 ? seed_ : hash_ids(seed_, Stage::representatives, turn);
 }
 
