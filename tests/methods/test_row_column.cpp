@@ -7,6 +7,7 @@
 #include "matrix/synthetic.h"
 #include "methods/common/column_clusters.h"
 #include "methods/common/column_pass.h"
+#include "methods/parameters.h"
 #include "methods/statistics.h"
 
 namespace lumirank::methods {
@@ -68,7 +69,7 @@ TEST(RowColumn, GroupsKeepTheirTotals) {
   auto m = matrix::clustered_matrix({200, 300, 1}, 4);
   m.group.resize(300);
   for (std::size_t j = 0; j < 300; ++j) m.group[j] = j < 100 ? 0 : 7;
-  RowColumnSettings settings;
+  ClusterSettings settings;
   settings.color = ColorMode::scalar;
   ReducedMatrix seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
@@ -102,7 +103,7 @@ Errors errors_over_draws(const matrix::DenseMatrix& colored) {
       grey[i * colored.columns() + j] = Rgb(colored.at(i, j).g);
   matrix::DenseMatrix m(colored.rows(), colored.columns(), std::move(grey));
   m.power = colored.power;
-  RowColumnSettings settings;
+  ClusterSettings settings;
   settings.color = ColorMode::scalar;
   ReducedMatrix seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());

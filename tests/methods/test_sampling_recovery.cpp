@@ -140,22 +140,32 @@ TEST(SamplingRecovery, TestsTellWhatPredictionsAreWorth) {
 }
 
 // What each step is worth in this room: the mean error over eight seeds without it, over that with all steps.
-// Bounds are four standard deviations of that ratio from what it is here, so that a step that does more harm
-// or less good than it did is seen; where the lower bound is above 1 the step is shown to help.
+// Bounds are four standard deviations of that ratio on either side of what it is here, so that a step that
+// begins to do harm, or to do nothing, is seen. Prediction, correction and the choice among predictors are
+// shown to help; separation needs larger slices than these (docs/measurements.md), and costs some here.
 struct StepOff {
   const char *key, *value;
   double min_ratio, max_ratio;
 };
 const StepOff kStepsOff[] = {
-    {"splitting", "off", 0, 9},     {"sparse-visibility", "off", 0, 9},
-    {"redraw", "off", 0, 9},        {"prediction", "off", 0, 9},
-    {"separation", "off", 0, 9},    {"constraint", "off", 0, 9},
-    {"correction", "off", 0, 9},    {"calibration", "off", 0, 9},
-    {"weighted", "off", 0, 9},      {"uncertain", "0", 0, 9},
-    {"bright", "0", 0, 9},          {"fit", "exact", 0, 9},
-    {"separated", "shading", 0, 9}, {"draw", "likely", 0, 9},
-    {"draw", "mean", 0, 9},         {"predictors", "nearest", 0, 9},
-    {"predictors", "plane", 0, 9},  {"predictors", "bayes", 0, 9},
+    {"splitting", "off", 0.87, 1.02},
+    {"sparse-visibility", "off", 0.99, 1.01},  // some light of every cluster is seen here
+    {"redraw", "off", 0.84, 1.12},
+    {"prediction", "off", 5.1, 6.8},
+    {"predictors", "nearest", 0.88, 1},
+    {"predictors", "plane", 1.62, 2.24},
+    {"predictors", "bayes", 0.68, 0.95},
+    {"draw", "likely", 0.82, 0.99},
+    {"draw", "mean", 0.99, 1.01},  // as random, where something is separated
+    {"calibration", "off", 0.87, 1.1},
+    {"weighted", "off", 0.98, 1.07},
+    {"uncertain", "0", 0.98, 1.05},
+    {"bright", "0", 0.99, 1.01},  // no lamp is as bright
+    {"separation", "off", 0.75, 1},
+    {"separated", "shading", 0.9, 1.01},
+    {"constraint", "off", 0.92, 1.01},
+    {"fit", "exact", 0.81, 1.08},
+    {"correction", "off", 1.26, 1.46},
 };
 
 TEST(SamplingRecovery, StepsAreWorthWhatTheyWere) {
@@ -169,19 +179,11 @@ TEST(SamplingRecovery, StepsAreWorthWhatTheyWere) {
   const auto sum = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
   };
-  const std::vector<double> with_all = errors_of({});
+  const double with_all = sum(errors_of({}));
   for (const StepOff& step : kStepsOff) {
-    const std::vector<double> without = errors_of({{step.key, step.value}});
-    const double ratio = sum(without) / sum(with_all);
+    const double ratio = sum(errors_of({{step.key, step.value}})) / with_all;
     EXPECT_GT(ratio, step.min_ratio) << step.key << '=' << step.value;
     EXPECT_LT(ratio, step.max_ratio) << step.key << '=' << step.value;
-    double var = 0;
-    for (std::size_t k = 0; k < 8; ++k) {
-      const double d = without[k] - ratio * with_all[k];
-      var += d * d;
-    }
-    std::printf("STEP %s %s %.4f sigma %.4f (all %.4f)\n", step.key, step.value, ratio,
-                std::sqrt(var * 8.0 / 7.0) / sum(with_all), sum(with_all) / 8);
   }
 }
 
