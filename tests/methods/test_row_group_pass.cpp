@@ -69,7 +69,7 @@ class RowSums {
   WorkspacePool<Workspace> pool_;
 };
 
-TEST(UnitPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
+TEST(RowGroupPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
   const auto m = matrix::low_rank_matrix({400, 60, 1}, 4);
   std::vector<Rgb> first;
   for (const int threads : {1, 2, 4})
@@ -86,7 +86,7 @@ TEST(UnitPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
   EXPECT_LT(relative_difference(first, m.exact_sums()), 1e-6);
 }
 
-TEST(UnitPass, BeginningsAreSpreadEvenly) {
+TEST(RowGroupPass, BeginningsAreSpreadEvenly) {
   for (const std::size_t n : {1u, 5u, 64u, 1000u, 4096u}) {
     const auto order = coarse_to_fine(n);
     EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), n);
@@ -100,7 +100,7 @@ TEST(UnitPass, BeginningsAreSpreadEvenly) {
   }
 }
 
-TEST(UnitPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
+TEST(RowGroupPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
   const auto m = matrix::clustered_matrix({320, 20, 1}, 3);
   const auto exact = m.exact_sums();
   std::atomic<bool> cancel{false};
@@ -126,7 +126,7 @@ TEST(UnitPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
   });
 }
 
-TEST(UnitPass, CancelledBeforeTheFirstUnitNothingIsTouched) {
+TEST(RowGroupPass, CancelledBeforeTheFirstUnitNothingIsTouched) {
   const auto m = matrix::clustered_matrix({10, 20, 1}, 3);
   const std::atomic<bool> cancel{true};
   RunOptions options;
@@ -139,7 +139,7 @@ TEST(UnitPass, CancelledBeforeTheFirstUnitNothingIsTouched) {
   EXPECT_EQ(sums, std::vector<Rgb>(10, Rgb(0)));
 }
 
-TEST(UnitPass, PreviewsAreCompleteAndChangeNothing) {
+TEST(RowGroupPass, PreviewsAreCompleteAndChangeNothing) {
   const auto m = matrix::low_rank_matrix({500, 40, 1}, 4);
   std::vector<Rgb> unwatched, watched;
   RowSums(m).run({}, unwatched);
@@ -163,7 +163,7 @@ TEST(UnitPass, PreviewsAreCompleteAndChangeNothing) {
   EXPECT_EQ(progress.back(), 1.0);
 }
 
-TEST(UnitPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
+TEST(RowGroupPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
   const auto m = matrix::low_rank_matrix({200, 40, 1}, 4);
   TimedChoices written;
   RunOptions options;
@@ -188,7 +188,7 @@ TEST(UnitPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
   EXPECT_EQ(again, sums);
 }
 
-TEST(UnitPass, AFailureEndsThePassAndIsPassedOn) {
+TEST(RowGroupPass, AFailureEndsThePassAndIsPassedOn) {
   const auto m = matrix::low_rank_matrix({200, 4, 1}, 4);
   RowSums pass(m);
   pass.after_unit = [](std::size_t unit) {
