@@ -68,7 +68,7 @@ std::vector<float> projected(const Rows& rows, std::size_t n, std::uint64_t seed
   return points;
 }
 
-// Relative L1, as Exploration expects it: Σ over rows of the standard deviation of the estimate, with
+// Relative L1, as ReducedMatrix expects it: Σ over rows of the standard deviation of the estimate, with
 // representatives drawn by their norm.
 double expected_error(const Rows& rows, std::size_t n, const linalg::Partition& clusters,
                       const linalg::ColumnSketch& sketch) {

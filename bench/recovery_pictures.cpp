@@ -5,7 +5,7 @@
 
 #include "image/pfm.h"
 #include "linalg/svd.h"
-#include "recovery_looker.h"
+#include "recovery_inspector.h"
 
 namespace lumirank::bench {
 
@@ -14,12 +14,12 @@ using matrix::Index;
 using methods::RecoverySettings;
 using methods::SliceRecovery;
 
-void Looker::write(const std::string& name, const image::Image& image) const {
+void RecoveryInspector::write(const std::string& name, const image::Image& image) const {
   image::write_pfm((std::filesystem::path(options_.folder) / (name + ".pfm")).string(), image);
 }
 
 // A pixel gets the mean of its receivers' slices.
-image::Image Looker::paint(const std::function<Rgb(const Findings&)>& value) const {
+image::Image RecoveryInspector::paint(const std::function<Rgb(const Findings&)>& value) const {
   image::Image image(options_.width, options_.height), count = image;
   const auto pixel = matrix_.row_features().pixel;
   for (std::size_t s = 0; s < slices_.count(); ++s)
@@ -46,7 +46,7 @@ std::array<double, 3> chosen_by_test(const Findings& f, bool equal) {
 
 }  // namespace
 
-json Looker::write_pictures() const {
+json RecoveryInspector::write_pictures() const {
   json told = json::object();
   for (std::size_t k = 0; k < kPredictors.size(); ++k)
     for (const bool equal : {false, true}) {
@@ -58,7 +58,7 @@ json Looker::write_pictures() const {
       double entries = 0, columns = 0, best = 0, tested = 0;
       for (const Findings& f : findings_) {
         const Predicted& p = (equal ? f.equal : f.adaptive)[k];
-        sum.wrong += p.wrong, sum.looked += p.looked, sum.failed += p.failed;
+        sum.wrong += p.wrong, sum.sampled += p.sampled, sum.failed += p.failed;
         const auto chosen = chosen_by_test(f, equal);
         for (std::size_t c = 0; c < 3; ++c) sum.chosen[c] += chosen[c], tested += chosen[c];
         entries += f.entries, columns += f.columns;
@@ -69,8 +69,8 @@ json Looker::write_pictures() const {
             }))
           best += 1;
       }
-      json& j = told[name] = sum.wrong.told();
-      j["looked"] = sum.looked / entries;
+      json& j = told[name] = sum.wrong.summary();
+      j["sampled"] = sum.sampled / entries;
       j["failed_columns"] = sum.failed / columns;
       j["best_in_slices"] = best / static_cast<double>(findings_.size());
       if (k < 3) continue;
@@ -98,14 +98,14 @@ namespace {
 std::size_t stop(const std::vector<double>& residuals) {
   const linalg::SeparationSettings s;
   for (std::size_t k = 0; k < residuals.size(); ++k)
-    if (residuals[k] < s.tolerance || (k > 2 && residuals[k] > (1 - s.least_progress) * residuals[k - 1]))
+    if (residuals[k] < s.tolerance || (k > 2 && residuals[k] > (1 - s.min_progress) * residuals[k - 1]))
       return k + 1;
   return residuals.size();
 }
 
 }  // namespace
 
-json Looker::tell() const {
+json RecoveryInspector::summary() const {
   json slices = json::array();
   std::vector<double> residual(kIterations), endless(kIterations), printed(kIterations),
       everywhere(kIterations);
@@ -158,8 +158,8 @@ json Looker::tell() const {
     for (double& x : *r) x /= std::max(counted, 1.0);
   return {{"per_slice", slices},
           {"sums", sum},
-          {"guesses_drawn", drawn.told()},
-          {"guesses_separated", separated.told()},
+          {"guesses_drawn", drawn.summary()},
+          {"guesses_separated", separated.summary()},
           {"convergence",
            {{"slices", counted},
             {"slices_by_iterations", stopped},
@@ -170,7 +170,7 @@ json Looker::tell() const {
             {"slices_by_iterations_as_printed", stopped_printed}}}};
 }
 
-std::size_t Looker::slice_at(double q) const {
+std::size_t RecoveryInspector::slice_at(double q) const {
   std::vector<std::size_t> order(findings_.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   const auto mixed = [&](std::size_t s) { return findings_[s].mixed / std::max(findings_[s].entries, 1.0); };
@@ -178,7 +178,7 @@ std::size_t Looker::slice_at(double q) const {
   return order[static_cast<std::size_t>(q * static_cast<double>(order.size() - 1))];
 }
 
-json Looker::write_matrices(std::size_t s, const std::string& name) {
+json RecoveryInspector::write_matrices(std::size_t s, const std::string& name) {
   methods::WorkspacePool<Workspace>::Lease lease(pool_);
   Workspace& w = *lease;
   std::vector<Rgb> sums = sums_;
@@ -186,16 +186,15 @@ json Looker::write_matrices(std::size_t s, const std::string& name) {
     RecoverySettings settings = settings_;
     if (!uncertain) settings.uncertain = 0;
     settings.correction = settings_.correction && correction;
-    w.recovery.use(settings);
-    w.recovery.run(slices_.slice(s), key(s), sums);
+    w.recovery.run(settings, slices_.slice(s), methods::slice_key(options_.seed, s), sums);
   };
   // 0: guessed, 1: sampled, 2: because a guess would cost much, 3: by correction.
-  std::vector<float> looked;
+  std::vector<float> sampled;
   const auto mark = [&](float code) {
     const auto states = w.recovery.states();
-    looked.resize(states.size());
+    sampled.resize(states.size());
     for (std::size_t at = 0; at < states.size(); ++at)
-      if (states[at] == Entry::exact && !(looked[at] > 0)) looked[at] = code;
+      if (states[at] == Entry::exact && !(sampled[at] > 0)) sampled[at] = code;
   };
   run_with(false, false), mark(1);
   run_with(true, false), mark(2);
@@ -211,7 +210,7 @@ json Looker::write_matrices(std::size_t s, const std::string& name) {
     write(name + "_" + what, image);
   };
   const SliceRecovery& r = w.recovery;
-  matrix_picture("looked", [&](std::size_t at) { return looked[at]; });
+  matrix_picture("sampled", [&](std::size_t at) { return sampled[at]; });
   matrix_picture("reference", [&](std::size_t at) { return w.truth[at]; });
   matrix_picture("recovered", [&](std::size_t at) { return r.visibility()[at]; });
   matrix_picture("error", [&](std::size_t at) { return r.visibility()[at] - w.truth[at]; });
@@ -260,8 +259,8 @@ json Looker::write_matrices(std::size_t s, const std::string& name) {
           {"error_drawn", f.error_drawn / f.light},
           {"error_separated", f.error_separated / f.light},
           {"error_final", f.error_final / f.light},
-          {"guesses_drawn", f.drawn.told()},
-          {"guesses_separated", f.separated.told()},
+          {"guesses_drawn", f.drawn.summary()},
+          {"guesses_separated", f.separated.summary()},
           {"singular_values",
            {{"visibility", linalg::singular_values(seen, columns, rows)},
             {"light", linalg::singular_values(lit, columns, rows)},

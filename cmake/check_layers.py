@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails if a file includes a room that its own room may not see, or if a public header sees anything but the standard library."""
+"""Fails if a file includes a room that its own room may not see, or a folder of its room that its own folder may not, or if a public
+header sees anything but the standard library."""
 import pathlib
 import re
 import sys
@@ -30,30 +31,55 @@ ROOMS = {
     "api": ["study"],
 }
 
-# Folders of a room from the bottom up, as far as they have an order: none includes one further up, nor one beside it.
+# The same inside of a room, for its folders; "*" are those that are not named. Every folder may include the headers that lie
+# in the room itself, and a file that lies there (a list of what there is) may include all folders.
 FOLDERS = {
-    "scenedesc": [["schema"], ["data"], ["meshes", "ies"], ["mitsuba", "pbrt", "gltf"], ["writer"], ["."]],
+    "transport": {
+        "rows": [],
+        "lights": ["rows"],
+        "pairs": ["lights"],
+        "cpu": ["pairs"],
+    },
+    "scenedesc": {
+        "schema": [],
+        "data": ["schema"],
+        "meshes": ["data"],
+        "ies": ["data"],
+        "mitsuba": ["meshes", "ies"],
+        "pbrt": ["meshes", "ies"],
+        "gltf": ["meshes", "ies"],
+        "writer": ["meshes", "ies"],
+    },
+    "scatter": {"lobes": []},
+    "methods": {
+        "common": [],
+        "slice_cuts": ["common"],
+        "sampling_recovery": ["slice_cuts"],
+        "*": ["common"],
+    },
 }
 
 
-def out_of_order(room, path, name):
-    """Whether a file includes a folder of its own room that does not lie below its own."""
-    def rank(parts):
-        folder = parts[0] if len(parts) > 1 else "."
-        return folder, next(i for i, row in enumerate(FOLDERS[room]) if folder in row)
-    own, own_rank = rank(path.relative_to(ROOT / "src" / room).parts)
-    other, other_rank = rank(pathlib.PurePosixPath(name).parts[1:])
-    return own != other and other_rank >= own_rank
-
-
-def reachable(room):
-    seen, todo = set(), [room]
+def reachable(start, table):
+    seen, todo = set(), [start]
     while todo:
         r = todo.pop()
         if r not in seen:
             seen.add(r)
-            todo += ROOMS[r]
+            todo += table[r] if r in table else table["*"]
     return seen
+
+
+def folder_errors(path, name):
+    """What is wrong with a file of a room that includes `name`, as for folders."""
+    room = path.relative_to(ROOT / "src").parts[0]
+    parts = name.split("/")
+    own = path.relative_to(ROOT / "src" / room).parts
+    if room not in FOLDERS or parts[0] != room or len(own) == 1 or len(parts) == 2:
+        return []
+    if parts[1] in reachable(own[0], FOLDERS[room]):
+        return []
+    return [f"{path.relative_to(ROOT)}: {room}/{own[0]} may not include {name}"]
 
 
 def main():
@@ -62,7 +88,7 @@ def main():
         if room not in ROOMS:
             errors.append(f"src/{room}: an unknown room; name it in {pathlib.Path(__file__).name}")
             continue
-        allowed = reachable(room)
+        allowed = reachable(room, ROOMS)
         for path in sorted((ROOT / "src" / room).rglob("*")):
             if path.suffix not in (".h", ".cpp"):
                 continue
@@ -70,8 +96,8 @@ def main():
                 top = name.split("/")[0]
                 if quote == '"' and top in ROOMS and top not in allowed:
                     errors.append(f"{path.relative_to(ROOT)}: {room} may not include {name}")
-                elif quote == '"' and top == room and room in FOLDERS and out_of_order(room, path, name):
-                    errors.append(f"{path.relative_to(ROOT)}: may not include {name}, which is not below it")
+                if quote == '"':
+                    errors += folder_errors(path, name)
     for path in sorted((ROOT / "include").rglob("*.h")):
         for quote, name in INCLUDE.findall(path.read_text()):
             if quote == '"' and not name.startswith("lumirank/"):

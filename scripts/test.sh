@@ -22,6 +22,8 @@ else
 fi
 step "Layers"
 python3 cmake/check_layers.py
+step "Names in the documentation"
+python3 cmake/check_docs.py
 
 step "Build, warnings are errors"
 quiet_build ci

@@ -116,13 +116,18 @@ void add_info(CLI::App& app, Action& action) {
 }
 
 void add_methods(CLI::App& app, Action& action) {
-  auto json = std::make_shared<bool>(false);
+  struct Options {
+    bool json = false, all = false;
+  };
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("methods", "the methods with their parameters, defaults and papers");
-  command->add_flag("--json", *json, "as JSON");
-  command->footer("Example:\n  lumirank methods --json\n");
-  command->callback([json, &action] {
-    action = [json](Streams streams) {
-      print(streams, (*json ? methods_json() : methods_text()));
+  command->add_flag("--json", options->json, "as JSON");
+  command->add_flag("--all", options->all,
+                    "also the parameters that switch off steps of a method, for experiments");
+  command->footer("Examples:\n  lumirank methods --json\n  lumirank methods --all\n");
+  command->callback([options, &action] {
+    action = [options](Streams streams) {
+      print(streams, options->json ? methods_json(options->all) : methods_text(options->all));
       return 0;
     };
   });

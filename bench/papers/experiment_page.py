@@ -18,7 +18,7 @@ def read_pfm(path):
     kind, size, scale, body = data.split(b"\n", 3)
     width, height = map(int, size.split())
     if kind != b"PF" or float(scale) > 0:
-        raise ValueError(f"{path}: not a little-endian colour PFM")
+        raise ValueError(f"{path}: not a little-endian color PFM")
     values = array.array("f", body[:12 * width * height])
     if sys.byteorder == "big":
         values.byteswap()
@@ -42,7 +42,7 @@ def to_display(values, exposure):
     return bytes(CODES[min(4095, max(0, int(4095 * exposure * v)))] for v in values)
 
 
-def false_colour(x):
+def false_color(x):
     """Black, blue, magenta, orange, white for 0 … 1."""
     stops = ((0, 0, 0), (40, 20, 140), (190, 40, 120), (250, 150, 30), (255, 255, 230))
     x = min(max(x, 0.0), 1.0) * 4
@@ -50,16 +50,16 @@ def false_colour(x):
     return bytes(round(a + (b - a) * (x - k)) for a, b in zip(stops[k], stops[k + 1]))
 
 
-FALSE_COLOURS = [false_colour(k / 255) for k in range(256)]
+FALSE_COLORS = [false_color(k / 255) for k in range(256)]
 # Blue, white, red for -1 … 1.
-SIGNED_COLOURS = [bytes(round(255 + (c - 255) * abs(t)) for c in ((190, 30, 40) if t > 0 else (30, 70, 180))) for t in (k / 127.5 - 1 for k in range(256))]
+SIGNED_COLORS = [bytes(round(255 + (c - 255) * abs(t)) for c in ((190, 30, 40) if t > 0 else (30, 70, 180))) for t in (k / 127.5 - 1 for k in range(256))]
 NOTHING = bytes((112, 112, 112))
 
 
-def colours_of(values, low, high, colours, nothing=math.isnan):
-    """The first of every three numbers, painted by the colours from low to high; grey where there is nothing."""
-    scale = len(colours) / (high - low)
-    return b"".join(NOTHING if nothing(v) else colours[min(len(colours) - 1, max(0, int((v - low) * scale)))] for v in values[::3])
+def colors_of(values, low, high, colors, nothing=math.isnan):
+    """The first of every three numbers, painted by the colors from low to high; grey where there is nothing."""
+    scale = len(colors) / (high - low)
+    return b"".join(NOTHING if nothing(v) else colors[min(len(colors) - 1, max(0, int((v - low) * scale)))] for v in values[::3])
 
 
 class Truth:
@@ -109,7 +109,7 @@ class Truth:
     def difference_png(self, path, image, full=2.0):
         """|I − R| per pixel, white at `full` times the mean of the reference."""
         values, scale = image[2], 1 / (full * self.level * 3)
-        pixels = b"".join(false_colour(scale * sum(abs(values[k + c] - self.mean[k + c]) for c in range(3))) for k in range(0, len(values), 3))
+        pixels = b"".join(false_color(scale * sum(abs(values[k + c] - self.mean[k + c]) for c in range(3))) for k in range(0, len(values), 3))
         write_png(path, self.width, self.height, pixels)
 
 
@@ -182,19 +182,19 @@ def plot(title, x_label, y_label, curves, log_x=True, log_y=True, width=600, hei
         out.append(f'<line x1="{left}" y1="{py(t):.1f}" x2="{width - right}" y2="{py(t):.1f}" class="g"/><text x="{left - 6}" y="{py(t) + 4:.1f}" text-anchor="end">{t:g}</text>')
     out.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">{html.escape(x_label)}</text>'
                f'<text transform="translate(14 {(top + height - bottom) / 2}) rotate(-90)" text-anchor="middle">{html.escape(y_label)}</text>')
-    colours = ("#1b6ca8", "#c8502a", "#3a8f4d", "#8a4fa3", "#b08a1e", "#4b4b4b", "#d0679c", "#3aa6a6", "#7a5230", "#8fae3c")
+    colors = ("#1b6ca8", "#c8502a", "#3a8f4d", "#8a4fa3", "#b08a1e", "#4b4b4b", "#d0679c", "#3aa6a6", "#7a5230", "#8fae3c")
     for k, (name, curve) in enumerate(curves.items()):
-        colour = colours[k % len(colours)]
+        color = colors[k % len(colors)]
         good = [p for p in curve if p[1] > 0]
         if len(good) == 1 and good[0][0] == 0:
             y = py(good[0][1])
-            out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - right}" y2="{y:.1f}" stroke="{colour}" stroke-dasharray="6 4" stroke-width="2"/>')
+            out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - right}" y2="{y:.1f}" stroke="{color}" stroke-dasharray="6 4" stroke-width="2"/>')
         else:
             path = " ".join(f"{px(x):.1f},{py(y):.1f}" for x, y in good)
-            out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>' +
-                       ("".join(f'<circle cx="{px(x):.1f}" cy="{py(y):.1f}" r="3" fill="{colour}"/>' for x, y in good) if len(good) < 30 else ""))
+            out.append(f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2"/>' +
+                       ("".join(f'<circle cx="{px(x):.1f}" cy="{py(y):.1f}" r="3" fill="{color}"/>' for x, y in good) if len(good) < 30 else ""))
         y, dash = top + 12 + 18 * k, ' stroke-dasharray="6 4"' if len(good) == 1 and good[0][0] == 0 else ""
-        out.append(f'<line x1="{width - right + 8}" y1="{y}" x2="{width - right + 28}" y2="{y}" stroke="{colour}" stroke-width="2"{dash}/>'
+        out.append(f'<line x1="{width - right + 8}" y1="{y}" x2="{width - right + 28}" y2="{y}" stroke="{color}" stroke-width="2"{dash}/>'
                    f'<text x="{width - right + 33}" y="{y + 4}">{html.escape(name)}</text>')
     return "\n".join(out + ["</svg>"])
 
@@ -220,21 +220,21 @@ def bars(title, x_label, y_label, heights, curves, width=600, height=340):
                f'<text transform="translate(14 {top + down / 2}) rotate(-90)" text-anchor="middle">{html.escape(y_label)}</text>')
     names = 0
 
-    def legend(name, colour):
+    def legend(name, color):
         nonlocal names
         y = top + 12 + 18 * names
         names += 1
-        out.append(f'<rect x="{width - right + 48}" y="{y - 6}" width="12" height="10" fill="{colour}"/><text x="{width - right + 64}" y="{y + 3}">{html.escape(name)}</text>')
+        out.append(f'<rect x="{width - right + 48}" y="{y - 6}" width="12" height="10" fill="{color}"/><text x="{width - right + 64}" y="{y + 3}">{html.escape(name)}</text>')
     bar = 0.8 * slot / len(heights)
-    for n, ((name, values), colour) in enumerate(zip(heights.items(), ("#7aa6c8", "#c9b27c", "#9cc09c"))):
+    for n, ((name, values), color) in enumerate(zip(heights.items(), ("#7aa6c8", "#c9b27c", "#9cc09c"))):
         for k, v in enumerate(values):
             h = down * v / most
-            out.append(f'<rect x="{left + k * slot + 0.1 * slot + n * bar:.1f}" y="{height - bottom - h:.1f}" width="{bar:.1f}" height="{h:.1f}" fill="{colour}"/>')
-        legend(name, colour)
-    for (name, curve), colour in zip(curves.items(), ("#c8502a", "#8a6d1e", "#8a4fa3", "#3a8f4d")):
+            out.append(f'<rect x="{left + k * slot + 0.1 * slot + n * bar:.1f}" y="{height - bottom - h:.1f}" width="{bar:.1f}" height="{h:.1f}" fill="{color}"/>')
+        legend(name, color)
+    for (name, curve), color in zip(curves.items(), ("#c8502a", "#8a6d1e", "#8a4fa3", "#3a8f4d")):
         path = " ".join(f"{left + (x + 0.5) * slot:.1f},{height - bottom - down * y / upper:.1f}" for x, y in curve)
-        out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
-        legend(name, colour)
+        out.append(f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2"/>')
+        legend(name, color)
     return "\n".join(out + ["</svg>"])
 
 
@@ -274,17 +274,17 @@ class Page:
         self.figure(name, truth.width, caption)
 
     def scaled(self, name, image, low, high, caption, signed=False, nothing=math.isnan, label="{:g}".format, shown=None):
-        """The first channel in false colour, with a bar that says what the colours stand for."""
+        """The first channel in false color, with a bar that says what the colors stand for."""
         width, height, values = image
-        colours = SIGNED_COLOURS if signed else FALSE_COLOURS
-        write_png(self.folder / "images" / f"{name}.png", width, height, colours_of(values, low, high, colours, nothing))
-        stops = ",".join(f"rgb({c[0]},{c[1]},{c[2]})" for c in (colours[k] for k in (0, 64, 128, 191, 255)))
+        colors = SIGNED_COLORS if signed else FALSE_COLORS
+        write_png(self.folder / "images" / f"{name}.png", width, height, colors_of(values, low, high, colors, nothing))
+        stops = ",".join(f"rgb({c[0]},{c[1]},{c[2]})" for c in (colors[k] for k in (0, 64, 128, 191, 255)))
         self.figure(name, width, caption, f'<div class="bar"><span>{label(low)}</span><i style="background:linear-gradient(90deg,{stops})"></i><span>{label(high)}</span></div>', shown)
 
     def codes(self, name, image, kinds, caption, shown=None):
-        """The first channel holds 0, 1, 2 …; kinds: (name, colour) of each."""
+        """The first channel holds 0, 1, 2 …; kinds: (name, color) of each."""
         width, height, values = image
-        write_png(self.folder / "images" / f"{name}.png", width, height, colours_of(values, 0, len(kinds), [bytes(c) for _, c in kinds]))
+        write_png(self.folder / "images" / f"{name}.png", width, height, colors_of(values, 0, len(kinds), [bytes(c) for _, c in kinds]))
         legend = "".join(f'<i style="background:rgb({c[0]},{c[1]},{c[2]});flex:0 0 1.2em;min-width:0"></i><span>{html.escape(n)}</span>' for n, c in kinds)
         self.figure(name, width, caption, f'<div class="bar">{legend}</div>', shown)
 

@@ -86,7 +86,7 @@ def main():
                       [*common, "--methods", f"instant-radiosity,power-sampling,{method}", "--seeds", args.seeds,
                        "--set", "rows=300", "--set", "columns=900", "--times", f"{budget:.2f}", "--equal", "time",
                        # Once more as published: without our two guards against specks.
-                       "--sweep", f"{method}.power-share:most-shown=0:0"])
+                       "--sweep", f"{method}.power-share:max-contribution=0:0"])
         text.append(f"\n## {name}: Figure 5, equal time\n\n" + table(results, BASIC))
 
         sweeps = []

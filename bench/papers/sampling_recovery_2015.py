@@ -13,8 +13,8 @@
   clusters  Figure 3: light clusters without splitting, without sparse visibility, and with both
 
 Errors are relative L1 against the sum of all columns, at the pixels of 4,096 stratified receivers of the full-size render unless --receivers says otherwise.
-Parts separation, predictors and matrices need bench/look_into_recovery.cpp (cmake -DLUMIRANK_BENCH=ON), which asks for all visibilities of the reduced matrices;
-its size and lights are smaller: --look-size and --look-lights.
+Parts separation, predictors and matrices need bench/inspect_recovery.cpp (cmake -DLUMIRANK_BENCH=ON), which asks for all visibilities of the reduced matrices;
+its size and lights are smaller: --inspect-size and --inspect-lights.
 OUT gets index.html, tables.md, and the page of every comparison. What is finished with the same settings is not run again. --quick: small sizes, minutes
 instead of hours; its numbers show that the script works and nothing else.
 """
@@ -37,8 +37,8 @@ TRACED = "slice-cuts"
 # reading rows and clustering for each slice. slice-cuts has the
 # clusters of sampling-recovery and all their visibilities, one for each surface of a pixel.
 LADDERS = {
-    "lightcuts": ("most-nodes", (100, 300, 1000)),
-    "multidimensional-lightcuts": ("most-pairs", (60, 250, 500, 1000)),
+    "lightcuts": ("max-nodes", (100, 300, 1000)),
+    "multidimensional-lightcuts": ("max-pairs", (60, 250, 500, 1000)),
     "lightslice": ("columns:slice-rows:neighbours", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
     "stochastic-lightcuts": ("nodes", (8, 16, 64)),
     "row-column-sampling": ("rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
@@ -49,7 +49,7 @@ LADDERS = {
     TRACED: ("initial-columns:alpha", ("100:0.02", "250:0.008", "500:0.003", "1000:0.001")),
 }
 PREDICTORS = {"nearest": "Nearest samples", "plane": "Plane", "bayes": "Naive Bayes", "all": "Best of the three"}
-LOOKED = (("guessed", (20, 20, 30)), ("sampled", (235, 235, 220)), ("uncertain", (250, 170, 40)), ("corrected", (225, 50, 60)))
+SAMPLED = (("guessed", (20, 20, 30)), ("sampled", (235, 235, 220)), ("uncertain", (250, 170, 40)), ("corrected", (225, 50, 60)))
 STEPS = ("prediction", "calibration", "separation", "correction", "constraint")
 
 
@@ -87,8 +87,8 @@ class Experiments:
         self.receivers = args.receivers or (256 if quick else 4096)
         width, height = map(int, self.size.split("x"))
         self.pixels = width * height
-        self.look_size = args.look_size or ("100x75" if quick else "400x300")
-        self.look_lights = args.look_lights or (5000 if quick else 20000)
+        self.inspect_size = args.inspect_size or ("100x75" if quick else "400x300")
+        self.inspect_lights = args.inspect_lights or (5000 if quick else 20000)
         self.page = Page("Matrix sampling and recovery: the experiments of the 2015 paper", args.out)
         self.scenes = {f"{s.parent.name}/{s.stem}" if s.stem != "scene" else s.parent.name: s for s in args.scenes}
         if not self.scenes:
@@ -179,41 +179,41 @@ class Experiments:
         self.switched("Figure 3: light clusters", "Without splitting, without sparse visibility, with both.", "clusters",
                       [("splitting", ("off", "on")), ("sparse-visibility", ("off",))])
 
-    def look(self, scene):
-        """What look_into_recovery finds, and the folder of its pictures."""
-        folder = self.out / "runs" / f"look_{scene.replace('/', '_')}"
-        command = ["--size", self.look_size, "--lights", str(self.look_lights), "--spp", "4"]
+    def inspect(self, scene):
+        """What inspect_recovery finds, and the folder of its pictures."""
+        folder = self.out / "runs" / f"inspect_{scene.replace('/', '_')}"
+        command = ["--size", self.inspect_size, "--lights", str(self.inspect_lights), "--spp", "4"]
         mark, stamp = folder / "asked", hashlib.sha256("\n".join([str(self.scenes[scene]), *command]).encode()).hexdigest()
         if not (mark.exists() and mark.read_text() == stamp):
             folder.mkdir(parents=True, exist_ok=True)
-            line = [str(self.args.looker), str(self.scenes[scene]), str(folder), *command, "--threads", str(self.args.threads)]
+            line = [str(self.args.inspector), str(self.scenes[scene]), str(folder), *command, "--threads", str(self.args.threads)]
             print("$", *line, flush=True)
             subprocess.run(line, check=True)
             mark.write_text(stamp)
         return json.loads((folder / "results.json").read_text()), folder
 
-    def looked_at(self, found):
+    def inspected(self, found):
         slices = found["per_slice"]
-        return (f"{self.look_size}, {found['receivers']} receivers in {len(slices)} slices, {found['lights']} lights, "
+        return (f"{self.inspect_size}, {found['receivers']} receivers in {len(slices)} slices, {found['lights']} lights, "
                 f"{found['sums']['columns'] / len(slices):.0f} columns per slice; {percent(found['sums']['hidden'] / found['sums']['entries'])} of the entries that light could reach are hidden.")
 
     def predictors(self):
         page = self.page
         page.heading("Figures 4 and 5: predictors")
-        page.say("The share of wrong predictions among the entries that were not looked at, against all visibilities of the reduced matrices. Predictions are drawn by their probability, as the "
-                 "method does. Predictors stand alone: nothing is separated, corrected or looked at for being uncertain.")
+        page.say("The share of wrong predictions among the entries that were not sampled, against all visibilities of the reduced matrices. Predictions are drawn by their probability, as the "
+                 "method does. Predictors stand alone: nothing is separated, corrected or sampled for being uncertain.")
         for scene in self.scenes:
-            found, folder = self.look(scene)
-            name = "look_" + scene.replace("/", "_")
+            found, folder = self.inspect(scene)
+            name = "inspect_" + scene.replace("/", "_")
             page.heading(scene)
-            page.say(self.looked_at(found))
+            page.say(self.inspected(found))
             image = read_pfm(folder / "image.pfm")
             page.picture(f"{name}_image", image, exposure(image[2]), "What the method renders")
             pictures = {p: read_pfm(folder / f"wrong_{p}.pfm") for p in PREDICTORS}
             high = 0.05 * math.ceil(20 * max(max(p[2]) for p in pictures.values()))
             for p, words in PREDICTORS.items():
                 told = found["predictors"][f"wrong_{p}"]
-                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(told['wrong'])} wrong after looking at {percent(told['looked'])}", nothing=lambda v: v < 0, label=percent)
+                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(told['wrong'])} wrong after looking at {percent(told['sampled'])}", nothing=lambda v: v < 0, label=percent)
             choice = read_pfm(folder / "choice.pfm")
             page.raw(f"{name}_choice", choice[0], choice[1], bytes(112 if v < 0 else min(255, round(255 * v)) for v in choice[2]),
                      "Columns by the predictor chosen: red nearest samples, green Bayes, blue plane")
@@ -226,9 +226,9 @@ class Experiments:
             for equal, until in (("", "until the prediction error is met"), ("equal_", "after five rounds")):
                 for p, words in PREDICTORS.items():
                     told = found["predictors"][f"wrong_{equal}{p}"]
-                    rows.append((f"{words}, {until}", percent(told["wrong"]), percent(told["wrong_light"]), percent(told["looked"]), "" if p == "all" else percent(told["best_in_slices"]),
+                    rows.append((f"{words}, {until}", percent(told["wrong"]), percent(told["wrong_light"]), percent(told["sampled"]), "" if p == "all" else percent(told["best_in_slices"]),
                                  "" if equal else percent(told["failed_columns"]), " / ".join(percent(told["columns"][c]) for c in ("nearest", "plane", "bayes")) if p == "all" else ""))
-            page.table(("", "wrong", "weighted by light", "looked at", "best of the three in slices", "columns that failed", "tested columns: nearest / plane / Bayes"), rows)
+            page.table(("", "wrong", "weighted by light", "sampled", "best of the three in slices", "columns that failed", "tested columns: nearest / plane / Bayes"), rows)
             page.say(f"Columns that reach too few rows to be tested ({percent(1 - found['predictors']['wrong_all']['tested_columns'])}) are not counted among those that chose.")
             page.write()
 
@@ -238,10 +238,10 @@ class Experiments:
         page.say("Columns along the light tree, rows along Hilbert's curve through the slice; grey where the light does not reach (E = 0). The slices stand at 25 % and 90 % of all by how mixed "
                  "their columns are. What is separated is visibility, 0 or 1.")
         for scene in self.scenes:
-            found, folder = self.look(scene)
-            stem = "look_" + scene.replace("/", "_")
+            found, folder = self.inspect(scene)
+            stem = "inspect_" + scene.replace("/", "_")
             page.heading(scene)
-            page.say(self.looked_at(found))
+            page.say(self.inspected(found))
             width, height, values = read_pfm(folder / "image.pfm")
             shown = bytearray(to_display(values, exposure(values)))
             for which, tint in (("few", (230, 40, 40)), ("many", (50, 90, 255))):
@@ -250,13 +250,13 @@ class Experiments:
             page.raw(f"{stem}_slices", width, height, bytes(shown), "Where the two slices are: red few differences, blue many")
             for which, words in (("few", "Few differences"), ("many", "Many differences")):
                 told, name = found[which], f"{stem}_{which}"
-                page.say(f"{words}: {told['rows']} × {told['columns']}, {percent(told['hidden'])} hidden, rank {told['rank']:.0f}, {told['iterations']:.0f} iterations; looked at {percent(told['sampled'])} "
+                page.say(f"{words}: {told['rows']} × {told['columns']}, {percent(told['hidden'])} hidden, rank {told['rank']:.0f}, {told['iterations']:.0f} iterations; sampled {percent(told['sampled'])} "
                          f"for prediction, {percent(told['uncertain'])} where a guess would cost much, {percent(told['corrected'])} by correction; Z is above half an entry at {percent(told['nonzero'])}. "
                          f"Row sums are off by {percent(told['error_drawn'])} as predicted, {percent(told['error_separated'])} as separated, {percent(told['error_final'])} with correction.")
                 read = lambda what: read_pfm(folder / f"{which}_{what}.pfm")
                 paint = functools.partial(page.scaled, shown=270)
-                paint(f"{name}_predicted", read("predicted"), 0, 1, "(a) D: looked at or predicted")
-                page.codes(f"{name}_looked", read("looked"), LOOKED, "(b) What was looked at", shown=270)
+                paint(f"{name}_predicted", read("predicted"), 0, 1, "(a) D: sampled or predicted")
+                page.codes(f"{name}_sampled", read("sampled"), SAMPLED, "(b) What was sampled", shown=270)
                 paint(f"{name}_low_rank", read("low_rank"), 0, 1, "(c) L = X·Y, held to 0 … 1 in the picture")
                 paint(f"{name}_sparse", read("sparse"), -1, 1, "(d) Z", signed=True)
                 paint(f"{name}_density", read("density"), 0, 1, "(e) Density of errors")
@@ -290,10 +290,10 @@ class Experiments:
         page = self.page
         page.heading("Figure 6: convergence of the separation")
         page.say("Slices by the number of iterations after which the separation stops, and the mean of ‖XY + Z − D‖ / ‖D‖ after each iteration were it not to stop. As the method is set, predictions are fitted too, and "
-                 "entries that were looked at have no Z: these alone are mostly of a higher rank, so that no X·Y meets them and the residual cannot vanish. As the paper prints it (equations 6 and 11) only what was "
-                 "looked at is fitted, and may have a Z. The rule stops below 1 %, or from the fourth iteration on when one brings less than 10 % of what is left.")
+                 "entries that were sampled have no Z: these alone are mostly of a higher rank, so that no X·Y meets them and the residual cannot vanish. As the paper prints it (equations 6 and 11) only what was "
+                 "sampled is fitted, and may have a Z. The rule stops below 1 %, or from the fourth iteration on when one brings less than 10 % of what is left.")
         for scene in self.scenes:
-            found, _ = self.look(scene)
+            found, _ = self.inspect(scene)
             c = found["convergence"]
             pick = lambda r: [(k + 1, v) for k, v in enumerate(r)]
             page.svg(bars(f"{scene}: {c['slices']:.0f} slices", "iterations", "slices", {"fit of all": c["slices_by_iterations"], "as printed": c["slices_by_iterations_as_printed"]},
@@ -329,9 +329,9 @@ def main():
     parser.add_argument("--size", help="default 800x600")
     parser.add_argument("--lights", type=int, help="default 1000000")
     parser.add_argument("--receivers", type=int, help="at which the truth is known; default 4096")
-    parser.add_argument("--looker", type=pathlib.Path, default=HERE.parents[1] / "build/release/bench/look_into_recovery")
-    parser.add_argument("--look-size", help="of the parts that look inside; default 400x300")
-    parser.add_argument("--look-lights", type=int, help="default 20000")
+    parser.add_argument("--inspector", type=pathlib.Path, default=HERE.parents[1] / "build/release/bench/inspect_recovery")
+    parser.add_argument("--inspect-size", help="of the parts that inspect; default 400x300")
+    parser.add_argument("--inspect-lights", type=int, help="default 20000")
     parser.add_argument("--threads", type=int, default=0)
     args = parser.parse_args()
     run_parts(parser, args, PARTS, Experiments)

@@ -111,8 +111,9 @@ LUMIRANK_API void remove_temporary_files() noexcept;
 // Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
 LUMIRANK_API std::string error_json(const std::string& image_file, const std::string& reference_file);
 
-// The methods with their parameters and papers.
-LUMIRANK_API std::string methods_text();
-LUMIRANK_API std::string methods_json();
+// The methods with their parameters and papers. all: also the parameters that are for experiments only, which
+// switch off steps of a method; settings take them in either case.
+LUMIRANK_API std::string methods_text(bool all = false);
+LUMIRANK_API std::string methods_json(bool all = false);
 
 }  // namespace lumirank

@@ -6,34 +6,42 @@
 
 namespace lumirank {
 
-std::string methods_json() {
+std::string methods_json(bool all) {
   nlohmann::ordered_json json = nlohmann::json::array();
   for (const auto& m : methods::all_methods()) {
     nlohmann::ordered_json parameters = nlohmann::json::array();
     for (const auto& p : m.parameters)
-      parameters.push_back({{"key", p.key},
-                            {"type", p.type},
-                            {"default", p.default_text},
-                            {"range", p.range},
-                            {"unit", p.unit},
-                            {"help", p.help}});
+      if (all || !p.experiment)
+        parameters.push_back({{"key", p.key},
+                              {"type", p.type},
+                              {"default", p.default_text},
+                              {"range", p.range},
+                              {"unit", p.unit},
+                              {"help", p.help},
+                              {"experiment", p.experiment}});
     json.push_back(
         {{"name", m.name}, {"summary", m.summary}, {"paper", m.paper}, {"parameters", parameters}});
   }
   return json.dump(1) + "\n";
 }
 
-std::string methods_text() {
+std::string methods_text(bool all) {
   std::string text;
   for (const auto& m : methods::all_methods()) {
     text += m.name + "\n  " + m.summary + "\n";
     if (!m.paper.empty()) text += "  " + m.paper + "\n";
+    std::size_t hidden = 0;
     for (const auto& p : m.parameters) {
+      if (p.experiment && !all) {
+        ++hidden;
+        continue;
+      }
       text += "    --set " + p.key + "=" + (p.default_text.empty() ? "…" : p.default_text) + "  (" + p.type;
       if (!p.range.empty()) text += ", " + p.range;
       if (!p.unit.empty()) text += ", " + p.unit;
-      text += ")  " + p.help + "\n";
+      text += ")  " + p.help + (p.experiment ? " For experiments." : "") + "\n";
     }
+    if (hidden > 0) text += "    and " + std::to_string(hidden) + " for experiments, which --all lists\n";
     text += "\n";
   }
   return text;

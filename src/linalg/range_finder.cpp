@@ -18,8 +18,8 @@ namespace lumirank::linalg {
 namespace {
 
 constexpr std::size_t kVectorBlock = 16;
-constexpr std::size_t kMost = 24;
-using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMost>;
+constexpr std::size_t kMax = 24;
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMax, kMax>;
 using Vector = Eigen::Map<Eigen::VectorXf>;
 
 Vector vector(float* v, std::size_t n) { return {v, static_cast<Eigen::Index>(n)}; }
@@ -46,7 +46,7 @@ void orthonormalise(std::span<float> vectors, std::size_t k, std::size_t n) {
 RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t most,
                       std::uint64_t seed, const RangeSpace& space) {
   RangeFound found;
-  const std::size_t s = std::min({most, kMost, rows, columns}), m = rows;
+  const std::size_t s = std::min({most, kMax, rows, columns}), m = rows;
   if (s == 0) return found;
   float* const x = space.x.data();
   std::fill_n(x, s * m, 0.0f);

@@ -77,14 +77,14 @@ void Separation::start(const CorruptedMatrix& matrix, const SeparationSettings& 
   residuals_.reserve(settings.iterations);
   block_.resize(kColumnBlock * matrix.rows);
   product_.resize(kColumnBlock * matrix.rows);
-  y_.resize(kColumnBlock * kMostRank);
+  y_.resize(kColumnBlock * kMaxRank);
   scratch_.resize(2 * matrix.rows);
-  gathered_.resize(kMostRank * matrix.rows);
-  x_.resize(kMostRank * matrix.rows);
-  values_.resize(kMostRank);
+  gathered_.resize(kMaxRank * matrix.rows);
+  x_.resize(kMaxRank * matrix.rows);
+  values_.resize(kMaxRank);
   const RangeFound found =
-      find_range(matrix.d, matrix.rows, matrix.columns, std::min(settings.most_rank, kMostRank),
-                 settings.seed, {x_, gathered_, y_, block_, values_});
+      find_range(matrix.d, matrix.rows, matrix.columns, std::min(settings.max_rank, kMaxRank), settings.seed,
+                 {x_, gathered_, y_, block_, values_});
   rank_ = found.rank;
   norm_ = found.norm;
   values_.resize(found.values);
@@ -161,7 +161,7 @@ void Separation::run(const CorruptedMatrix& matrix, const SeparationSettings& se
     const double residual = iterate(matrix, settings, static_cast<float>(threshold)) / norm_;
     residuals_.push_back(residual);
     converged_ = residual < settings.tolerance ||
-                 (settings.least_progress > 0 && k > 2 && residual > (1 - settings.least_progress) * last);
+                 (settings.min_progress > 0 && k > 2 && residual > (1 - settings.min_progress) * last);
     last = residual;
   }
   finish(matrix);

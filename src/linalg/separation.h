@@ -21,12 +21,12 @@ enum class Entry : std::uint8_t {
 };
 
 struct SeparationSettings {
-  std::size_t most_rank = 16;   // at most kMostRank
+  std::size_t max_rank = 16;    // at most kMaxRank
   std::size_t iterations = 20;  // at most
   // Stops when ‖XY + Z − D‖ is below this share of ‖D‖, …
   double tolerance = 0.01;
   // … or, after four iterations, falls by less than this share of itself. 0: only the first.
-  double least_progress = 0.1;
+  double min_progress = 0.1;
   // The soft threshold in units of the root mean square of D (the solver's 1/β).
   double threshold = 0.5;
   // Equation 12 of 2015: Z/E is 0 or ±1 by what was predicted, so H = 2·s·Z/E − 1 is ±1. Relaxed to the
@@ -51,7 +51,7 @@ struct CorruptedMatrix {
 // it allocates nothing.
 class Separation {
  public:
-  static constexpr std::size_t kMostRank = 24;
+  static constexpr std::size_t kMaxRank = 24;
 
   void run(const CorruptedMatrix& matrix, const SeparationSettings& settings);
 

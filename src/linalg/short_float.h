@@ -26,19 +26,19 @@ inline float scale_for(float largest) {
 }
 
 namespace short_float {
-inline constexpr std::uint32_t kLeastExponent = 96u << 23;  // of 2⁻³¹
-inline constexpr int kDropped = 12;                         // bits of a float's mantissa
+inline constexpr std::uint32_t kMinExponent = 96u << 23;  // of 2⁻³¹
+inline constexpr int kDropped = 12;                       // bits of a float's mantissa
 }  // namespace short_float
 
 // x: in [0, 2).
 inline std::uint16_t shorten(float x) {
   const std::uint32_t rounded = std::bit_cast<std::uint32_t>(x) + (1u << (short_float::kDropped - 1));
-  const std::uint32_t above = std::max(rounded, short_float::kLeastExponent) - short_float::kLeastExponent;
+  const std::uint32_t above = std::max(rounded, short_float::kMinExponent) - short_float::kMinExponent;
   return static_cast<std::uint16_t>(std::min(above >> short_float::kDropped, 0xffffu));
 }
 inline float lengthen(std::uint16_t bits) {
   const std::uint32_t all =
-      (static_cast<std::uint32_t>(bits) << short_float::kDropped) + short_float::kLeastExponent;
+      (static_cast<std::uint32_t>(bits) << short_float::kDropped) + short_float::kMinExponent;
   return bits == 0 ? 0.0f : std::bit_cast<float>(all);
 }
 

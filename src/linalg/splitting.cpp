@@ -135,7 +135,7 @@ void Splitter::find_cut(Node& node) {
 
 // Cuts of the clusters that come next are found side by side. Which of them are found ahead changes nothing
 // but time.
-void Splitter::prepare_most_costly(std::size_t wanted) {
+void Splitter::prepare_costliest(std::size_t wanted) {
   std::vector<std::uint32_t> next;
   for (auto it = queue_.begin(); it != queue_.end() && next.size() < std::min<std::size_t>(wanted, 32); ++it)
     if (!nodes_[it->second].cut_known) next.push_back(it->second);
@@ -147,7 +147,7 @@ void Splitter::prepare_most_costly(std::size_t wanted) {
 bool Splitter::split_to(std::size_t clusters) {
   while (nodes_.size() < clusters && !queue_.empty()) {
     const std::uint32_t k = queue_.begin()->second;
-    if (!nodes_[k].cut_known) prepare_most_costly(clusters - nodes_.size());
+    if (!nodes_[k].cut_known) prepare_costliest(clusters - nodes_.size());
     queue_.erase(queue_.begin());
     const Node whole = nodes_[k];
     const auto middle = static_cast<std::uint32_t>(whole.begin + whole.cut.left);

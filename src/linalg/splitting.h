@@ -41,7 +41,7 @@ class Splitter {
     Cut cut;
   };
   void find_cut(Node& node);
-  void prepare_most_costly(std::size_t wanted);
+  void prepare_costliest(std::size_t wanted);
 
   Points points_;
   std::span<const double> norms_;

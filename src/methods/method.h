@@ -23,6 +23,8 @@ struct Parameter {
   std::string range;         // "1 …", "cost|random"
   std::string unit;          // "" or "rows"
   std::string help;          // what it does and what it costs
+  // Switches off a step of the paper, or what is ours alone: for experiments, listed on request only.
+  bool experiment = false;
 };
 
 // What a run did, beside its numbers: seconds and counts by stable keys ("seconds.rows", "rows", "columns",
@@ -37,7 +39,7 @@ class TimedChoices;
 struct RunOptions {
   std::uint64_t seed = 1;
   double time_seconds = 0;          // > 0: stop when this much time has passed since the call
-  double target_error = 0;          // > 0: stop when the whole error (known_rows.h) falls below
+  double target_error = 0;          // > 0: stop when the whole error (common/exact_rows.h) falls below
   TimedChoices* choices = nullptr;  // with a budget: where the clock's choices are kept, see timed_choices.h
   // Seconds since any moment, for time_seconds; empty: the wall clock. Tests let time pass by the entry.
   std::function<double()> clock;
@@ -73,8 +75,8 @@ struct MethodInfo {
   // (0: all).
   std::function<std::size_t(const std::map<std::string, std::string>& settings)> lights_wanted;
   // For a method that does not aim at RunOptions::target_error though its sums err: the parameters that
-  // decide its error, for a warning. "error-bound or most-nodes"; empty for all others.
-  std::string error_decided_by{};
+  // decide its error, for a warning. "error-bound or max-nodes"; empty for all others.
+  std::string error_parameters{};
   // Whether its estimate is one combination of columns (Estimate::combination), which splits by light.
   bool combination = false;
 };

@@ -34,25 +34,26 @@ std::string number_text(double value);
 
 // Highest counts of columns and of receivers: more than any scene has, and memory for them can be had. Where
 // a number of something is kept for each of these, its highest is much lower.
-inline constexpr std::size_t kMostColumns = 10'000'000, kMostRows = 1'000'000;
+inline constexpr std::size_t kMaxColumns = 10'000'000, kMaxRows = 1'000'000;
 
-template <typename S>
-Field<S> count_field(FieldText text, std::size_t S::*member, std::size_t lowest, std::size_t highest) {
+// `member` may belong to a base of S.
+template <typename S, typename B>
+Field<S> count_field(FieldText text, std::size_t B::*member, std::size_t lowest, std::size_t highest) {
   return {{text.key, "integer", std::to_string(S{}.*member),
            std::to_string(lowest) + " … " + std::to_string(highest), text.unit, text.help},
           [=](S& s, const std::string& v) { return parse_count(v, lowest, highest, s.*member); }};
 }
 
-template <typename S>
-Field<S> number_field(FieldText text, double S::*member, double lowest, double highest) {
+template <typename S, typename B>
+Field<S> number_field(FieldText text, double B::*member, double lowest, double highest) {
   return {{text.key, "number", number_text(S{}.*member), number_text(lowest) + " … " + number_text(highest),
            text.unit, text.help},
           [=](S& s, const std::string& v) { return parse_number(v, lowest, highest, s.*member); }};
 }
 
 // choices: name of every value of the enumeration, in its order from 0.
-template <typename S, typename E>
-Field<S> choice_field(FieldText text, E S::*member, std::vector<std::string> choices) {
+template <typename S, typename B, typename E>
+Field<S> choice_field(FieldText text, E B::*member, std::vector<std::string> choices) {
   std::string range;
   for (const auto& c : choices) range += (range.empty() ? "" : "|") + c;
   return {{text.key, "choice", choices[static_cast<std::size_t>(S{}.*member)], range, text.unit, text.help},
@@ -64,6 +65,13 @@ Field<S> choice_field(FieldText text, E S::*member, std::vector<std::string> cho
               }
             return false;
           }};
+}
+
+// The same for experiments only (Parameter::experiment).
+template <typename S>
+Field<S> experiment(Field<S> field) {
+  field.info.experiment = true;
+  return field;
 }
 
 template <typename S>
@@ -95,7 +103,7 @@ S read_settings(const std::string& method, const Fields<S>& fields, const Settin
 struct MethodText {
   std::string name, summary;
   std::string paper = "";
-  std::string error_decided_by = "";  // as in MethodInfo
+  std::string error_parameters = "";  // as in MethodInfo
   bool combination = false;           // as in MethodInfo
 };
 
@@ -110,7 +118,7 @@ MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
             return std::make_unique<M>(read_settings(name, fields, settings));
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
-          text.error_decided_by,
+          text.error_parameters,
           text.combination};
 }
 

@@ -9,6 +9,7 @@
 #include "methods/power_sampling/power_sampling.h"
 #include "methods/row_column/row_column.h"
 #include "methods/sampling_recovery/sampling_recovery.h"
+#include "methods/slice_cuts/slice_cuts.h"
 #include "methods/stochastic_lightcuts/stochastic_lightcuts.h"
 #include "methods/visibility_completion/visibility_completion.h"
 

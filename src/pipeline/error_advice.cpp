@@ -35,9 +35,9 @@ double lights_for_error(const ErrorAsked& asked, double lights_part, double clam
 }
 
 std::string error_not_aimed_at(const methods::MethodInfo& method, double target) {
-  if (target <= 0 || method.error_decided_by.empty()) return {};
+  if (target <= 0 || method.error_parameters.empty()) return {};
   return method.name + " does not aim at --error (" + percent(target) +
-         "), it only measures what it reaches: " + method.error_decided_by +
+         "), it only measures what it reaches: " + method.error_parameters +
          " (--set) decide; row-column-sampling, for one, aims at it";
 }
 

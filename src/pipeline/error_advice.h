@@ -13,7 +13,7 @@ struct ErrorAsked {
   double target = 0;                // --error
   std::size_t lights = 0;           // asked for
   std::string option = "--lights";  // how to ask for more
-  std::string decided_by = {};      // MethodInfo::error_decided_by
+  std::string decided_by = {};      // MethodInfo::error_parameters
 };
 
 // How many lights should bring the error under the target if half of it is left to sampling: the lights' part

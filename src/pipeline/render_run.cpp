@@ -258,7 +258,7 @@ class RenderRun {
     const bool own_lights =
         task_.info->lights_wanted && task_.info->lights_wanted(asked_.method.parameters) > 0;
     const ErrorAsked asked{asked_.method.target_error, lights_, own_lights ? "--set lights=" : "--lights",
-                           task_.info->error_decided_by};
+                           task_.info->error_parameters};
     if (const std::string advice = error_advice(asked, estimate_.trace.numbers); !advice.empty()) {
       sinks_.warn(advice);
       estimate_.trace.notes["error.advice"] = advice;

@@ -193,11 +193,11 @@ TEST(StatedError, MethodsThatDoNotAimAtItSaySo) {
       settings.method.target_error = error;
       warnings.clear();
       const json report = json::parse(render(scene, settings, sinks).report.json());
-      const bool expected = error > 0 && !info.error_decided_by.empty();
+      const bool expected = error > 0 && !info.error_parameters.empty();
       ASSERT_EQ(warnings.size(), expected ? 1u : 0u) << info.name;
       if (!expected) continue;
       EXPECT_TRUE(report.contains("error.estimate")) << info.name;
-      for (const std::string& part : {info.name, std::string("--error"), info.error_decided_by})
+      for (const std::string& part : {info.name, std::string("--error"), info.error_parameters})
         EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
     }
   }

@@ -37,7 +37,7 @@ class LightCutsInScenes : public testing::TestWithParam<const char*> {
   // What the picture shows of them.
   std::vector<Rgb> pixels(std::span<const Rgb> sums) const {
     const auto weight = matrix_->row_features().weight;
-    const methods::UnitRows units = methods::UnitRows::pixels(*matrix_);
+    const methods::RowGroups units = methods::RowGroups::pixels(*matrix_);
     std::vector<Rgb> out(units.size());
     for (std::size_t u = 0; u < units.size(); ++u)
       for (const matrix::Index i : units[u]) out[u] += sums[i] * weight[i];
@@ -57,11 +57,11 @@ TEST_P(LightCutsInScenes, WithoutBoundAndLimitEqualBruteForce) {
   // Sums of 300 floats in another order; what a bound of 0 leaves out is 0.
   EXPECT_LT(
       methods::relative_difference(
-          sums("lightcuts", {{"error-bound", "0"}, {"most-nodes", "1000000"}, {"reconstruction", "off"}}),
+          sums("lightcuts", {{"error-bound", "0"}, {"max-nodes", "1000000"}, {"reconstruction", "off"}}),
           truth),
       1e-6);
   EXPECT_LT(methods::relative_difference(
-                pixels(sums("multidimensional-lightcuts", {{"error-bound", "0"}, {"most-pairs", "1000000"}})),
+                pixels(sums("multidimensional-lightcuts", {{"error-bound", "0"}, {"max-pairs", "1000000"}})),
                 pixels(truth)),
             1e-6);
 }
@@ -92,7 +92,7 @@ TEST_P(LightCutsInScenes, ErrorFallsWithTheBound) {
     for (const char* bound : {"0.2", "0.02", "0.0005"})
       errors.push_back(methods::relative_l1_difference(
           pixels(sums(method, {{"error-bound", bound},
-                               {method[0] == 'l' ? "reconstruction" : "most-pairs",
+                               {method[0] == 'l' ? "reconstruction" : "max-pairs",
                                 method[0] == 'l' ? "off" : "100000"}})),
           truth));
     EXPECT_GT(errors[0], errors[1]) << method;

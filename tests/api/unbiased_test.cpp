@@ -110,9 +110,9 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
   settings.method.name = "row-column-sampling";
   settings.method.parameters = {{"rows", "20"},
                                 {"columns", "30"},
-                                {"colour", "scalar"},
+                                {"color", "scalar"},
                                 {"zero-columns", "sample"},
-                                {"most-shown", "0"}};
+                                {"max-contribution", "0"}};
   constexpr int kSeeds = 48, kBlock = 8, kBlocks = 32 / kBlock;
   std::vector<std::vector<double>> blocks(kBlocks * kBlocks * 3);
   const auto add = [&](const Picture& picture, auto&& keep) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 
 #include "program.h"
 
@@ -56,6 +57,29 @@ TEST(Commands, MethodsAsTextAndJson) {
   }
 }
 
+// Switches for experiments are listed on request only.
+TEST(Commands, MethodsListExperimentsOnRequest) {
+  const auto keys = [](const Arguments& arguments) {
+    const Outcome outcome = lumirank(arguments);
+    EXPECT_SUCCESS(outcome);
+    std::map<std::string, bool> found;
+    for (const auto& method : nlohmann::json::parse(outcome.out))
+      if (method.at("name") == "sampling-recovery")
+        for (const auto& p : method.at("parameters"))
+          found[p.at("key").get<std::string>()] = p.at("experiment").get<bool>();
+    return found;
+  };
+  const auto some = keys({"methods", "--json"}), all = keys({"methods", "--json", "--all"});
+  EXPECT_TRUE(some.contains("alpha"));
+  EXPECT_FALSE(some.contains("separation"));
+  for (const auto& [key, experiment] : some) EXPECT_FALSE(experiment) << key;
+  EXPECT_FALSE(all.at("alpha"));
+  EXPECT_TRUE(all.at("separation"));
+  EXPECT_EQ(lumirank({"methods"}).out.find("--set separation="), std::string::npos);
+  EXPECT_NE(lumirank({"methods"}).out.find("for experiments, which --all lists"), std::string::npos);
+  EXPECT_NE(lumirank({"methods", "--all"}).out.find("--set separation="), std::string::npos);
+}
+
 // Each is refused before anything is written, with a message that helps.
 TEST(Commands, WrongOptionsOfRender) {
   const TemporaryFolder folder;
@@ -66,7 +90,7 @@ TEST(Commands, WrongOptionsOfRender) {
   };
   const Case cases[] = {
       {{"--method", "magic"}, "brute-force, instant-radiosity"},
-      {{"--set", "lamps=3"}, "valid parameters: slice-rows, clusters"},
+      {{"--set", "lamps=3"}, "valid parameters: slice-rows, initial-columns"},
       {{"--set", "rows"}, "KEY=VALUE"},
       {{"--set", "rows=many"}, "rows"},
       {{"--lights", "0"}, "1 …"},

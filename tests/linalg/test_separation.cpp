@@ -71,7 +71,7 @@ SeparationSettings patient() {
   s.constraint = false;
   s.iterations = 200;
   s.tolerance = 1e-5;
-  s.least_progress = 0;
+  s.min_progress = 0;
   return s;
 }
 
@@ -144,7 +144,7 @@ TEST(Separation, EntriesWithoutMeaningDoNotMatter) {
       c.state[k] = Entry::free;
     }
   SeparationSettings settings = patient();
-  settings.most_rank = 2;
+  settings.max_rank = 2;
   Separation s;
   s.run({c.rows, c.columns, c.d, c.state, {}}, settings);
   EXPECT_LT(relative(s.low_rank(), c.truth), 1e-2);

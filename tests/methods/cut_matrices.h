@@ -23,12 +23,12 @@ inline std::vector<matrix::DenseMatrix> cut_matrices() {
 
 // With sizes[0] < sizes[1] < sizes[2] nodes of a cut at most, the last of which are enough for every light.
 inline void expect_error_falls_to_nothing(const std::string& method, SettingsMap settings,
-                                          const std::string& most_nodes,
+                                          const std::string& max_nodes,
                                           const std::array<const char*, 3>& sizes) {
   for (const matrix::DenseMatrix& m : cut_matrices()) {
     std::vector<double> errors;
     for (const char* nodes : sizes) {
-      settings[most_nodes] = nodes;
+      settings[max_nodes] = nodes;
       const Estimate e = find_method(method).make(settings)->run(m, {});
       errors.push_back(relative_difference(e.sums, m.exact_sums()));
       EXPECT_LE(e.trace.numbers.at("columns_max"), std::stod(nodes));

@@ -66,7 +66,11 @@ TEST(LocalMethods, CombinationIsLeftEmptyWhereColumnsDifferFromRowToRow) {
     EXPECT_TRUE(find_method(name).make({})->run(m, {}).combination.empty()) << name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Combination, testing::ValuesIn(names()));
+INSTANTIATE_TEST_SUITE_P(Methods, Combination, testing::ValuesIn(names()), [](const auto& p) {
+  std::string name = p.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace lumirank::methods

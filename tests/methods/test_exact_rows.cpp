@@ -41,7 +41,7 @@ Sampled sampled_columns(std::size_t rows, std::size_t columns, std::uint64_t see
 
 // u is symmetric about 0, so A − B and A + B − limit have the same distribution, and so have the stated and
 // the true error: a paired t-test.
-TEST(KnownRows, LightsPartIsTheDistanceFromTheLimit) {
+TEST(ExactRows, LightsPartIsTheDistanceFromTheLimit) {
   std::vector<double> difference, stated;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const Sampled s = sampled_columns(400, 30, seed);
@@ -57,7 +57,7 @@ TEST(KnownRows, LightsPartIsTheDistanceFromTheLimit) {
   EXPECT_NEAR(test::mean_of(stated).mean, std::sqrt(1.0 / 90) * std::sqrt(2 / M_PI), 0.004);
 }
 
-TEST(KnownRows, ExactColumnsHaveNoLightsPart) {
+TEST(ExactRows, ExactColumnsHaveNoLightsPart) {
   Sampled s = sampled_columns(100, 20, 1);
   for (auto& half : s.matrix.half) half = 0;
   EXPECT_EQ(read_rows(s.matrix, 20, 1).lights().value, 0);
@@ -65,20 +65,20 @@ TEST(KnownRows, ExactColumnsHaveNoLightsPart) {
   EXPECT_EQ(read_rows(s.matrix, 20, 1).lights().value, 0);
 }
 
-TEST(KnownRows, SamplingPartIsTheRelativeL1Error) {
+TEST(ExactRows, SamplingPartIsTheRelativeL1Error) {
   const auto m = matrix::low_rank_matrix({300, 100, 1}, 5);
   auto truth = m.exact_sums(), sums = truth;
   Rng rng(1, Stage::test);
   for (Rgb& s : sums) s *= 1 + 0.1f * static_cast<float>(rng.next_gaussian());
   // All rows: no sample, up to rounding of the sums.
-  const KnownRows all = read_rows(m, m.rows(), 1);
+  const ExactRows all = read_rows(m, m.rows(), 1);
   EXPECT_NEAR(all.sampling(sums).value, relative_l1_difference(sums, truth), 1e-5);
   EXPECT_NEAR(all.sampling(truth).value, 0, 1e-6);
 }
 
 // The 95 % intervals of 64 rows of 4,000 hold the error at all rows. Of 300 draws at least 88 % must (95 %
 // less five standard deviations of the share, √(0.95 · 0.05/300) = 1.3 %).
-TEST(KnownRows, IntervalsHoldTheErrorOfTheWholeImage) {
+TEST(ExactRows, IntervalsHoldTheErrorOfTheWholeImage) {
   const auto m = matrix::low_rank_matrix({4000, 20, 1}, 5);
   const auto truth = m.exact_sums();
   auto sums = truth;
@@ -97,7 +97,7 @@ TEST(KnownRows, IntervalsHoldTheErrorOfTheWholeImage) {
 // fifteenth): the intervals of 64 rows hold the error of all rows as often as they say. Of 300 draws at least
 // 0.9 less four standard deviations of the share, √(0.9 · 0.1/300) = 1.7 %: a false alarm in 30,000. The
 // symmetric interval of the same rows, at 95 %, does not even hold that for the second.
-TEST(KnownRows, IntervalsForHeavyTailsHoldWhatTheySay) {
+TEST(ExactRows, IntervalsForHeavyTailsHoldWhatTheySay) {
   const auto m = matrix::low_rank_matrix({4000, 20, 1}, 5);
   const auto truth = m.exact_sums();
   const int draws = 300;
@@ -120,11 +120,11 @@ TEST(KnownRows, IntervalsForHeavyTailsHoldWhatTheySay) {
   }
 }
 
-TEST(KnownRows, IntervalsOfExactSumsAreEmpty) {
+TEST(ExactRows, IntervalsOfExactSumsAreEmpty) {
   const auto m = matrix::low_rank_matrix({100, 20, 1}, 5);
-  KnownRows known = read_rows(m, 10, 1);
+  ExactRows known = read_rows(m, 10, 1);
   std::vector<Rgb> sums(m.rows());
-  for (const KnownRow& row : known.rows()) sums[row.from.row] = row.sum;
+  for (const ExactRow& row : known.rows()) sums[row.from.row] = row.sum;
   const ErrorPart part = known.sampling(sums);
   EXPECT_EQ(part.value, 0);
   EXPECT_EQ(part.low, 0);
@@ -132,7 +132,7 @@ TEST(KnownRows, IntervalsOfExactSumsAreEmpty) {
 }
 
 // An error is relative to light: of rows without any none is stated.
-TEST(KnownRows, DarkRowsTellNoError) {
+TEST(ExactRows, DarkRowsTellNoError) {
   matrix::DenseMatrix m(100, 20, std::vector<Rgb>(2000));
   RunOptions options;
   options.target_error = 0.1;
@@ -162,7 +162,7 @@ TEST(RowsForError, CountsByCost) {
 }
 
 // Rows that were drawn more often than others weigh less, and rows that count less in the image too.
-TEST(KnownRows, WeighsRows) {
+TEST(ExactRows, WeighsRows) {
   auto m = matrix::low_rank_matrix({2000, 20, 1}, 5);
   const auto truth = m.exact_sums();
   auto sums = truth;
@@ -183,7 +183,7 @@ TEST(KnownRows, WeighsRows) {
   std::vector<Rgb> row(m.columns());
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     RowSampler sampler(m, seed);
-    KnownRows known(m);
+    ExactRows known(m);
     for (const SampledRow& r : sampler.next_by_density(200, density)) known.read(r, row);
     values.push_back(known.sampling(sums).value);
   }
@@ -194,7 +194,7 @@ TEST(KnownRows, WeighsRows) {
       test::student_quantile(kAlpha, 1, values.size() - 1) * mean.standard_error + 0.02 * over / under);
 }
 
-TEST(KnownRows, PartsAddUp) {
+TEST(ExactRows, PartsAddUp) {
   const ErrorParts parts{{0.03, 0.01}, {0.04, 0.02}, {0.01, 0.005}};
   EXPECT_NEAR(parts.total().value, 0.06, 1e-12);
   EXPECT_NEAR(parts.total().half_width,
@@ -202,7 +202,7 @@ TEST(KnownRows, PartsAddUp) {
   EXPECT_EQ(ErrorParts{}.total().value, 0);
 }
 
-TEST(KnownRows, SamplingGetsWhatIsLeft) {
+TEST(ExactRows, SamplingGetsWhatIsLeft) {
   EXPECT_NEAR(target_for_sampling(0.06, 0.04, 0.01), 0.03, 1e-12);
   EXPECT_EQ(target_for_sampling(0.06, 0, 0), 0.06);
   EXPECT_EQ(target_for_sampling(0.06, 0.0499, 0.01), 0.03);  // √(0.05² − 0.0499²) = 0.003: too little

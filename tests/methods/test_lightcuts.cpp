@@ -12,7 +12,7 @@ using matrix::Index;
 TEST(Lightcuts, WithoutBoundAndLimitEqualsBruteForce) {
   for (const DenseMatrix& m : test::cut_matrices()) {
     const Estimate e = find_method("lightcuts")
-                           .make({{"error-bound", "0"}, {"most-nodes", "1000000"}, {"reconstruction", "off"}})
+                           .make({{"error-bound", "0"}, {"max-nodes", "1000000"}, {"reconstruction", "off"}})
                            ->run(m, {});
     // Sums of 300 floats in another order.
     EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 1e-6);
@@ -21,7 +21,7 @@ TEST(Lightcuts, WithoutBoundAndLimitEqualsBruteForce) {
 
 TEST(Lightcuts, ErrorFallsToNothingAsCutsGrow) {
   test::expect_error_falls_to_nothing("lightcuts", {{"error-bound", "0"}, {"reconstruction", "off"}},
-                                      "most-nodes", {"5", "75", "1000"});
+                                      "max-nodes", {"5", "75", "1000"});
 }
 
 // What refining one node after another would reach is reached by rounds as well: every node on the cut has a

@@ -47,7 +47,7 @@ TEST(LightSlice, AdaptsToSlices) {
 }
 
 // 11 two-sided t-tests at a joint confidence of 99.9 %.
-TEST(LightSlice, IsUnbiasedWithoutBoundsAndColourAveraging) {
+TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
   for (const auto& m :
        {matrix::low_rank_matrix({200, 300, 1}, 8), matrix::sparse_matrix({200, 300, 1}, 0.3)}) {
     test::UnbiasednessTest t(m.exact_sums(), 10);
@@ -56,8 +56,8 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColourAveraging) {
                 {{"columns", "40"},
                  {"slice-rows", "40"},
                  {"neighbours", "3"},
-                 {"colour", "scalar"},
-                 {"most-shown", "0"},
+                 {"color", "scalar"},
+                 {"max-sum-share", "0"},
                  {"zero-columns", "sample"},
                  {"zero-share", "0.3"}},
                 seed)

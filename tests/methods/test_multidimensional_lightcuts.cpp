@@ -41,7 +41,7 @@ std::vector<DenseMatrix> matrices() {
 
 // What the picture shows: sums times weights, by pixel.
 std::vector<Rgb> pixel_sums(const DenseMatrix& m, std::span<const Rgb> sums) {
-  const UnitRows pixels = UnitRows::pixels(m);
+  const RowGroups pixels = RowGroups::pixels(m);
   std::vector<Rgb> out(pixels.size());
   for (std::size_t p = 0; p < pixels.size(); ++p)
     for (const Index i : pixels[p]) out[p] += sums[i] * m.row_weight[i];
@@ -51,7 +51,7 @@ std::vector<Rgb> pixel_sums(const DenseMatrix& m, std::span<const Rgb> sums) {
 TEST(MultidimensionalLightcuts, WithoutBoundAndLimitEqualBruteForce) {
   for (const DenseMatrix& m : matrices()) {
     const Estimate e = find_method("multidimensional-lightcuts")
-                           .make({{"error-bound", "0"}, {"most-pairs", "1000000"}})
+                           .make({{"error-bound", "0"}, {"max-pairs", "1000000"}})
                            ->run(m, {});
     EXPECT_LT(relative_difference(pixel_sums(m, e.sums), pixel_sums(m, m.exact_sums())), 1e-6);
     // Row by row as well, where the row has any weight.
@@ -68,7 +68,7 @@ TEST(MultidimensionalLightcuts, ErrorFallsToNothingAsCutsGrow) {
     std::vector<double> errors;
     for (const char* pairs : {"10", "300", "10000"}) {
       const Estimate e = find_method("multidimensional-lightcuts")
-                             .make({{"error-bound", "0"}, {"most-pairs", pairs}})
+                             .make({{"error-bound", "0"}, {"max-pairs", pairs}})
                              ->run(m, {});
       errors.push_back(relative_difference(pixel_sums(m, e.sums), pixel_sums(m, m.exact_sums())));
       EXPECT_LE(e.trace.numbers.at("columns_max"), std::stod(pairs));
@@ -98,7 +98,7 @@ TEST(MultidimensionalLightcuts, AlikeReceiversCostAsMuchAsOne) {
   cut.begin(rows);
   std::vector<std::uint32_t> places;
   std::vector<Index> columns;
-  while (cut.ask(0, places, columns)) {
+  while (cut.request(0, places, columns)) {
     std::vector<Rgb> values;
     for (std::size_t k = 0; k < columns.size(); ++k)
       values.push_back(m.at(cut.rows()[places[k]], columns[k]));

@@ -6,8 +6,8 @@
 #include "matrix/entry_reader.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
-#include "methods/lightcuts/answers.h"
 #include "methods/lightcuts/image_blocks.h"
+#include "methods/lightcuts/probe_responses.h"
 #include "methods/lightcuts/reconstruction.h"
 
 namespace lumirank::methods {
@@ -53,23 +53,23 @@ TEST(ImageBlocks, ReceiversOfOtherSurfacesTellNothing) {
 }
 
 // Rows 0 and 1 in proportion, row 2 in opposite order: (1·3 + 3·1) / (1 + 9) = 0.6. Rows 3 and 4 are dark.
-TEST(Answers, LikenessIsTheCosineOfWhatLightsGive) {
+TEST(ProbeResponses, LikenessIsTheCosineOfWhatLightsGive) {
   std::vector<Rgb> entries;
   for (const float v : {1.0f, 3.0f, 2.0f, 6.0f, 3.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f}) entries.emplace_back(v);
   const DenseMatrix m(5, 2, std::move(entries), std::vector<std::uint8_t>(10, 0));  // whatever is seen
   const LightTree tree(m, 1);
-  Answers answers(tree);
+  ProbeResponses responses(tree);
   const std::vector<Index> rows{4, 0, 1, 2, 3};
-  answers.ask(rows, *m.reader());
-  EXPECT_NEAR(answers.likeness(1, 2), 1, 1e-6f);
-  EXPECT_NEAR(answers.likeness(1, 3), 0.6f, 1e-6f);
-  EXPECT_EQ(answers.likeness(0, 1), 0);
-  EXPECT_EQ(answers.likeness(0, 4), 1);
+  responses.measure(rows, *m.reader());
+  EXPECT_NEAR(responses.similarity(1, 2), 1, 1e-6f);
+  EXPECT_NEAR(responses.similarity(1, 3), 0.6f, 1e-6f);
+  EXPECT_EQ(responses.similarity(0, 1), 0);
+  EXPECT_EQ(responses.similarity(0, 4), 1);
   // Without lights all rows are dark.
   const DenseMatrix no_lights(5, 0, {});
-  Answers nothing(LightTree(no_lights, 1));
-  nothing.ask(rows, *no_lights.reader());
-  EXPECT_EQ(nothing.likeness(0, 1), 1);
+  ProbeResponses nothing(LightTree(no_lights, 1));
+  nothing.measure(rows, *no_lights.reader());
+  EXPECT_EQ(nothing.similarity(0, 1), 1);
 }
 
 // Two columns with one root above them: cuts that hold the root alone, or both columns.
@@ -135,13 +135,14 @@ TEST(Interpolation, TextureStaysSharp) {
   EXPECT_NEAR(interpolate(weights, values, here, std::vector<Rgb>(2), Rgb(1.5f)).r, 1.95f, 1e-6f);
 }
 
-// All entries of this matrix are positive, so nothing is dark, and with an agreement of 0 nothing is
-// interpolated: every receiver shades the cuts' columns, which are all of them.
+// All entries of this matrix are positive, so nothing is dark, and with an interpolation tolerance of 0
+// nothing is interpolated: every receiver shades the cuts' columns, which are all of them.
 TEST(ReconstructionCuts, WithoutBoundAndAgreementEqualBruteForce) {
   const DenseMatrix m = matrix::low_rank_matrix({800, 150, 1}, 6);
-  const Estimate e = find_method("lightcuts")
-                         .make({{"error-bound", "0"}, {"most-nodes", "1000000"}, {"agreement", "0"}})
-                         ->run(m, {});
+  const Estimate e =
+      find_method("lightcuts")
+          .make({{"error-bound", "0"}, {"max-nodes", "1000000"}, {"interpolation-tolerance", "0"}})
+          ->run(m, {});
   EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 1e-6);
   EXPECT_LT(e.trace.numbers.at("cuts"), 200);
 }
@@ -150,10 +151,11 @@ TEST(ReconstructionCuts, WithoutBoundAndAgreementEqualBruteForce) {
 TEST(ReconstructionCuts, ErrorAndSavingFallWithTheAgreement) {
   const DenseMatrix m = matrix::low_rank_matrix({3200, 200, 1}, 6);
   std::vector<double> errors, entries;
-  for (const char* agreement : {"0.03", "0.003", "0"}) {
-    const Estimate e = find_method("lightcuts")
-                           .make({{"error-bound", "0"}, {"most-nodes", "100000"}, {"agreement", agreement}})
-                           ->run(m, {});
+  for (const char* tolerance : {"0.03", "0.003", "0"}) {
+    const Estimate e =
+        find_method("lightcuts")
+            .make({{"error-bound", "0"}, {"max-nodes", "100000"}, {"interpolation-tolerance", tolerance}})
+            ->run(m, {});
     errors.push_back(relative_difference(e.sums, m.exact_sums()));
     entries.push_back(e.trace.numbers.at("columns"));
   }

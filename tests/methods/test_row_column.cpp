@@ -7,6 +7,7 @@
 #include "matrix/synthetic.h"
 #include "methods/common/column_clusters.h"
 #include "methods/common/column_pass.h"
+#include "methods/parameters.h"
 #include "methods/statistics.h"
 
 namespace lumirank::methods {
@@ -21,9 +22,9 @@ Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const
 TEST(RowColumn, ExactClustersGiveTheExactSum) {
   const auto m = matrix::clustered_matrix({300, 400, 1}, 12);
   for (const char* clustering : {"combined", "splitting"})
-    for (const char* colour : {"averaged", "scalar"}) {
+    for (const char* color : {"averaged", "scalar"}) {
       const Estimate e =
-          run(m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"colour", colour}});
+          run(m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"color", color}});
       EXPECT_EQ(e.trace.numbers.at("columns"), 12);
       EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 64 * 0x1p-24);
     }
@@ -68,12 +69,12 @@ TEST(RowColumn, GroupsKeepTheirTotals) {
   auto m = matrix::clustered_matrix({200, 300, 1}, 4);
   m.group.resize(300);
   for (std::size_t j = 0; j < 300; ++j) m.group[j] = j < 100 ? 0 : 7;
-  RowColumnSettings settings;
-  settings.colour = ColourMode::scalar;
-  Exploration seen(m, {m.columns(), 40, false}, 1);
+  ClusterSettings settings;
+  settings.color = ColorMode::scalar;
+  ReducedMatrix seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
   for (const SampledRow& row : RowSampler(m, 1).stratified(40)) seen.read(row, values);
-  const ColumnsKnown known(m, seen, settings, 1);
+  const ColumnClusters known(m, seen, settings, 1);
   const auto clusters = known.cluster(8, linalg::ClusteringAlgorithm::combined);
   ASSERT_EQ(clusters.clusters(), 8u);
   const Representatives chosen = known.choose(clusters, 0);
@@ -94,23 +95,23 @@ struct Errors {
   std::vector<double> z_unseen;  // the same, at single rows
   std::size_t zero_columns;
 };
-Errors errors_over_draws(const matrix::DenseMatrix& coloured) {
+Errors errors_over_draws(const matrix::DenseMatrix& colored) {
   // Colourless: scalars are then the entries, up to the factor √3, which cancels.
-  std::vector<Rgb> grey(coloured.rows() * coloured.columns());
-  for (std::size_t i = 0; i < coloured.rows(); ++i)
-    for (std::size_t j = 0; j < coloured.columns(); ++j)
-      grey[i * coloured.columns() + j] = Rgb(coloured.at(i, j).g);
-  matrix::DenseMatrix m(coloured.rows(), coloured.columns(), std::move(grey));
-  m.power = coloured.power;
-  RowColumnSettings settings;
-  settings.colour = ColourMode::scalar;
-  Exploration seen(m, {m.columns(), 40, false}, 1);
+  std::vector<Rgb> grey(colored.rows() * colored.columns());
+  for (std::size_t i = 0; i < colored.rows(); ++i)
+    for (std::size_t j = 0; j < colored.columns(); ++j)
+      grey[i * colored.columns() + j] = Rgb(colored.at(i, j).g);
+  matrix::DenseMatrix m(colored.rows(), colored.columns(), std::move(grey));
+  m.power = colored.power;
+  ClusterSettings settings;
+  settings.color = ColorMode::scalar;
+  ReducedMatrix seen(m, {m.columns(), 40, false}, 1);
   std::vector<Rgb> values(m.columns());
   std::vector<HeldOutRows> unseen;  // one row each
   RowSampler sampler(m, 1);
   for (const SampledRow& row : sampler.next(40)) seen.read(row, values);
   for (const SampledRow& row : sampler.next(10)) unseen.emplace_back(m).read(row, values);
-  const ColumnsKnown known(m, seen, settings, 1);
+  const ColumnClusters known(m, seen, settings, 1);
   const auto clusters = known.cluster(25, linalg::ClusteringAlgorithm::combined);
 
   const int draws = 400;
@@ -128,17 +129,17 @@ Errors errors_over_draws(const matrix::DenseMatrix& coloured) {
     const Representatives chosen = known.choose(clusters, static_cast<std::uint64_t>(t));
     std::vector<Rgb> sums(m.rows());
     m.accumulate(chosen.columns, sums);
-    const auto error = [&](const KnownRow& row) {
+    const auto error = [&](const ExactRow& row) {
       return static_cast<double>(sums[row.from.row].g) - static_cast<double>(row.sum.g);
     };
     double difference = 0, size = 0;
-    for (const KnownRow& row : seen.known().rows()) {
+    for (const ExactRow& row : seen.known().rows()) {
       difference += error(row) * error(row);
       size += static_cast<double>(row.sum.g) * static_cast<double>(row.sum.g);
     }
     on_seen.add(difference / size);
     for (std::size_t k = 0; k < unseen.size(); ++k) {
-      const KnownRow& row = unseen[k].known().rows()[0];
+      const ExactRow& row = unseen[k].known().rows()[0];
       on_unseen[k].add(std::pow(error(row) / static_cast<double>(row.sum.g), 2));
     }
   }

@@ -30,7 +30,7 @@ struct Workspace {
 class RowSums {
  public:
   explicit RowSums(const DenseMatrix& m)
-      : units_(UnitRows::single(m.rows())), matrix_(m), pool_([&m] {
+      : units_(RowGroups::single(m.rows())), matrix_(m), pool_([&m] {
           auto w = std::make_unique<Workspace>();
           w->reader = m.reader();
           w->columns.resize(m.columns());
@@ -39,44 +39,44 @@ class RowSums {
           return w;
         }) {}
 
-  UnitResult run(const RunOptions& options, std::vector<Rgb>& sums, double deadline = 0) {
+  RowGroupResult run(const RunOptions& options, std::vector<Rgb>& sums, double deadline = 0) {
     const RunClock timer(options);
     sums.assign(matrix_.rows(), Rgb(0));
-    return run_units(units_, {options, timer, deadline, "rows"}, sums, pool_,
-                     [&](std::size_t unit, Workspace& w) {
-                       const Index i = units_[unit][0];
-                       const std::vector<Index> rows(w.columns.size(), i);
-                       w.reader->entries(rows, w.columns, w.values);
-                       Rgb sum;
-                       for (const Rgb v : w.values) sum += v;
-                       sums[i] = sum;
-                       ++w.units;
-                       if (after_unit) after_unit(unit);
-                     });
+    return run_row_groups(units_, {options, timer, deadline, "rows"}, sums, pool_,
+                          [&](std::size_t unit, Workspace& w) {
+                            const Index i = units_[unit][0];
+                            const std::vector<Index> rows(w.columns.size(), i);
+                            w.reader->entries(rows, w.columns, w.values);
+                            Rgb sum;
+                            for (const Rgb v : w.values) sum += v;
+                            sums[i] = sum;
+                            ++w.units;
+                            if (after_unit) after_unit(unit);
+                          });
   }
   std::size_t units_run() const {
     std::size_t n = 0;
     pool_.for_each([&](const Workspace& w) { n += w.units; });
     return n;
   }
-  const UnitRows& units() const { return units_; }
+  const RowGroups& units() const { return units_; }
 
   std::function<void(std::size_t)> after_unit;
 
  private:
-  UnitRows units_;
+  RowGroups units_;
   const DenseMatrix& matrix_;
   WorkspacePool<Workspace> pool_;
 };
 
-TEST(UnitPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
+TEST(RowGroupPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
   const auto m = matrix::low_rank_matrix({400, 60, 1}, 4);
   std::vector<Rgb> first;
   for (const int threads : {1, 2, 4})
     with_threads(threads, [&] {
       RowSums pass(m);
       std::vector<Rgb> sums;
-      const UnitResult result = pass.run({}, sums);
+      const RowGroupResult result = pass.run({}, sums);
       EXPECT_EQ(result.done, m.rows());
       EXPECT_EQ(pass.units_run(), m.rows());
       EXPECT_FALSE(result.cancelled || result.out_of_time);
@@ -86,7 +86,7 @@ TEST(UnitPass, AnyThreadsGiveTheSameBitsAndEveryUnitOnce) {
   EXPECT_LT(relative_difference(first, m.exact_sums()), 1e-6);
 }
 
-TEST(UnitPass, BeginningsAreSpreadEvenly) {
+TEST(RowGroupPass, BeginningsAreSpreadEvenly) {
   for (const std::size_t n : {1u, 5u, 64u, 1000u, 4096u}) {
     const auto order = coarse_to_fine(n);
     EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), n);
@@ -100,7 +100,7 @@ TEST(UnitPass, BeginningsAreSpreadEvenly) {
   }
 }
 
-TEST(UnitPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
+TEST(RowGroupPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
   const auto m = matrix::clustered_matrix({320, 20, 1}, 3);
   const auto exact = m.exact_sums();
   std::atomic<bool> cancel{false};
@@ -111,7 +111,7 @@ TEST(UnitPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
     std::size_t count = 0;
     pass.after_unit = [&](std::size_t) { cancel = ++count == 5; };
     std::vector<Rgb> sums;
-    const UnitResult result = pass.run(options, sums);
+    const RowGroupResult result = pass.run(options, sums);
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(result.done, 5u);
     // Rows 0, 64, …, 256 are done; a row takes the sum of the nearest of them, of two as near the earlier.
@@ -126,20 +126,20 @@ TEST(UnitPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
   });
 }
 
-TEST(UnitPass, CancelledBeforeTheFirstUnitNothingIsTouched) {
+TEST(RowGroupPass, CancelledBeforeTheFirstUnitNothingIsTouched) {
   const auto m = matrix::clustered_matrix({10, 20, 1}, 3);
   const std::atomic<bool> cancel{true};
   RunOptions options;
   options.sinks.cancel = &cancel;
   RowSums pass(m);
   std::vector<Rgb> sums;
-  const UnitResult result = pass.run(options, sums);
+  const RowGroupResult result = pass.run(options, sums);
   EXPECT_TRUE(result.cancelled);
   EXPECT_EQ(result.done, 0u);
   EXPECT_EQ(sums, std::vector<Rgb>(10, Rgb(0)));
 }
 
-TEST(UnitPass, PreviewsAreCompleteAndChangeNothing) {
+TEST(RowGroupPass, PreviewsAreCompleteAndChangeNothing) {
   const auto m = matrix::low_rank_matrix({500, 40, 1}, 4);
   std::vector<Rgb> unwatched, watched;
   RowSums(m).run({}, unwatched);
@@ -163,14 +163,14 @@ TEST(UnitPass, PreviewsAreCompleteAndChangeNothing) {
   EXPECT_EQ(progress.back(), 1.0);
 }
 
-TEST(UnitPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
+TEST(RowGroupPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
   const auto m = matrix::low_rank_matrix({200, 40, 1}, 4);
   TimedChoices written;
   RunOptions options;
   options.time_seconds = 1e-9;
   options.choices = &written;
   std::vector<Rgb> sums;
-  UnitResult result;
+  RowGroupResult result;
   with_threads(1, [&] { result = RowSums(m).run(options, sums, options.time_seconds); });
   EXPECT_TRUE(result.out_of_time);
   EXPECT_EQ(result.done, 1u);
@@ -188,7 +188,7 @@ TEST(UnitPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
   EXPECT_EQ(again, sums);
 }
 
-TEST(UnitPass, AFailureEndsThePassAndIsPassedOn) {
+TEST(RowGroupPass, AFailureEndsThePassAndIsPassedOn) {
   const auto m = matrix::low_rank_matrix({200, 4, 1}, 4);
   RowSums pass(m);
   pass.after_unit = [](std::size_t unit) {
@@ -198,23 +198,23 @@ TEST(UnitPass, AFailureEndsThePassAndIsPassedOn) {
   EXPECT_THROW(pass.run({}, sums), std::runtime_error);
 }
 
-TEST(UnitRows, PixelsHoldTheirRowsInOrder) {
+TEST(RowGroups, PixelsHoldTheirRowsInOrder) {
   DenseMatrix m(6, 1, std::vector<Rgb>(6, Rgb(1)));
   m.pixel = {{0.5f, 0.5f}, {-0.5f, 0.5f}, {1.5f, 0.2f}, {0.9f, 0.1f}, {-0.9f, 0.9f}, {1.5f, 1.5f}};
-  const UnitRows units = UnitRows::pixels(m);
+  const RowGroups units = RowGroups::pixels(m);
   const std::vector<std::vector<Index>> expected{{0, 3}, {1, 4}, {2}, {5}};
   ASSERT_EQ(units.size(), expected.size());
   for (std::size_t u = 0; u < units.size(); ++u)
     EXPECT_EQ(std::vector<Index>(units[u].begin(), units[u].end()), expected[u]);
   m.pixel.clear();
-  EXPECT_EQ(UnitRows::pixels(m).size(), 6u);
-  EXPECT_EQ(UnitRows::single(0).size(), 0u);
+  EXPECT_EQ(RowGroups::pixels(m).size(), 6u);
+  EXPECT_EQ(RowGroups::single(0).size(), 0u);
 }
 
-TEST(UnitRows, MustCoverWhatTheyAreGiven) {
-  EXPECT_THROW(UnitRows({0, 1}, {0, 1}), InternalError);
-  EXPECT_THROW(UnitRows({0, 1}, {0, 0, 2}), InternalError);
-  EXPECT_THROW(UnitRows({}, {}), InternalError);
+TEST(RowGroups, MustCoverWhatTheyAreGiven) {
+  EXPECT_THROW(RowGroups({0, 1}, {0, 1}), InternalError);
+  EXPECT_THROW(RowGroups({0, 1}, {0, 0, 2}), InternalError);
+  EXPECT_THROW(RowGroups({}, {}), InternalError);
 }
 
 }  // namespace

@@ -2,9 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
-#include "base/error.h"
-#include "base/parallel.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
 #include "methods/sampling_recovery/slice_recovery.h"
@@ -40,7 +39,7 @@ double error(const Settings& settings) {
 TEST(SamplingRecovery, AllColumnsAndAllSamplesAreBruteForce) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
-  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"most-columns", "400"}, {"scouts", "0"}});
+  const Estimate e = estimate(m, {{"alpha", "0"}, {"rho", "1"}, {"max-columns", "400"}, {"cut-pixels", "0"}});
   EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
   EXPECT_EQ(e.trace.numbers.at("columns"), 400);
   EXPECT_DOUBLE_EQ(e.trace.numbers.at("sampling_rate"), 1);
@@ -49,12 +48,9 @@ TEST(SamplingRecovery, AllColumnsAndAllSamplesAreBruteForce) {
 TEST(SamplingRecovery, AllColumnsTracedAreBruteForce) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
-  for (const Settings& all : {Settings{{"alpha", "0"}, {"most-columns", "400"}},
-                              Settings{{"clusters", "rows"}, {"columns", "400"}}}) {
-    const Estimate e = estimate(m, all, 1, "slice-cuts");
-    EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
-    EXPECT_EQ(e.trace.numbers.at("columns"), 400);
-  }
+  const Estimate e = estimate(m, {{"alpha", "0"}, {"max-columns", "400"}}, 1, "slice-cuts");
+  EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-5);
+  EXPECT_EQ(e.trace.numbers.at("columns"), 400);
 }
 
 // The error falls with the number of columns (all visibilities known), and with the number of samples (all
@@ -143,68 +139,72 @@ TEST(SamplingRecovery, TestsTellWhatPredictionsAreWorth) {
   EXPECT_LT(calibrated, 0.5 * raw);
 }
 
-TEST(SamplingRecovery, EveryStepCanBeSwitchedOff) {
-  const Estimate all = estimate(room(), {{"initial-columns", "200"}});
-  EXPECT_GT(all.trace.numbers.at("rank"), 0);
-  EXPECT_GT(all.trace.numbers.at("iterations"), 0);
-  for (const auto& [key, value] :
-       std::vector<std::pair<std::string, std::string>>{{"splitting", "off"},
-                                                        {"sparse-visibility", "off"},
-                                                        {"redraw", "off"},
-                                                        {"prediction", "off"},
-                                                        {"separation", "off"},
-                                                        {"constraint", "off"},
-                                                        {"correction", "off"},
-                                                        {"calibration", "off"},
-                                                        {"clusters", "rows"},
-                                                        {"weighted", "off"},
-                                                        {"uncertain", "0"},
-                                                        {"bright", "0"},
-                                                        {"fit", "exact"},
-                                                        {"separated", "shading"},
-                                                        {"draw", "likely"},
-                                                        {"draw", "mean"},
-                                                        {"predictors", "nearest"},
-                                                        {"predictors", "plane"},
-                                                        {"predictors", "bayes"}}) {
-    const Estimate e = estimate(room(), {{"initial-columns", "200"}, {key, value}});
-    EXPECT_LT(relative_l1_difference(e.sums, exact()), 0.5) << key << '=' << value;
-    const auto& n = e.trace.numbers;
-    if (key == "splitting") {
-      EXPECT_EQ(n.at("columns"), 200);
-    }
-    if (key == "separation") {
-      EXPECT_EQ(n.at("iterations"), 0);
-      EXPECT_EQ(n.at("corrected"), 0);
-    }
-    if (key == "correction") {
-      EXPECT_EQ(n.at("corrected"), 0);
-    }
-    if (key == "uncertain") {
-      EXPECT_EQ(n.at("sampled_uncertain"), 0);
-    }
-    if (key == "predictors") {
-      EXPECT_NEAR(n.at("predictor." + value), 1, 0.02);
-    }
-    if (key == "prediction") {
-      EXPECT_EQ(n.at("predictor.nearest"), 0);
-    }
+// What each step is worth in this room: the mean error over eight seeds without it, over that with all steps.
+// Bounds are four standard deviations of that ratio on either side of what it is here, so that a step that
+// begins to do harm, or to do nothing, is seen. Prediction, correction and the choice among predictors are
+// shown to help; separation needs larger slices than these (docs/measurements.md), and costs some here.
+struct StepOff {
+  const char *key, *value;
+  double min_ratio, max_ratio;
+};
+const StepOff kStepsOff[] = {
+    {"splitting", "off", 0.87, 1.02},
+    {"sparse-visibility", "off", 0.99, 1.01},  // some light of every cluster is seen here
+    {"redraw", "off", 0.84, 1.12},
+    {"prediction", "off", 5.1, 6.8},
+    {"predictors", "nearest", 0.88, 1},
+    {"predictors", "plane", 1.62, 2.24},
+    {"predictors", "bayes", 0.68, 0.95},
+    {"draw", "likely", 0.82, 0.99},
+    {"draw", "mean", 0.99, 1.01},  // as random, where something is separated
+    {"calibration", "off", 0.87, 1.1},
+    {"weighted", "off", 0.98, 1.07},
+    {"uncertain", "0", 0.98, 1.05},
+    {"bright", "0", 0.99, 1.01},  // no lamp is as bright
+    {"separation", "off", 0.75, 1},
+    {"separated", "shading", 0.9, 1.01},
+    {"constraint", "off", 0.92, 1.01},
+    {"fit", "exact", 0.81, 1.08},
+    {"correction", "off", 1.26, 1.46},
+};
+
+TEST(SamplingRecovery, StepsAreWorthWhatTheyWere) {
+  const auto errors_of = [](Settings settings) {
+    settings["initial-columns"] = "200";
+    std::vector<double> errors;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed)
+      errors.push_back(relative_l1_difference(estimate(room(), settings, seed).sums, exact()));
+    return errors;
+  };
+  const auto sum = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+  };
+  const double with_all = sum(errors_of({}));
+  for (const StepOff& step : kStepsOff) {
+    const double ratio = sum(errors_of({{step.key, step.value}})) / with_all;
+    EXPECT_GT(ratio, step.min_ratio) << step.key << '=' << step.value;
+    EXPECT_LT(ratio, step.max_ratio) << step.key << '=' << step.value;
   }
 }
 
-TEST(SamplingRecovery, SameBitsForAnyNumberOfThreads) {
-  const auto same = [](const std::string& method, const Settings& settings) {
-    std::vector<Rgb> first;
-    for (const int threads : {1, 3, 4})
-      with_threads(threads, [&] {
-        const Estimate e = estimate(room(), settings, 1, method);
-        if (threads == 1) first = e.sums;
-        EXPECT_EQ(e.sums, first);
-      });
+TEST(SamplingRecovery, StepsThatAreOffDoNothing) {
+  const auto numbers = [](const Settings& off) {
+    Settings settings = off;
+    settings["initial-columns"] = "200";
+    return estimate(room(), settings).trace.numbers;
   };
-  same("sampling-recovery", {{"slice-rows", "60"}});
-  same("sampling-recovery", {{"slice-rows", "60"}, {"clusters", "rows"}, {"columns", "60"}});
-  same("slice-cuts", {{"slice-rows", "60"}});
+  const auto all = numbers({});
+  for (const char* key : {"rank", "iterations", "corrected", "sampled_uncertain", "predictor.nearest"})
+    EXPECT_GT(all.at(key), 0) << key;
+  EXPECT_GT(all.at("columns"), 200);
+  EXPECT_EQ(numbers({{"splitting", "off"}}).at("columns"), 200);
+  EXPECT_EQ(numbers({{"separation", "off"}}).at("iterations"), 0);
+  EXPECT_EQ(numbers({{"separation", "off"}}).at("corrected"), 0);
+  EXPECT_EQ(numbers({{"correction", "off"}}).at("corrected"), 0);
+  EXPECT_EQ(numbers({{"uncertain", "0"}}).at("sampled_uncertain"), 0);
+  EXPECT_EQ(numbers({{"prediction", "off"}}).at("predictor.nearest"), 0);
+  for (const std::string predictor : {"nearest", "plane", "bayes"})
+    EXPECT_NEAR(numbers({{"predictors", predictor}}).at("predictor." + predictor), 1, 0.02);
 }
 
 // A pixel whose receivers lie on two surfaces is two rows, one whose receivers share a plane is one.
@@ -230,7 +230,7 @@ TEST(SamplingRecovery, ARowIsOneSurfaceOfAPixel) {
 }
 
 TEST(SamplingRecovery, ClustersRespectTheLimits) {
-  const Estimate e = estimate(room(), {{"most-columns", "250"}, {"alpha", "0.0001"}});
+  const Estimate e = estimate(room(), {{"max-columns", "250"}, {"alpha", "0.0001"}});
   EXPECT_LE(e.trace.numbers.at("columns_max"), 250);
   EXPECT_GE(e.trace.numbers.at("columns"), 249);
 }
@@ -255,20 +255,13 @@ TEST(SamplingRecovery, MeetsATargetByItself) {
   EXPECT_TRUE(estimate(room(), {{"parameters", "automatic"}}).trace.numbers.contains("automatic.alpha"));
 }
 
-// With a threshold that every column passes, all is looked at.
-TEST(SamplingRecovery, BrightColumnsAreLookedAtWholly) {
+// With a threshold that every column passes, all is sampled.
+TEST(SamplingRecovery, BrightColumnsAreSampledWholly) {
   auto m = matrix::occluded_matrix({500, 400, 4}, 6);
   m.pixel.clear();
   const Estimate e = estimate(
-      m, {{"alpha", "0"}, {"bright", "1e-9"}, {"most-columns", "400"}, {"scouts", "0"}, {"rho", "0.01"}});
+      m, {{"alpha", "0"}, {"bright", "1e-9"}, {"max-columns", "400"}, {"cut-pixels", "0"}, {"rho", "0.01"}});
   EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 1e-4);
-}
-
-TEST(SamplingRecovery, ClustersByRowsHaveNoParametersByTarget) {
-  RunOptions options;
-  options.target_error = 0.05;
-  EXPECT_THROW(find_method("sampling-recovery").make({{"clusters", "rows"}})->run(room(), options),
-               InputError);
 }
 
 // A slice's parts fit together: clusters partition the lights, samples agree with the matrix, and what is
@@ -276,11 +269,11 @@ TEST(SamplingRecovery, ClustersByRowsHaveNoParametersByTarget) {
 TEST(SamplingRecovery, ASliceFitsTogether) {
   const RecoverySettings settings;
   const LightTree tree(room(), 1);
-  SliceRecovery slice(settings, &tree, room());
+  SliceRecovery slice(tree, room());
   std::vector<matrix::Index> rows;
   for (matrix::Index i = 100; i < 500; ++i) rows.push_back(i);
   std::vector<Rgb> sums(room().rows(), Rgb(-1));
-  slice.run(rows, 7, sums);
+  slice.run(settings, rows, 7, sums);
   std::vector<int> covered(room().columns());
   for (const auto& c : slice.cut().clusters())
     for (const matrix::Index j : tree.columns(c.node)) ++covered[j];

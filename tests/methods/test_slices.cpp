@@ -66,9 +66,9 @@ TEST(Slices, AreTheSameForAnyNumberOfThreads) {
 // of the room it spans two walls. Twice that bounds all but those few. Where nothing is known of normals the
 // 12 edges of the room cross 12/√(6/600) = 120 of 600 slices; three quarters of that would show that much is.
 TEST(Slices, AreCompactAndKeepWallsApart) {
-  constexpr std::size_t kRows = 60000, kMost = 100;
+  constexpr std::size_t kRows = 60000, kMax = 100;
   const Room room(kRows);
-  const Slices slices = make_slices(room.features(), kRows, kMost);
+  const Slices slices = make_slices(room.features(), kRows, kMax);
   std::size_t compact = 0, of_one_wall = 0;
   const float side = std::sqrt(6.0f / static_cast<float>(slices.count()));
   for (std::size_t s = 0; s < slices.count(); ++s) {

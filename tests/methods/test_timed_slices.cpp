@@ -27,7 +27,7 @@ class TimedSlices : public testing::TestWithParam<const char*> {
 TEST_P(TimedSlices, RowsAndColumnsFollowTheChoices) {
   TimedChoices choices({{"coarse_rows", {2}},
                         {"coarse_columns", {2}},
-                        {"known_rows", {0}},
+                        {"exact_rows", {0}},
                         {"slices", {4}},
                         {"slice_rows", {4}},
                         {"turn_quality", {64, 0}},
@@ -44,7 +44,7 @@ TEST_P(TimedSlices, RowsAndColumnsFollowTheChoices) {
 TEST_P(TimedSlices, FewestColumnsAreTheClustersOfAllSlices) {
   TimedChoices choices({{"coarse_rows", {2}},
                         {"coarse_columns", {2}},
-                        {"known_rows", {0}},
+                        {"exact_rows", {0}},
                         {"slices", {4}},
                         {"slice_rows", {4}},
                         {"turn_quality", {1, 0}},

@@ -35,10 +35,10 @@ TEST(Unbiased, PowerSampling) {
   }
 }
 
-TEST(Unbiased, RowColumnSamplingWithScalarColour) {
+TEST(Unbiased, RowColumnSamplingWithScalarColor) {
   for (const char* clustering : {"combined", "sampling", "splitting"}) {
     const std::map<std::string, std::string> settings{
-        {"rows", "60"}, {"columns", "30"}, {"colour", "scalar"}, {"clustering", clustering}};
+        {"rows", "60"}, {"columns", "30"}, {"color", "scalar"}, {"clustering", clustering}};
     expect_unbiased(seen(matrix::low_rank_matrix({400, 500, 1}, 10), "row-column-sampling", settings));
   }
 }
@@ -48,14 +48,14 @@ TEST(Unbiased, RowColumnSamplingWithScalarColour) {
 TEST(Unbiased, RowColumnSamplingWithZeroColumnsSampled) {
   const auto m = matrix::sparse_matrix({400, 500, 1}, 0.05);
   expect_unbiased(seen(m, "row-column-sampling",
-                       {{"rows", "30"}, {"columns", "40"}, {"colour", "scalar"}, {"zero-share", "0.3"}}));
+                       {{"rows", "30"}, {"columns", "40"}, {"color", "scalar"}, {"zero-share", "0.3"}}));
 }
 
 // … and ignoring them, as the paper does, is biased: the same test sees it.
 TEST(Unbiased, IgnoringZeroColumnsIsSeenAsBias) {
   const auto m = matrix::sparse_matrix({400, 500, 1}, 0.05);
   expect_biased(seen(m, "row-column-sampling",
-                     {{"rows", "30"}, {"columns", "40"}, {"colour", "scalar"}, {"zero-columns", "ignore"}}));
+                     {{"rows", "30"}, {"columns", "40"}, {"color", "scalar"}, {"zero-columns", "ignore"}}));
 }
 
 }  // namespace

@@ -38,21 +38,8 @@ matrix::DenseMatrix shadow_matrix() {
   return m;
 }
 
-// Every column is one of 2⁵ sums modulo 2 of five random ones.
-matrix::DenseMatrix boolean_matrix() {
-  std::vector<std::uint8_t> visible(kRows * kColumns);
-  for (std::size_t j = 0; j < kColumns; ++j)
-    for (std::size_t i = 0; i < kRows; ++i) {
-      std::uint64_t sum = 0;
-      for (std::size_t k = 0; k < 5; ++k)
-        sum ^= (hash_ids(3, Stage::test, i, k) >> 9) & (hash_ids(4, Stage::test, j) >> k);
-      visible[i * kColumns + j] = sum & 1u;
-    }
-  return matrix::DenseMatrix(kRows, kColumns, std::vector<Rgb>(kRows * kColumns, Rgb(1)), std::move(visible));
-}
-
 struct Completed {
-  double looked_at, wrong;  // shares of all entries
+  double sampled, wrong;  // shares of all entries
   Completion::Counts counts;
 };
 
@@ -72,8 +59,8 @@ Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
     for (std::size_t j = 0; j < m.columns(); ++j)
       wrong += completion.visible(i, j) != (m.at(i, j, matrix::Part::visibility).r > 0);
   const double all = static_cast<double>(m.rows() * m.columns());
-  EXPECT_EQ(completion.counts().looked_at, m.counters().entries_evaluated.load());
-  return {static_cast<double>(completion.counts().looked_at) / all, static_cast<double>(wrong) / all,
+  EXPECT_EQ(completion.counts().sampled, m.counters().entries_evaluated.load());
+  return {static_cast<double>(completion.counts().sampled) / all, static_cast<double>(wrong) / all,
           completion.counts()};
 }
 
@@ -85,9 +72,9 @@ Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
 TEST(Completion, FollowsTheEdgesOfShadows) {
   const auto m = shadow_matrix();
   const Completed c = complete(m, [](Completion& completion, const Completion::Slice& slice) {
-    completion.complete_refined(slice, {16, 0.0, 0.0});
+    completion.complete(slice, {16, 0.0});
   });
-  EXPECT_LT(c.looked_at, 0.29);
+  EXPECT_LT(c.sampled, 0.29);
   EXPECT_LT(c.wrong, 0.02);
   EXPECT_EQ(c.counts.checks, 0u);
 }
@@ -96,33 +83,13 @@ TEST(Completion, ChecksCostWhatTheySayAndCorrect) {
   const auto m = shadow_matrix();
   const auto with = [&](double checks) {
     return complete(shadow_matrix(), [&](Completion& completion, const Completion::Slice& slice) {
-      completion.complete_refined(slice, {16, checks, 0.0});
+      completion.complete(slice, {16, checks});
     });
   };
   EXPECT_LE(with(0.2).wrong, with(0.0).wrong);
   const Completed all = with(1.0);
-  EXPECT_EQ(all.looked_at, 1.0);
+  EXPECT_EQ(all.sampled, 1.0);
   EXPECT_EQ(all.wrong, 0.0);
-}
-
-// Five columns whole; of the others a tenth of the rows, and a hundredth to check. The first of them may
-// depend on those before: 13 columns span all sums but for one choice in 2⁸.
-TEST(Completion, FindsSumsModuloTwo) {
-  const Completed c = complete(boolean_matrix(), [](Completion& completion, const Completion::Slice& slice) {
-    completion.complete_boolean(slice, {16, 0.01, 0.1});
-  });
-  EXPECT_EQ(c.wrong, 0.0);
-  EXPECT_LE(c.counts.whole_columns, 13u);
-  EXPECT_LT(c.looked_at, 13.0 / 130 + 0.112);
-}
-
-// Columns that are no sums of others are looked at whole.
-TEST(Completion, LooksAtAllWhereColumnsDoNotFit) {
-  const auto m = matrix::sparse_matrix({300, 70, 1}, 0.4);
-  const Completed c = complete(m, [](Completion& completion, const Completion::Slice& slice) {
-    completion.complete_boolean(slice, {16, 0.3, 0.1});
-  });
-  EXPECT_LT(c.wrong, 0.01);
 }
 
 double error(const matrix::DenseMatrix& m, Settings settings) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kStretch = 128;  // rows of a unit
 // More columns are for the methods to choose; with fewer than the least one sees rather which they are.
-constexpr std::size_t kMostDraws = 64, kLeastDraws = 16;
+constexpr std::size_t kMaxDraws = 64, kMinDraws = 16;
 // Of the budget: for all of them, and for the least.
 constexpr double kCoarseShare = 0.05, kFewDrawsShare = 0.2;
 // Rows that are asked what columns matter, and what part of the budget for all of them.
@@ -32,7 +32,7 @@ struct CoarseWork {
   std::vector<Rgb> values;
 };
 
-UnitRows stretches_of_rows(std::size_t rows) {
+RowGroups stretches_of_rows(std::size_t rows) {
   std::vector<Index> all(rows);
   std::iota(all.begin(), all.end(), 0u);
   std::vector<std::uint32_t> first;
@@ -136,8 +136,8 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   std::vector<Index> all(matrix.columns());
   std::iota(all.begin(), all.end(), 0u);
   const auto drawn = draw_columns(all, importance(matrix, options, clock),
-                                  {kMostDraws, true, options.seed, Stage::method, kRound});
-  const UnitRows units = stretches_of_rows(rows);
+                                  {kMaxDraws, true, options.seed, Stage::method, kRound});
+  const RowGroups units = stretches_of_rows(rows);
   WorkspacePool<CoarseWork> pool([&] {
     auto w = std::make_unique<CoarseWork>();
     w->reader = matrix.reader();
@@ -168,7 +168,7 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
       const double column = std::max(picture.entry_seconds * static_cast<double>(rows), 1e-12);
       const double fit = options.time_seconds / column;
       most = static_cast<std::size_t>(
-          std::clamp(std::max(kCoarseShare * fit, std::min(kFewDrawsShare * fit, double{kLeastDraws})), 1.0,
+          std::clamp(std::max(kCoarseShare * fit, std::min(kFewDrawsShare * fit, double{kMinDraws})), 1.0,
                      static_cast<double>(drawn.size())));
     }
     return most;
@@ -177,11 +177,11 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   // A prefix of the draws is a fair sample of them.
   picture.columns = std::clamp<std::size_t>(picture.columns, 1, drawn.size());
   const float gain = static_cast<float>(drawn.size()) / static_cast<float>(picture.columns);
-  const UnitResult pass =
-      run_units(units, {options, clock, kLatest * options.time_seconds, "coarse picture"}, sums, pool,
-                [&](std::size_t unit, CoarseWork& w) {
-                  sum_stretch(units[unit], std::span(drawn).first(picture.columns), gain, w, sums);
-                });
+  const RowGroupResult pass =
+      run_row_groups(units, {options, clock, kLatest * options.time_seconds, "coarse picture"}, sums, pool,
+                     [&](std::size_t unit, CoarseWork& w) {
+                       sum_stretch(units[unit], std::span(drawn).first(picture.columns), gain, w, sums);
+                     });
   picture.all_rows_read = pass.done == units.size();
   if (pass.done == 0) picture.columns = 0;
   // Where these columns light nothing, which is seldom, the others for some rows tell how bright rows are.

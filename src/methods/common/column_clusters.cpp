@@ -7,26 +7,25 @@
 
 namespace lumirank::methods {
 
-ColumnsKnown::ColumnsKnown(const matrix::LightingMatrix& matrix, Exploration& exploration,
-                           const RowColumnSettings& settings, std::uint64_t seed)
+ColumnClusters::ColumnClusters(const matrix::LightingMatrix& matrix, ReducedMatrix& reduced,
+                               const ClusterSettings& settings, std::uint64_t seed)
     : matrix_(matrix),
-      exploration_(exploration),
+      reduced_(reduced),
       settings_(settings),
       seed_(seed),
-      points_(exploration.sketch().points()),
+      points_(reduced.sketch().points()),
       power_share_(settings.power_share) {
   std::size_t lit = 0;
-  for (std::size_t j = 0; j < matrix.columns(); ++j) lit += !exploration.sketch().is_zero(j);
+  for (std::size_t j = 0; j < matrix.columns(); ++j) lit += !reduced.sketch().is_zero(j);
   lit_.reserve(lit);
   zero_.reserve(matrix.columns() - lit);
   for (std::size_t j = 0; j < matrix.columns(); ++j)
-    (exploration.sketch().is_zero(j) ? zero_ : lit_).push_back(static_cast<matrix::Index>(j));
+    (reduced.sketch().is_zero(j) ? zero_ : lit_).push_back(static_cast<matrix::Index>(j));
   norms_ = linalg::own_norms(points_);
-  weights_ =
-      selection_weights(lit_, exploration.sketch(), matrix.column_features().power, settings.power_share);
+  weights_ = selection_weights(lit_, reduced.sketch(), matrix.column_features().power, settings.power_share);
 }
 
-linalg::Splitter ColumnsKnown::cluster(std::size_t columns, linalg::ClusteringAlgorithm algorithm) const {
+linalg::Splitter ColumnClusters::cluster(std::size_t columns, linalg::ClusteringAlgorithm algorithm) const {
   return linalg::cluster(points_, norms_, lit_, matrix_.column_features().group, {algorithm, columns, seed_});
 }
 
@@ -70,8 +69,8 @@ struct Squares {
 }  // namespace
 
 template <typename Reader>
-std::vector<double> ColumnsKnown::expected_squares(const linalg::Partition& partition, std::size_t dimension,
-                                                   const Reader& reader) const {
+std::vector<double> ColumnClusters::expected_squares(const linalg::Partition& partition,
+                                                     std::size_t dimension, const Reader& reader) const {
   const Squares zero{std::vector<double>(dimension, 0.0)};
   return parallel_sum(partition.clusters(), 32, zero,
                       [&](std::size_t begin, std::size_t end) {
@@ -92,8 +91,8 @@ std::vector<double> ColumnsKnown::expected_squares(const linalg::Partition& part
 }
 
 template <typename Reader>
-void ColumnsKnown::add_zero_squares(std::size_t draws, std::size_t dimension, const Reader& reader,
-                                    std::vector<double>& squares) const {
+void ColumnClusters::add_zero_squares(std::size_t draws, std::size_t dimension, const Reader& reader,
+                                      std::vector<double>& squares) const {
   const auto power = matrix_.column_features().power;
   const Spread all =
       parallel_sum(zero_.size(), 8192, Spread(dimension), [&](std::size_t begin, std::size_t end) {
@@ -113,17 +112,17 @@ void ColumnsKnown::add_zero_squares(std::size_t draws, std::size_t dimension, co
     squares[d] += ignored ? all.sums[d] * all.sums[d] : all.expected_square(d) / count;
 }
 
-double ColumnsKnown::expected_error(const linalg::Splitter& clusters) const {
-  if (exploration_.squared_sum() == 0) return 0;
+double ColumnClusters::expected_error(const linalg::Splitter& clusters) const {
+  if (reduced_.squared_sum() == 0) return 0;
   const linalg::PointReader points(points_);
   double sum = 0;
   for (double square : expected_squares(clusters.partition(), points_.dimension,
                                         [&](std::uint32_t j, float*out) { points.read(j, out); }))
     sum += square;
-  return exploration_.l1_over_l2() * std::sqrt(sum / exploration_.squared_sum());
+  return reduced_.l1_over_l2() * std::sqrt(sum / reduced_.squared_sum());
 }
 
-double ColumnsKnown::expected_error(const linalg::Splitter& clusters, const HeldOutRows& unseen) const {
+double ColumnClusters::expected_error(const linalg::Splitter& clusters, const HeldOutRows& unseen) const {
   if (unseen.image_sum() == 0) return 0;
   constexpr std::size_t kRows = linalg::SampledRows::kBlockRows;
   const linalg::Partition partition = clusters.partition();
@@ -138,17 +137,17 @@ double ColumnsKnown::expected_error(const linalg::Splitter& clusters, const Held
   // Coordinates are rows, times their weights.
   double error = 0;
   for (std::size_t d = 0; d < squares.size(); ++d) {
-    const KnownRow& row = unseen.known().rows()[d];
+    const ExactRow& row = unseen.known().rows()[d];
     error += row.share / static_cast<double>(row.from.weight) * std::sqrt(squares[d]);
   }
   return kMeanOfNormal * error / unseen.image_sum();
 }
 
-void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, const HeldOutRows& unseen) {
+void ColumnClusters::tune_power_share(const linalg::Splitter& clusters, const HeldOutRows& unseen) {
   const auto power = matrix_.column_features().power;
   double least = expected_error(clusters, unseen);
   for (double share : {0.0, 0.1, 0.3, 0.6}) {
-    weights_ = selection_weights(lit_, exploration_.sketch(), power, share);
+    weights_ = selection_weights(lit_, reduced_.sketch(), power, share);
     const double error = expected_error(clusters, unseen);
     // Held-out rows are few: a gain must be clear to be one.
     if (error < 0.97 * least) {
@@ -156,21 +155,20 @@ void ColumnsKnown::tune_power_share(const linalg::Splitter& clusters, const Held
       power_share_ = share;
     }
   }
-  weights_ = selection_weights(lit_, exploration_.sketch(), power, power_share_);
+  weights_ = selection_weights(lit_, reduced_.sketch(), power, power_share_);
 }
 
-std::size_t ColumnsKnown::zero_draws(std::size_t columns) const {
+std::size_t ColumnClusters::zero_draws(std::size_t columns) const {
   if (settings_.zero_columns == ZeroColumns::ignore) return 0;
   const auto wanted =
       static_cast<std::size_t>(std::llround(settings_.zero_share * static_cast<double>(columns)));
   return std::clamp<std::size_t>(wanted, std::min<std::size_t>(1, zero_.size()), zero_.size());
 }
 
-Representatives ColumnsKnown::choose(const linalg::Splitter& clusters, std::uint64_t round) const {
-  const RepresentativeSettings choice{settings_.colour, seed_, round,
-                                      static_cast<float>(settings_.most_shown)};
-  Representatives chosen =
-      choose_representatives(clusters.partition(), exploration_.sketch(), weights_, choice);
+Representatives ColumnClusters::choose(const linalg::Splitter& clusters, std::uint64_t round) const {
+  const RepresentativeSettings choice{settings_.color, seed_, round,
+                                      static_cast<float>(settings_.max_contribution)};
+  Representatives chosen = choose_representatives(clusters.partition(), reduced_.sketch(), weights_, choice);
   add_zero_columns(zero_, matrix_.column_features().power, zero_draws(clusters.clusters()), choice, chosen);
   return chosen;
 }

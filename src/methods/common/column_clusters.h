@@ -5,25 +5,25 @@
 #include <vector>
 
 #include "linalg/clustering.h"
+#include "methods/common/cluster_settings.h"
 #include "methods/common/held_out_rows.h"
 #include "methods/common/reduced_matrix.h"
 #include "methods/common/representatives.h"
-#include "methods/row_column/settings.h"
 
 namespace lumirank::methods {
 
-// A view of an exploration at one moment: valid until it reads another row.
-class ColumnsKnown {
+// A view of a reduced matrix at one moment: valid until it reads another row.
+class ColumnClusters {
  public:
-  ColumnsKnown(const matrix::LightingMatrix& matrix, Exploration& exploration,
-               const RowColumnSettings& settings, std::uint64_t seed);
+  ColumnClusters(const matrix::LightingMatrix& matrix, ReducedMatrix& reduced,
+                 const ClusterSettings& settings, std::uint64_t seed);
 
   std::span<const matrix::Index> lit() const { return lit_; }
   std::span<const matrix::Index> zero() const { return zero_; }
 
   linalg::Splitter cluster(std::size_t columns, linalg::ClusteringAlgorithm algorithm) const;
   // Relative L1 error of the image to expect by the rows that the clustering has seen: √(E‖X_R − Σ_R‖²) /
-  // ‖Σ_R‖ (2007, section 3.4), taken to an L1 error by Exploration::l1_over_l2.
+  // ‖Σ_R‖ (2007, section 3.4), taken to an L1 error by ReducedMatrix::l1_over_l2.
   double expected_error(const linalg::Splitter& clusters) const;
   // The same by rows that it has not seen: the exact standard deviation of the estimate at each of them,
   // times √(2/π), summed. No column is rendered for it.
@@ -51,8 +51,8 @@ class ColumnsKnown {
                         std::vector<double>& squares) const;
 
   const matrix::LightingMatrix& matrix_;
-  const Exploration& exploration_;
-  const RowColumnSettings& settings_;
+  const ReducedMatrix& reduced_;
+  const ClusterSettings& settings_;
   std::uint64_t seed_;
   std::vector<matrix::Index> lit_, zero_;
   linalg::Points points_;

@@ -14,8 +14,8 @@ constexpr std::size_t kBlock = 32;
 // Against a deadline: a 32nd of the list, and less before anything is timed: one column may take long. By
 // these numbers alone, not by the clock, so that a replay has the same blocks.
 std::size_t timed_block(std::size_t done, std::size_t size) {
-  constexpr std::size_t kLeast = 1;
-  return std::min(std::clamp(size / 64, kLeast, kBlock), std::max(kLeast, done));
+  constexpr std::size_t kMin = 1;
+  return std::min(std::clamp(size / 64, kMin, kBlock), std::max(kMin, done));
 }
 // A single-precision sum of very many small terms stops growing; long lists are summed in two levels.
 constexpr std::size_t kTwoLevels = 8192, kLevel = 1024;

@@ -17,12 +17,12 @@ constexpr std::size_t kGroups = 16;
 // 97.5 % of Student's t with so many degrees of freedom, and one less than groups of 16 leave.
 constexpr double kStudent[kGroups] = {0,     12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365,
                                       2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131};
-constexpr std::size_t kRowsAsked = 64, kFewestUnderBudget = 8;
+constexpr std::size_t kRowsAsked = 64, kMinUnderBudget = 8;
 constexpr double kShareOfTime = 1.0 / 16;
 // Of the interval for heavy tails: groups of rows, resamples of them, and which of their t values it takes.
 constexpr std::size_t kResampled = 64, kResamples = 499;
 constexpr double kLowT = 0.025, kHighT = 0.99;
-constexpr double kLeastShare = 0.25;
+constexpr double kMinShare = 0.25;
 
 struct Triple {
   double r = 0, g = 0, b = 0;
@@ -108,7 +108,7 @@ ErrorPart ErrorParts::total() const {
   return sum;
 }
 
-const KnownRow& KnownRows::read(const SampledRow& row, std::span<Rgb> values) {
+const ExactRow& ExactRows::read(const SampledRow& row, std::span<Rgb> values) {
   const double clamped_before = matrix_->clamped_energy();
   matrix_->row(row.row, values);
   const auto half = matrix_->column_features().half;
@@ -132,22 +132,22 @@ const KnownRow& KnownRows::read(const SampledRow& row, std::span<Rgb> values) {
   return rows_.back();
 }
 
-void KnownRows::append(const KnownRows& others) {
+void ExactRows::append(const ExactRows& others) {
   rows_.insert(rows_.end(), others.rows_.begin(), others.rows_.end());
 }
 
-bool KnownRows::lit() const {
-  return std::ranges::any_of(rows_, [](const KnownRow& r) { return brightness(r.sum) + r.clamped > 0; });
+bool ExactRows::lit() const {
+  return std::ranges::any_of(rows_, [](const ExactRow& r) { return brightness(r.sum) + r.clamped > 0; });
 }
 
 template <typename Error>
-ErrorPart KnownRows::relative(Error&& error) const {
+ErrorPart ExactRows::relative(Error&& error) const {
   // Interleaved groups: each is spread over the whole image.
   double over = 0, under = 0, group_over[kGroups] = {}, group_under[kGroups] = {};
   const std::size_t groups = std::min(kGroups, rows_.size()), resampled = std::min(kResampled, rows_.size());
   ErrorSums sums{std::vector<double>(resampled, 0.0), std::vector<double>(resampled, 0.0)};
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const KnownRow& row = rows_[k];
+    const ExactRow& row = rows_[k];
     const double e = row.share * error(row), size = row.share * (brightness(row.sum) + row.clamped);
     over += e, group_over[k % kGroups] += e;
     under += size, group_under[k % kGroups] += size;
@@ -168,16 +168,16 @@ ErrorPart KnownRows::relative(Error&& error) const {
   return part;
 }
 
-ErrorPart KnownRows::lights() const {
-  return relative([](const KnownRow& row) { return brightness(row.half_difference); });
+ErrorPart ExactRows::lights() const {
+  return relative([](const ExactRow& row) { return brightness(row.half_difference); });
 }
 
-ErrorPart KnownRows::clamping() const {
-  return relative([](const KnownRow& row) { return row.clamped; });
+ErrorPart ExactRows::clamping() const {
+  return relative([](const ExactRow& row) { return row.clamped; });
 }
 
-ErrorPart KnownRows::sampling(std::span<const Rgb> sums) const {
-  return relative([&](const KnownRow& row) {
+ErrorPart ExactRows::sampling(std::span<const Rgb> sums) const {
+  return relative([&](const ExactRow& row) {
     double difference = 0;
     for (int c = 0; c < 3; ++c)
       difference += std::abs(static_cast<double>(sums[row.from.row][c]) - static_cast<double>(row.sum[c]));
@@ -208,11 +208,11 @@ void write_error_of_lights(const ErrorParts& parts, Trace& trace) {
 double target_for_sampling(double target, double lights, double clamping) {
   const double noise = target - clamping;
   const double left = noise > lights ? std::sqrt(noise * noise - lights * lights) : 0.0;
-  return left >= kLeastShare * target ? left : 0.5 * target;
+  return left >= kMinShare * target ? left : 0.5 * target;
 }
 
-KnownRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std::uint64_t seed) {
-  KnownRows known(matrix);
+ExactRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std::uint64_t seed) {
+  ExactRows known(matrix);
   std::vector<Rgb> values(matrix.columns());
   constexpr std::uint64_t kOwnRound = 1;  // round 0 is row-column sampling's
   for (const SampledRow& row : RowSampler(matrix, seed).stratified(count, kOwnRound)) known.read(row, values);
@@ -225,7 +225,7 @@ RowsForError::RowsForError(const matrix::LightingMatrix& matrix, const RunOption
   if (options.time_seconds <= 0 || matrix.rows() == 0 || matrix.columns() == 0) return;
   const auto rows = RowSampler(matrix, options.seed).stratified(kRowsAsked, 1);
   const auto earlier =
-      choices_of(options) ? choices_of(options)->earlier("known_rows", static_cast<std::int64_t>(rows.size()))
+      choices_of(options) ? choices_of(options)->earlier("exact_rows", static_cast<std::int64_t>(rows.size()))
                           : std::nullopt;
   std::vector<Rgb> values(matrix.columns());
   const double begin = clock.seconds(), end = begin + kShareOfTime * options.time_seconds;
@@ -236,13 +236,13 @@ RowsForError::RowsForError(const matrix::LightingMatrix& matrix, const RunOption
     const double now = clock.seconds();
     const double row = read > 0 ? (now - begin) / static_cast<double>(read) : 0;
     const bool enough = earlier ? read >= static_cast<std::size_t>(*earlier)
-                                : now + row > end || row * kFewestUnderBudget > end - begin;
+                                : now + row > end || row * kMinUnderBudget > end - begin;
     if (enough) break;
     known_.read(rows[k], values);
   }
   if (known_.size() > 0) row_seconds_ = (clock.seconds() - begin) / static_cast<double>(known_.size());
   if (choices_of(options))
-    choices_of(options)->record("known_rows", static_cast<std::int64_t>(known_.size()));
+    choices_of(options)->record("exact_rows", static_cast<std::int64_t>(known_.size()));
 }
 
 void RowsForError::state(std::span<const Rgb> sums, double columns_spent, const Share& share, Trace& trace) {
@@ -254,7 +254,7 @@ void RowsForError::state(std::span<const Rgb> sums, double columns_spent, const 
     if (!asked && affordable < static_cast<double>(share.fewest)) return;
     const double count = asked ? static_cast<double>(kRowsAsked) : std::min<double>(kRowsAsked, affordable);
     known_ = read_rows(matrix_, static_cast<std::size_t>(count), options_.seed);
-  } else if (known_.size() < std::min(kFewestUnderBudget, matrix_.rows())) {
+  } else if (known_.size() < std::min(kMinUnderBudget, matrix_.rows())) {
     return;
   }
   if (!known_.lit()) return;

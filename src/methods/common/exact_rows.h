@@ -19,7 +19,7 @@ struct SampledRow {
                  // square of a column
 };
 
-struct KnownRow {
+struct ExactRow {
   SampledRow from;
   double share;         // of an image's light: weight² × the row's weight in the image
   Rgb sum;              // of all columns
@@ -50,15 +50,15 @@ struct ErrorParts {
   ErrorPart total() const;
 };
 
-class KnownRows {
+class ExactRows {
  public:
-  explicit KnownRows(const matrix::LightingMatrix& matrix) : matrix_(&matrix) {}
+  explicit ExactRows(const matrix::LightingMatrix& matrix) : matrix_(&matrix) {}
 
   // Evaluates the row into `values` (one per column) and keeps what the errors need.
-  const KnownRow& read(const SampledRow& row, std::span<Rgb> values);
-  void append(const KnownRows& others);
+  const ExactRow& read(const SampledRow& row, std::span<Rgb> values);
+  void append(const ExactRows& others);
 
-  std::span<const KnownRow> rows() const { return rows_; }
+  std::span<const ExactRow> rows() const { return rows_; }
   std::size_t size() const { return rows_.size(); }
   // Whether any of them has light: errors are relative to it.
   bool lit() const;
@@ -76,7 +76,7 @@ class KnownRows {
   ErrorPart relative(Error&& error) const;
 
   const matrix::LightingMatrix* matrix_;
-  std::vector<KnownRow> rows_;
+  std::vector<ExactRow> rows_;
 };
 
 // error.estimate, error.sampling, error.lights, error.clamping and their half widths; or the last two alone.
@@ -89,13 +89,13 @@ void write_error_of_lights(const ErrorParts& parts, Trace& trace);
 double target_for_sampling(double target, double lights, double clamping);
 
 // `count` stratified rows, read.
-KnownRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std::uint64_t seed);
+ExactRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std::uint64_t seed);
 
 // Rows by which methods that read none tell their error: they take no part in the sums.
 //
 // Without a budget they are read afterwards: 64 if an error is asked for, otherwise as many as the given
 // share of the entries already spent pays for, or none if those are fewer than `fewest`. With one they are
-// read first, so that the time they take is known: for a sixteenth of it, the choice "known_rows"; none are
+// read first, so that the time they take is known: for a sixteenth of it, the choice "exact_rows"; none are
 // kept if those are fewer than eight.
 class RowsForError {
  public:
@@ -117,7 +117,7 @@ class RowsForError {
   const matrix::LightingMatrix& matrix_;
   const RunOptions& options_;
   double row_seconds_ = 0;
-  KnownRows known_;
+  ExactRows known_;
 };
 
 }  // namespace lumirank::methods

@@ -5,7 +5,7 @@
 namespace lumirank::methods {
 
 void HeldOutRows::read(const SampledRow& row, std::span<Rgb> values) {
-  const KnownRow& known = known_.read(row, values);
+  const ExactRow& known = known_.read(row, values);
   std::vector<float> scalars(values.size());
   const double sum = parallel_sum(values.size(), 8192, 0.0, [&](std::size_t begin, std::size_t end) {
     double s = 0;

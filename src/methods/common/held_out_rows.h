@@ -19,13 +19,13 @@ class HeldOutRows {
   const linalg::SampledRows& entries() const { return entries_; }
   std::size_t rows() const { return known_.size(); }
   // What is exact there.
-  const KnownRows& known() const { return known_; }
+  const ExactRows& known() const { return known_; }
   // Σ over the rows of share × Σ_j scalar entry: the light of an image.
   double image_sum() const { return image_sum_; }
 
  private:
   linalg::SampledRows entries_;
-  KnownRows known_;
+  ExactRows known_;
   double image_sum_ = 0;
 };
 

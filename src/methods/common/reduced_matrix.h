@@ -14,10 +14,10 @@ namespace lumirank::methods {
 // E|x| of a standard normal deviate, √(2/π).
 inline constexpr double kMeanOfNormal = 0.79788456080286536;
 
-class Exploration {
+class ReducedMatrix {
  public:
-  Exploration(const matrix::LightingMatrix& matrix, const linalg::ColumnSketch::Shape& shape,
-              std::uint64_t seed)
+  ReducedMatrix(const matrix::LightingMatrix& matrix, const linalg::ColumnSketch::Shape& shape,
+                std::uint64_t seed)
       : sketch_(shape, seed), known_(matrix) {}
 
   // Evaluates the row into `values` (one per column) and takes it in. The random numbers of the projection
@@ -28,7 +28,7 @@ class Exploration {
   const linalg::ColumnSketch& sketch() const { return sketch_; }
   std::size_t rows() const { return known_.size(); }
   // What is exact there.
-  const KnownRows& known() const { return known_; }
+  const ExactRows& known() const { return known_; }
   // Σ over the rows of (weight × Σ_j scalar entry)²: ‖Σ_R‖² of the paper.
   double squared_sum() const { return squared_sum_; }
   // Σ over the rows of share × Σ_j scalar entry: the light of an image.
@@ -39,7 +39,7 @@ class Exploration {
 
  private:
   linalg::ColumnSketch sketch_;
-  KnownRows known_;
+  ExactRows known_;
   double squared_sum_ = 0, image_sum_ = 0;
 };
 

@@ -11,18 +11,18 @@ namespace lumirank::methods {
 
 namespace {
 
-constexpr double kNoColour = 1e-3;  // of the scalar norm: less than that is no colour to scale
+constexpr double kNoColor = 1e-3;   // of the scalar norm: less than that is no colour to scale
 constexpr double kLargestGain = 4;  // of a channel over the scalar factor
 
 // The cluster's colour over the representative's, per channel.
-Rgb colour_gain(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members, std::uint32_t j) {
+Rgb color_gain(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members, std::uint32_t j) {
   const double own = static_cast<double>(sketch.norm(j));
   double all = 0;
   for (std::uint32_t k : members) all += static_cast<double>(sketch.norm(k));
   Rgb gain(1);
   for (std::size_t c = 0; c < 3; ++c) {
     const double own_channel = static_cast<double>(sketch.channel_norm(j, c));
-    if (own_channel <= kNoColour * own) continue;
+    if (own_channel <= kNoColor * own) continue;
     double all_channel = 0;
     for (std::uint32_t k : members) all_channel += static_cast<double>(sketch.channel_norm(k, c));
     gain[static_cast<int>(c)] =
@@ -87,8 +87,8 @@ Representatives choose_representatives(const linalg::Partition& clusters, const 
       const auto scalar = static_cast<float>(s / static_cast<double>(weights[chosen]));
       r.columns[k] = {
           chosen,
-          settings.colour == ColourMode::scalar ? Rgb(scalar) : colour_gain(sketch, members, chosen) * scalar,
-          settings.most_shown};
+          settings.color == ColorMode::scalar ? Rgb(scalar) : color_gain(sketch, members, chosen) * scalar,
+          settings.max_contribution};
     }
   });
   std::vector<std::uint32_t> order(r.columns.size());
@@ -104,7 +104,7 @@ void add_zero_columns(std::span<const matrix::Index> zero, std::span<const float
                       const RepresentativeSettings& settings, Representatives& representatives) {
   auto drawn = draw_columns(
       zero, power, {std::min(count, zero.size()), true, settings.seed, Stage::zero_columns, settings.round});
-  for (matrix::ScaledColumn& c : drawn) c.most_shown = settings.most_shown;
+  for (matrix::ScaledColumn& c : drawn) c.most_shown = settings.max_contribution;
   representatives.columns.insert(representatives.columns.end(), drawn.begin(), drawn.end());
   representatives.energy.resize(representatives.columns.size(), 0.0);
   representatives.zero_columns += drawn.size();

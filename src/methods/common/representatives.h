@@ -8,24 +8,24 @@
 #include "linalg/column_sketch.h"
 #include "linalg/partition.h"
 #include "matrix/lighting_matrix.h"
-#include "methods/row_column/settings.h"
+#include "methods/common/cluster_settings.h"
 
 namespace lumirank::methods {
 
 struct Representatives {
   std::vector<matrix::ScaledColumn> columns;  // in random order, so that every prefix is a fair sample
-  std::vector<double> energy;                 // s of the cluster that the column stands for; zero columns: 0
+  std::vector<double> energy;                 // s of the cluster that the column represents; zero columns: 0
   std::size_t zero_columns = 0;               // of these, drawn from the columns that were zero on all rows
 };
 
 struct RepresentativeSettings {
-  ColourMode colour = ColourMode::averaged;
+  ColorMode color = ColorMode::averaged;
   std::uint64_t seed = 1;
-  std::uint64_t round = 0;  // rounds are independent of each other
-  float most_shown = 0;     // see matrix::ScaledColumn
+  std::uint64_t round = 0;     // rounds are independent of each other
+  float max_contribution = 0;  // see matrix::ScaledColumn
 };
 
-// How likely a column is to stand for its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both
+// How likely a column is to represent its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both
 // sums over `lit`; 0 elsewhere. share = 0 is the paper's choice. Any other is as unbiased, and bounds the
 // factor of a column that is all but zero on the sampled rows and not elsewhere, which would otherwise be
 // drawn rarely and then scaled up without limit.

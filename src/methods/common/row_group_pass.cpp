@@ -13,15 +13,15 @@ namespace lumirank::methods {
 
 using matrix::Index;
 
-UnitRows::UnitRows(std::vector<Index> rows, std::vector<std::uint32_t> first)
+RowGroups::RowGroups(std::vector<Index> rows, std::vector<std::uint32_t> first)
     : rows_(std::move(rows)), first_(std::move(first)) {
   if (first_.empty() || first_.front() != 0 || first_.back() != rows_.size())
-    throw InternalError("methods::UnitRows: units do not cover the rows given");
+    throw InternalError("methods::RowGroups: units do not cover the rows given");
   if (std::adjacent_find(first_.begin(), first_.end(), std::greater_equal<>()) != first_.end())
-    throw InternalError("methods::UnitRows: a unit without rows");
+    throw InternalError("methods::RowGroups: a unit without rows");
 }
 
-UnitRows UnitRows::single(std::size_t rows) {
+RowGroups RowGroups::single(std::size_t rows) {
   std::vector<Index> all(rows);
   std::iota(all.begin(), all.end(), 0u);
   std::vector<std::uint32_t> first(rows + 1);
@@ -29,7 +29,7 @@ UnitRows UnitRows::single(std::size_t rows) {
   return {std::move(all), std::move(first)};
 }
 
-UnitRows UnitRows::pixels(const matrix::LightingMatrix& matrix) {
+RowGroups RowGroups::pixels(const matrix::LightingMatrix& matrix) {
   const auto film = matrix.row_features().pixel;
   if (film.empty()) return single(matrix.rows());
   struct Placed {
@@ -77,9 +77,9 @@ std::size_t reversed(std::size_t k) {
 constexpr double kPreviews[] = {1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};
 
 // Hands out units in order and keeps an eye on what may end the pass.
-class Dispenser {
+class WorkQueue {
  public:
-  Dispenser(std::span<const std::uint32_t> order, const UnitControl& control)
+  WorkQueue(std::span<const std::uint32_t> order, const RowGroupControl& control)
       : order_(order), control_(control), start_(control.timer.seconds()), unit_(control.unit_seconds) {
     if (TimedChoices* choices = choices_of(control.options))
       earlier_ = choices->earlier("units", static_cast<std::int64_t>(order.size()));
@@ -107,7 +107,9 @@ class Dispenser {
     const std::lock_guard lock(mutex_);
     failed_ = true;
   }
-  UnitResult result() const { return {taken_, cancelled_, out_of_time_, control_.timer.seconds() - start_}; }
+  RowGroupResult result() const {
+    return {taken_, cancelled_, out_of_time_, control_.timer.seconds() - start_};
+  }
   bool stopped() {
     if (taken_ >= order_.size() || failed_) return true;
     cancelled_ = cancelled_ || control_.options.sinks.cancelled();
@@ -121,9 +123,9 @@ class Dispenser {
 
  private:
   std::span<const std::uint32_t> order_;
-  const UnitControl& control_;
+  const RowGroupControl& control_;
   double start_;
-  UnitSeconds unit_;
+  RowGroupSeconds unit_;
   std::optional<std::int64_t> earlier_;
   std::mutex mutex_;
   std::size_t taken_ = 0, end_ = 0, reported_ = 0;
@@ -164,14 +166,14 @@ std::vector<std::uint32_t> coarse_to_fine(std::size_t count) {
   return order;
 }
 
-UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::span<Rgb> sums,
-                       const std::function<void(const NextUnit&)>& worker) {
+RowGroupResult run_workers(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
+                           const std::function<void(const NextRowGroup&)>& worker) {
   const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
   std::vector<RowState> state(sums.size(), RowState::of_no_unit);
   for (std::size_t u = 0; u < units.size(); ++u)
     for (const Index i : units[u]) state[i] = RowState::waiting;
 
-  Dispenser dispenser(order, control);
+  WorkQueue dispenser(order, control);
   std::size_t marked = 0;
   const auto mark_finished = [&](std::size_t done) {
     for (; marked < done; ++marked)
@@ -202,7 +204,7 @@ UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::s
       control.options.on_estimate(sums);
     }
   if (!dispenser.stopped()) run_until(order.size());
-  UnitResult result = dispenser.result();
+  RowGroupResult result = dispenser.result();
   result.cancelled = result.cancelled && result.done < order.size();
   result.out_of_time = result.out_of_time && result.done < order.size();
   if (TimedChoices* choices = choices_of(control.options))
@@ -214,7 +216,7 @@ UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::s
   return result;
 }
 
-void note_stop(const UnitResult& result, Estimate& estimate) {
+void note_stop(const RowGroupResult& result, Estimate& estimate) {
   estimate.interrupted = result.cancelled;
   if (result.cancelled || result.out_of_time)
     estimate.trace.notes["stopped"] = result.cancelled ? "cancelled" : "time budget";

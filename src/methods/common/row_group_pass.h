@@ -20,16 +20,16 @@
 namespace lumirank::methods {
 
 // Rows divided among units; a row belongs to one unit at most.
-class UnitRows {
+class RowGroups {
  public:
   // Unit u has rows[first[u]] … rows[first[u + 1] − 1], none of them empty: first has one number more than
   // there are units.
-  UnitRows(std::vector<matrix::Index> rows, std::vector<std::uint32_t> first);
+  RowGroups(std::vector<matrix::Index> rows, std::vector<std::uint32_t> first);
   // Every row on its own.
-  static UnitRows single(std::size_t rows);
+  static RowGroups single(std::size_t rows);
   // The rows of a pixel together (RowFeatures::pixel), in the order of their first rows; every row on its own
   // where film positions are unknown.
-  static UnitRows pixels(const matrix::LightingMatrix& matrix);
+  static RowGroups pixels(const matrix::LightingMatrix& matrix);
 
   std::size_t size() const { return first_.size() - 1; }
   std::span<const matrix::Index> operator[](std::size_t unit) const {
@@ -89,7 +89,7 @@ class WorkspacePool {
   std::vector<std::unique_ptr<Workspace>> spare_;
 };
 
-struct UnitControl {
+struct RowGroupControl {
   const RunOptions& options;
   const RunClock& timer;         // since the method was called
   double deadline = 0;           // seconds of `timer` after which no unit is begun; 0: none
@@ -100,7 +100,7 @@ struct UnitControl {
   std::function<void(std::size_t unit)> on_unit{};  // for the callers of turns.h: a unit is done
 };
 
-struct UnitResult {
+struct RowGroupResult {
   std::size_t done = 0;  // units: the first `done` of coarse_to_fine()
   bool cancelled = false;
   bool out_of_time = false;
@@ -108,9 +108,9 @@ struct UnitResult {
 };
 
 // What units like those before may take, all threads at work: against a deadline.
-class UnitSeconds {
+class RowGroupSeconds {
  public:
-  explicit UnitSeconds(double expected) : expected_(expected) {}
+  explicit RowGroupSeconds(double expected) : expected_(expected) {}
   void add(double seconds) {
     sum_ += seconds, ++count_;
     longest_ = std::max(longest_, seconds);
@@ -126,26 +126,26 @@ class UnitSeconds {
 };
 
 // Whose turn it is; nothing once the pass is over.
-using NextUnit = std::function<std::optional<std::size_t>()>;
+using NextRowGroup = std::function<std::optional<std::size_t>()>;
 // Calls worker(next) on all threads; each asks for units until there are none. What a worker has taken it
 // finishes, and then has written (not added to) sums[i] of all rows i of the unit. Where the pass ends early
 // and rows are not covered, rows of other units take the sum of the nearest row that is finished (by number:
 // rows are kept in an order in which neighbours lie close), and so do previews. Rows of no unit are left
 // alone.
-UnitResult run_workers(const UnitRows& units, const UnitControl& control, std::span<Rgb> sums,
-                       const std::function<void(const NextUnit&)>& worker);
+RowGroupResult run_workers(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
+                           const std::function<void(const NextRowGroup&)>& worker);
 
 // The same with body(unit, workspace).
 template <typename Workspace, typename Body>
-UnitResult run_units(const UnitRows& units, const UnitControl& control, std::span<Rgb> sums,
-                     WorkspacePool<Workspace>& pool, Body&& body) {
-  return run_workers(units, control, sums, [&](const NextUnit& next) {
+RowGroupResult run_row_groups(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
+                              WorkspacePool<Workspace>& pool, Body&& body) {
+  return run_workers(units, control, sums, [&](const NextRowGroup& next) {
     typename WorkspacePool<Workspace>::Lease workspace(pool);
     while (const auto unit = next()) body(*unit, *workspace);
   });
 }
 
 // Estimate::interrupted and the note "stopped", if it was.
-void note_stop(const UnitResult& result, Estimate& estimate);
+void note_stop(const RowGroupResult& result, Estimate& estimate);
 
 }  // namespace lumirank::methods

@@ -20,7 +20,7 @@ constexpr std::size_t kTriedByThread = 4;
 // times better the coarse picture is left out.
 constexpr double kCoarseWorth = 1.0 / 8, kCoarseCounts = 1.0 / 16;
 // Seconds grow as a power of quality between these, as trials tell: parts of a unit's costs are fixed.
-constexpr double kLeastPower = 0.4;
+constexpr double kMinPower = 0.4;
 constexpr double kTrialStep = 4, kTrialSafety = 1.5;
 // A first guess of what an entry costs a method, in entries of the coarse picture.
 constexpr double kDearer = 3;
@@ -30,8 +30,7 @@ constexpr double kNearlyWhole = 0.95;  // of the method's own quality: no more t
 constexpr double kReserve = 1.2;
 
 std::int64_t steps_of(double quality) {
-  return static_cast<std::int64_t>(
-      std::clamp(std::floor(quality * kSteps), 0.0, kSteps * kMostQualityOfTurn));
+  return static_cast<std::int64_t>(std::clamp(std::floor(quality * kSteps), 0.0, kSteps * kMaxQualityOfTurn));
 }
 
 }  // namespace
@@ -43,7 +42,7 @@ std::size_t Turn::scaled(std::size_t count, std::size_t least) const {
 }
 
 // A unit for each thread at rising quality, as long as the next trial is short beside the time that is left.
-double Turns::first_quality(const UnitRows& units, const TurnMethod& method, const Trial& trial,
+double Turns::first_quality(const RowGroups& units, const TurnMethod& method, const Trial& trial,
                             std::span<Rgb> out) {
   const double deadline = deadline_of(options_);
   const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
@@ -78,7 +77,7 @@ double Turns::first_quality(const UnitRows& units, const TurnMethod& method, con
     const double took = std::max(clock_.seconds() - before, 1e-12), left = deadline - clock_.seconds();
     if (last_quality_ > 0)
       power_ = std::clamp(std::log(took * turns / last_seconds_) / std::log(quality / last_quality_),
-                          kLeastPower, 1.0);
+                          kMinPower, 1.0);
     unit_seconds_ = took * side_by_side;
     last_quality_ = quality, last_seconds_ = took * turns;
     // Not far beyond what was tried.
@@ -105,10 +104,10 @@ double Turns::next_quality(const TurnMethod& method) const {
   return std::max(next, std::max(1 / kSteps, std::ceil(method.least * kSteps) / kSteps));
 }
 
-UnitResult Turns::run_turn(const UnitRows& units, const TurnMethod& method, const Turn& turn,
-                           std::span<Rgb> sums, const Pass& pass) {
+RowGroupResult Turns::run_turn(const RowGroups& units, const TurnMethod& method, const Turn& turn,
+                               std::span<Rgb> sums, const Pass& pass) {
   if (method.prepare) method.prepare(turn);
-  UnitControl control{options_, clock_, deadline_of(options_), method.phase};
+  RowGroupControl control{options_, clock_, deadline_of(options_), method.phase};
   control.covered = true;
   control.unit_seconds =
       last_quality_ > 0 ? unit_seconds_ * std::max(1.0, turn.quality / last_quality_) : unit_seconds_;
@@ -126,7 +125,7 @@ UnitResult Turns::run_turn(const UnitRows& units, const TurnMethod& method, cons
     have = replaces ? turn.quality : std::hypot(have, turn.quality);
   };
   const double before = clock_.seconds();
-  const UnitResult result = pass(control, turn, fresh_);
+  const RowGroupResult result = pass(control, turn, fresh_);
   if (result.done > 0) {
     const double share = static_cast<double>(result.done) / static_cast<double>(units.size());
     last_seconds_ = (clock_.seconds() - before) / share;
@@ -138,9 +137,9 @@ UnitResult Turns::run_turn(const UnitRows& units, const TurnMethod& method, cons
   return result;
 }
 
-UnitResult Turns::run(const UnitRows& units, const TurnMethod& method, std::span<Rgb> sums, const Pass& pass,
-                      const Trial& trial) {
-  UnitResult result;
+RowGroupResult Turns::run(const RowGroups& units, const TurnMethod& method, std::span<Rgb> sums,
+                          const Pass& pass, const Trial& trial) {
+  RowGroupResult result;
   quality_.assign(units.size(), 0.0);
   begin_ = clock_.seconds();
   result.cancelled = options_.sinks.cancelled();
@@ -148,9 +147,9 @@ UnitResult Turns::run(const UnitRows& units, const TurnMethod& method, std::span
   fresh_.assign(sums.size(), Rgb(0));
   if (coarse_.all_rows_read)
     coarse_quality_ = kCoarseWorth * static_cast<double>(coarse_.columns) / method.entries_per_row;
-  const auto most = static_cast<std::int64_t>(kSteps * kMostQualityOfTurn);
+  const auto most = static_cast<std::int64_t>(kSteps * kMaxQualityOfTurn);
   double spent = 0;
-  for (std::uint64_t number = 0; spent < kMostQuality; ++number) {
+  for (std::uint64_t number = 0; spent < kMaxQuality; ++number) {
     const std::int64_t steps = timed_choice(options_, "turn_quality", most, [&]() -> std::int64_t {
       return steps_of(number == 0 ? first_quality(units, method, trial, fresh_) : next_quality(method));
     });
@@ -165,29 +164,29 @@ UnitResult Turns::run(const UnitRows& units, const TurnMethod& method, std::span
     if (result.cancelled) break;
     // A lower quality may still fit, where estimates are averaged.
     if (result.out_of_time && (result.done == 0 || !method.averaged)) break;
-    if (!method.averaged && turn.quality >= kMostQualityOfTurn) break;
+    if (!method.averaged && turn.quality >= kMaxQualityOfTurn) break;
     if (method.exact_from > 0 && turn.quality >= method.exact_from) break;
   }
   result.seconds = clock_.seconds() - begin_;
 
   std::size_t coarse = 0;
   double whole = 0;
-  least_quality_ = kMostQuality;
+  min_quality_ = kMaxQuality;
   for (std::size_t u = 0; u < units.size(); ++u) {
     const auto rows = static_cast<double>(units[u].size());
     if (quality_[u] == 0) coarse += units[u].size();
-    least_quality_ = std::min(least_quality_, quality_[u]);
+    min_quality_ = std::min(min_quality_, quality_[u]);
     whole += rows, mean_quality_ += rows * quality_[u];
   }
   coarse_share_ = static_cast<double>(coarse) / whole;
   mean_quality_ /= whole;
   const double whole_quality = kNearlyWhole / method.of_own;
-  const bool exact = method.exact_from > 0 && least_quality_ >= method.exact_from;
-  if (least_quality_ < whole_quality && !exact && !result.cancelled && last_quality_ > 0)
+  const bool exact = method.exact_from > 0 && min_quality_ >= method.exact_from;
+  if (min_quality_ < whole_quality && !exact && !result.cancelled && last_quality_ > 0)
     seconds_wanted_ = (begin_ + last_seconds_ * std::pow(1 / last_quality_, power_) / kFirstTurn) /
                       method.of_own * kReserve;
   // Told by the qualities; it is the rule that the last turn ends early.
-  result.out_of_time = least_quality_ < whole_quality && !exact && !result.cancelled;
+  result.out_of_time = min_quality_ < whole_quality && !exact && !result.cancelled;
   return result;
 }
 

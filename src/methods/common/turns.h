@@ -7,7 +7,7 @@
 // replaces the coarser. Where the last turn ends early, units that it did not reach keep what they have.
 //
 // Quality is a multiple of what the method does without a budget (in sixty-fourths: clusters, nodes, columns,
-// 1/bound); time grows as a power of it. A budget that allows more than that is used, up to kMostQuality.
+// 1/bound); time grows as a power of it. A budget that allows more than that is used, up to kMaxQuality.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@
 namespace lumirank::methods {
 
 // Of a turn, and of all turns of a unit together: more would cost more than it shows.
-inline constexpr double kMostQualityOfTurn = 8, kMostQuality = 64;
+inline constexpr double kMaxQualityOfTurn = 8, kMaxQuality = 64;
 
 struct Turn {
   double quality = 1;        // 1: the method's own
@@ -47,8 +47,8 @@ struct TurnMethod {
 
 class Turns {
  public:
-  // A covered pass: see UnitControl.
-  using Pass = std::function<UnitResult(const UnitControl&, const Turn&, std::span<Rgb> out)>;
+  // A covered pass: see RowGroupControl.
+  using Pass = std::function<RowGroupResult(const RowGroupControl&, const Turn&, std::span<Rgb> out)>;
   // Some units of `order` side by side.
   using Trial = std::function<void(std::span<const std::uint32_t> units, const Turn&, std::span<Rgb> out)>;
 
@@ -58,20 +58,20 @@ class Turns {
       : matrix_(matrix), options_(options), clock_(clock) {
     if (options.time_seconds > 0) coarse_ = make_coarse_picture(matrix, options, clock, sums);
   }
-  UnitResult run(const UnitRows& units, const TurnMethod& method, std::span<Rgb> sums, const Pass& pass,
-                 const Trial& trial);
+  RowGroupResult run(const RowGroups& units, const TurnMethod& method, std::span<Rgb> sums, const Pass& pass,
+                     const Trial& trial);
   // "turns", "turn_quality", "budget.coarse_share" and, where less than the method's own quality was had for
   // some of it, "budget.seconds_wanted".
   void write(Trace& trace) const;
 
  private:
-  double first_quality(const UnitRows& units, const TurnMethod& method, const Trial& trial,
+  double first_quality(const RowGroups& units, const TurnMethod& method, const Trial& trial,
                        std::span<Rgb> out);
   // The quality whose turn takes so long, by the last one.
   double fitting_in(double seconds) const;
   double next_quality(const TurnMethod& method) const;
-  UnitResult run_turn(const UnitRows& units, const TurnMethod& method, const Turn& turn, std::span<Rgb> sums,
-                      const Pass& pass);
+  RowGroupResult run_turn(const RowGroups& units, const TurnMethod& method, const Turn& turn,
+                          std::span<Rgb> sums, const Pass& pass);
 
   const matrix::LightingMatrix& matrix_;
   const RunOptions& options_;
@@ -85,25 +85,25 @@ class Turns {
   double last_seconds_ = 0, unit_seconds_ = 0;
   double power_ = 1;  // of quality, that seconds are in proportion to
   std::size_t turns_ = 0;
-  double coarse_share_ = 1, least_quality_ = 0, mean_quality_ = 0, seconds_wanted_ = 0;
+  double coarse_share_ = 1, min_quality_ = 0, mean_quality_ = 0, seconds_wanted_ = 0;
 };
 
 // Turns of body(unit, workspace, turn, out), which writes out[i] of the unit's rows; without a budget one
 // pass of quality 1 that writes `sums`.
 template <typename Workspace, typename Body>
-UnitResult run_in_turns(Turns& turns, const UnitRows& units, const UnitControl& control,
-                        const TurnMethod& method, std::span<Rgb> sums, WorkspacePool<Workspace>& pool,
-                        Body&& body) {
+RowGroupResult run_in_turns(Turns& turns, const RowGroups& units, const RowGroupControl& control,
+                            const TurnMethod& method, std::span<Rgb> sums, WorkspacePool<Workspace>& pool,
+                            Body&& body) {
   if (control.options.time_seconds <= 0) {
     if (method.prepare) method.prepare({});
-    return run_units(units, control, sums, pool,
-                     [&](std::size_t unit, Workspace& w) { body(unit, w, Turn{}, sums); });
+    return run_row_groups(units, control, sums, pool,
+                          [&](std::size_t unit, Workspace& w) { body(unit, w, Turn{}, sums); });
   }
   return turns.run(
       units, method, sums,
-      [&](const UnitControl& of_turn, const Turn& turn, std::span<Rgb> out) {
+      [&](const RowGroupControl& of_turn, const Turn& turn, std::span<Rgb> out) {
         // `out` may be where fresh estimates go before they are taken in: on_unit does that.
-        return run_units(units, of_turn, sums, pool, [&](std::size_t unit, Workspace& w) {
+        return run_row_groups(units, of_turn, sums, pool, [&](std::size_t unit, Workspace& w) {
           body(unit, w, turn, out);
           of_turn.on_unit(unit);
         });

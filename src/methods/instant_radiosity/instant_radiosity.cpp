@@ -1,6 +1,6 @@
 #include "methods/instant_radiosity/instant_radiosity.h"
 
-#include "methods/brute_force/brute_force.h"
+#include "methods/common/all_columns.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {
@@ -13,13 +13,13 @@ struct InstantRadiositySettings {
 
 const Fields<InstantRadiositySettings> kInstantRadiosityFields{count_field<InstantRadiositySettings>(
     {"lights", "columns", "Virtual lights to generate; every one is rendered, so time is in proportion."},
-    &InstantRadiositySettings::lights, 1, kMostColumns)};
+    &InstantRadiositySettings::lights, 1, kMaxColumns)};
 
 // The matrix already has only the lights that lights_wanted asked for.
 class InstantRadiosity final : public Method {
  public:
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    return sum_all_columns_and_look(matrix, options);
+    return brute_force_with_error(matrix, options);
   }
 };
 

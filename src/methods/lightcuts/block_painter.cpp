@@ -11,9 +11,9 @@ using matrix::Index;
 using matrix::Part;
 
 namespace {
-constexpr std::size_t kMost = ReconstructionCut::kMostSamples;
+constexpr std::size_t kMax = ReconstructionCut::kMaxSamples;
 // Of a sample as far away as a block is wide, so that no receiver is left without weights.
-constexpr float kLeastWeight = 0.01f;
+constexpr float kMinWeight = 0.01f;
 }  // namespace
 
 void BlockPainter::paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts,
@@ -45,7 +45,7 @@ void BlockPainter::choose_samples(const ImageBlocks& blocks, std::size_t unit, m
   receivers_.clear();
   for (std::size_t c = 0; c < corner_count_; ++c) receivers_.push_back({corners[c], unit_rows.size() + c});
   corners.insert(corners.begin(), unit_rows.begin(), unit_rows.end());
-  answers_.ask(rows_, reader);
+  responses_.measure(rows_, reader);
 
   pending_.clear(), own_.clear(), block_end_.clear();
   for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
@@ -57,7 +57,7 @@ void BlockPainter::choose_samples(const ImageBlocks& blocks, std::size_t unit, m
       const Receiver receiver{block.rows[k], first_place + k};
       std::size_t count = 0;
       samples_for(receiver, count);
-      if (count >= kFewestSamples) continue;
+      if (count >= kMinSamples) continue;
       const bool corner = std::any_of(candidates_.begin(), candidates_.end(),
                                       [&](Number s) { return receivers_[s].row == receiver.row; });
       if (corner) continue;
@@ -117,10 +117,10 @@ BlockPainter::SampleList BlockPainter::samples_for(const Receiver& receiver, std
   SampleList list;
   list.fill(kNoSample);
   count = 0;
-  for (std::size_t s = 0; s < candidates_.size() && count < kMost; ++s) {
+  for (std::size_t s = 0; s < candidates_.size() && count < kMax; ++s) {
     const Receiver& sample = receivers_[candidates_[s]];
     if (alike(features_, receiver.row, sample.row) &&
-        answers_.likeness(receiver.place, sample.place) >= least_likeness_)
+        responses_.similarity(receiver.place, sample.place) >= min_similarity_)
       list[count++] = candidates_[s];
   }
   return list;
@@ -128,14 +128,14 @@ BlockPainter::SampleList BlockPainter::samples_for(const Receiver& receiver, std
 
 // Bilinear where the samples are the block's corners.
 void BlockPainter::weigh(std::span<const Pending> rows, std::span<const CutSample* const> samples) {
-  weights_.assign(kMost * rows.size(), 0);
+  weights_.assign(kMax * rows.size(), 0);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     float sum = 0;
-    float* w = &weights_[kMost * k];
+    float* w = &weights_[kMax * k];
     for (std::size_t s = 0; s < samples.size(); ++s) {
       const Vec2f a = features_.pixel[rows[k].row], b = features_.pixel[samples[s]->row];
       const auto tent = [](float x) { return std::max(0.0f, 1 - std::abs(x) / ImageBlocks::kSide); };
-      w[s] = kLeastWeight + tent(a.x - b.x) * tent(a.y - b.y);
+      w[s] = kMinWeight + tent(a.x - b.x) * tent(a.y - b.y);
       sum += w[s];
     }
     for (std::size_t s = 0; s < samples.size(); ++s) w[s] /= sum;
@@ -144,7 +144,7 @@ void BlockPainter::weigh(std::span<const Pending> rows, std::span<const CutSampl
 
 void BlockPainter::reconstruct(std::span<const Pending> rows, matrix::EntryReader& reader,
                                std::span<Rgb> sums) {
-  std::array<const CutSample*, kMost> list;
+  std::array<const CutSample*, kMax> list;
   std::size_t count = 0;
   for (const Number s : rows.front().samples)
     if (s != kNoSample) list[count++] = &samples_[s];
@@ -171,7 +171,7 @@ void BlockPainter::reconstruct(std::span<const Pending> rows, matrix::EntryReade
     const auto there = std::span<const Rgb>(values_).subspan(rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
       sums[rows[k].row] +=
-          interpolate(std::span(weights_).subspan(kMost * k, count), values, values_[k], there, column.scale);
+          interpolate(std::span(weights_).subspan(kMax * k, count), values, values_[k], there, column.scale);
   }
   interpolated_ += found_.interpolated().size() * rows.size();
 }

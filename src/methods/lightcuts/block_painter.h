@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "methods/lightcuts/answers.h"
 #include "methods/lightcuts/image_blocks.h"
+#include "methods/lightcuts/probe_responses.h"
 #include "methods/lightcuts/receiver_cuts.h"
 #include "methods/lightcuts/reconstruction.h"
 
@@ -18,15 +18,17 @@ namespace lumirank::methods {
 class BlockPainter {
  public:
   // Fewer samples than this tell too little of shadows between them.
-  static constexpr std::size_t kFewestSamples = 3;
+  static constexpr std::size_t kMinSamples = 3;
 
-  // `likeness`: least cosine of the answers of receivers that learn from each other; see answers.h.
-  BlockPainter(const matrix::LightingMatrix& matrix, const LightTree& tree, double agreement, double likeness)
+  // similarity: least cosine of the probe responses of receivers that learn from each other; see
+  // probe_responses.h.
+  BlockPainter(const matrix::LightingMatrix& matrix, const LightTree& tree, double tolerance,
+               double similarity)
       : tree_(tree),
         features_(matrix.row_features()),
-        least_likeness_(static_cast<float>(likeness)),
-        answers_(tree),
-        found_(tree, agreement) {}
+        min_similarity_(static_cast<float>(similarity)),
+        responses_(tree),
+        found_(tree, tolerance) {}
 
   // sums[i] of all rows of the unit.
   void paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts, matrix::EntryReader& reader,
@@ -39,7 +41,7 @@ class BlockPainter {
  private:
   // Samples of the unit by number: its corners, then its extras.
   using Number = std::uint32_t;
-  using SampleList = std::array<Number, ReconstructionCut::kMostSamples>;
+  using SampleList = std::array<Number, ReconstructionCut::kMaxSamples>;
   static constexpr Number kNoSample = 0xffffffffu;
   // With its place among the unit's rows, which are followed by its corners.
   struct Receiver {
@@ -65,8 +67,8 @@ class BlockPainter {
 
   const LightTree& tree_;
   matrix::RowFeatures features_;
-  float least_likeness_;
-  Answers answers_;
+  float min_similarity_;
+  ProbeResponses responses_;
   ReconstructionCut found_;
   std::size_t corner_count_ = 0;
   std::vector<Receiver> receivers_;       // of the samples
@@ -82,7 +84,7 @@ class BlockPainter {
   };
   std::vector<Own> own_;  // receivers that are samples
   std::vector<matrix::Index> rows_;
-  std::vector<float> weights_;  // kMostSamples for each row
+  std::vector<float> weights_;  // kMaxSamples for each row
   std::vector<Rgb> values_;
   std::uint64_t shaded_ = 0, interpolated_ = 0;
   double seconds_ = 0;

@@ -18,14 +18,14 @@ constexpr float kUnboundedNode = 1e30f;
 void Cut::begin(Index row, const matrix::RowBounds& bounds) {
   row_ = row, bounds_ = &bounds;
   nodes_.clear(), asked_.clear(), refined_.clear(), heap_.clear(), asleep_.clear();
-  most_asleep_ = 0, total_ = 0, bounds_computed_ = 0, begun_ = false;
+  max_asleep_ = 0, total_ = 0, bounds_computed_ = 0, begun_ = false;
   for (const LightTree::Node root : tree_.roots()) nodes_.push_back({root, 0, {}, 0});
   size_ = nodes_.size();
 }
 
 float Cut::threshold() const { return static_cast<float>(limits_.error_bound * std::max(total_, 0.0)); }
 
-bool Cut::ask(std::vector<Index>& columns) {
+bool Cut::request(std::vector<Index>& columns) {
   if (!begun_) {
     begun_ = true;
     for (std::uint32_t place = 0; place < nodes_.size(); ++place) {
@@ -36,9 +36,9 @@ bool Cut::ask(std::vector<Index>& columns) {
   }
   refined_.clear(), asked_.clear();
   const float limit = threshold();
-  while (refined_.size() < limits_.per_round && size_ < limits_.most_nodes) {
+  while (refined_.size() < limits_.per_round && size_ < limits_.max_nodes) {
     if (heap_.empty() || !(heap_.front().bound > limit)) {
-      if (!(most_asleep_ > limit) || !wake()) break;
+      if (!(max_asleep_ > limit) || !wake()) break;
       continue;
     }
     const std::uint32_t place = heap_.front().place;
@@ -97,14 +97,14 @@ void Cut::wait(std::uint32_t place) {
     std::push_heap(heap_.begin(), heap_.end(), later);
   } else {
     asleep_.push_back({bound, place});
-    most_asleep_ = std::max(most_asleep_, bound);
+    max_asleep_ = std::max(max_asleep_, bound);
   }
 }
 
 // The total has fallen: what slept may have to be refined. False if nothing has.
 bool Cut::wake() {
   const float least = kAsleep * threshold();
-  most_asleep_ = 0;
+  max_asleep_ = 0;
   std::size_t kept = 0, woken = 0;
   for (const Waiting& w : asleep_) {
     if (w.bound > least) {
@@ -113,7 +113,7 @@ bool Cut::wake() {
       ++woken;
     } else {
       asleep_[kept++] = w;
-      most_asleep_ = std::max(most_asleep_, w.bound);
+      max_asleep_ = std::max(max_asleep_, w.bound);
     }
   }
   asleep_.resize(kept);
@@ -145,7 +145,7 @@ void CutRounds::finish(std::span<Cut> cuts, matrix::EntryReader& reader) {
     places_.clear(), columns_.clear(), ends_.clear();
     bool any = false;
     for (std::uint32_t k = 0; k < cuts.size(); ++k) {
-      any = cuts[k].ask(columns_) || any;
+      any = cuts[k].request(columns_) || any;
       places_.resize(columns_.size(), k);
       ends_.push_back(static_cast<std::uint32_t>(columns_.size()));
     }

@@ -14,8 +14,8 @@
 namespace lumirank::methods {
 
 struct CutLimits {
-  double error_bound = 0.02;      // a node is refined while its bound exceeds this share of the total
-  std::size_t most_nodes = 1000;  // of a cut
+  double error_bound = 0.02;     // a node is refined while its bound exceeds this share of the total
+  std::size_t max_nodes = 1000;  // of a cut
   // Nodes refined in one round. They are those that refining one after another would take first, as far as
   // the round's own entries do not change the order.
   std::size_t per_round = 8;
@@ -38,7 +38,7 @@ class Cut {
   // Begins anew, with the tree's roots. `bounds` holds this row and must live until the cut is finished.
   void begin(matrix::Index row, const matrix::RowBounds& bounds);
   // Appends the columns whose entries in the row are needed next; false: none are, the cut is finished.
-  bool ask(std::vector<matrix::Index>& columns);
+  bool request(std::vector<matrix::Index>& columns);
   // Their values, in the same order.
   void take(std::span<const Rgb> values);
 
@@ -72,7 +72,7 @@ class Cut {
   std::vector<CutNode> nodes_;
   std::vector<std::uint32_t> asked_, refined_;  // places in nodes_, of the round
   std::vector<Waiting> heap_, asleep_;          // asleep: bound far below what is refined at present
-  float most_asleep_ = 0;
+  float max_asleep_ = 0;
   std::size_t size_ = 0, bounds_computed_ = 0;
   double total_ = 0;  // luminance
 };

@@ -33,7 +33,7 @@ struct ImageBlocks::Placed {
 
 ImageBlocks::ImageBlocks(const matrix::LightingMatrix& matrix) : units_(group(matrix)) {}
 
-UnitRows ImageBlocks::group(const matrix::LightingMatrix& matrix) {
+RowGroups ImageBlocks::group(const matrix::LightingMatrix& matrix) {
   const auto film = matrix.row_features().pixel;
   const auto floor_of = [](float x) { return static_cast<int>(std::floor(x)); };
   int left = 0, top = 0, right = -1, bottom = -1;

@@ -4,8 +4,8 @@
 // Our deviations: cuts are refined in rounds of a few nodes and beside those of neighbours (cut.h). Bounds
 // and totals are compared by luminance. Receivers between cuts are reconstructed in blocks of 4×4 pixels with
 // as many further cuts as their surfaces need; materials are alike where they answer some lights alike
-// (answers.h); an interpolated node is shaded anew by its representative's unoccluded entry, where the paper
-// keeps a directional light for the purpose (reconstruction.h).
+// (probe_responses.h); an interpolated node is shaded anew by its representative's unoccluded entry, where
+// the paper keeps a directional light for the purpose (reconstruction.h).
 #include "methods/lightcuts/lightcuts.h"
 
 #include <algorithm>
@@ -28,10 +28,10 @@ enum class Reconstruction { on, off };
 
 struct LightcutsSettings {
   double error_bound = 0.02;
-  std::size_t most_nodes = 1000;
+  std::size_t max_nodes = 1000;
   Reconstruction reconstruction = Reconstruction::on;
-  double agreement = 0.005;
-  double likeness = 0.95;
+  double interpolation_tolerance = 0.005;
+  double similarity = 0.95;
 };
 
 const Fields<LightcutsSettings> kLightcutsFields{
@@ -39,22 +39,22 @@ const Fields<LightcutsSettings> kLightcutsFields{
                                      "A node is refined while its bound exceeds this share of the "
                                      "receiver's total. 0 with no limit of nodes is brute force."},
                                     &LightcutsSettings::error_bound, 0, 1),
-    count_field<LightcutsSettings>({"most-nodes", "nodes", "Of a receiver's cut; time is in proportion."},
-                                   &LightcutsSettings::most_nodes, 1, kMostColumns),
+    count_field<LightcutsSettings>({"max-nodes", "nodes", "Of a receiver's cut; time is in proportion."},
+                                   &LightcutsSettings::max_nodes, 1, kMaxColumns),
     choice_field<LightcutsSettings>(
         {"reconstruction", "",
          "on: few receivers have a cut of their own; what cuts in the neighbourhood agree in is "
          "interpolated between them. off: every receiver has its own; many times slower."},
         &LightcutsSettings::reconstruction, {"on", "off"}),
-    number_field<LightcutsSettings>({"agreement", "",
+    number_field<LightcutsSettings>({"interpolation-tolerance", "",
                                      "Cuts agree in a node when they differ in it by less than this share of "
                                      "the receiver's total."},
-                                    &LightcutsSettings::agreement, 0, 1),
-    number_field<LightcutsSettings>({"likeness", "",
-                                     "Receivers learn from each other where their answers to 32 lights, "
+                                    &LightcutsSettings::interpolation_tolerance, 0, 1),
+    number_field<LightcutsSettings>({"similarity", "",
+                                     "Receivers learn from each other where their responses to 32 lights, "
                                      "nothing in between, make an angle of at least this cosine. Nearer to 1 "
                                      "gives more receivers cuts of their own."},
-                                    &LightcutsSettings::likeness, 0, 1)};
+                                    &LightcutsSettings::similarity, 0, 1)};
 
 // Of a first guess: cuts are found, not set.
 constexpr double kEntriesPerRow = 300;
@@ -63,8 +63,8 @@ struct LightcutsWorkspace {
   LightcutsWorkspace(const matrix::LightingMatrix& matrix, const LightTree& tree,
                      const LightcutsSettings& settings)
       : reader(matrix.reader()),
-        cuts(matrix, tree, {settings.error_bound, settings.most_nodes}),
-        painter(matrix, tree, settings.agreement, settings.likeness) {}
+        cuts(matrix, tree, {settings.error_bound, settings.max_nodes}),
+        painter(matrix, tree, settings.interpolation_tolerance, settings.similarity) {}
   std::unique_ptr<matrix::EntryReader> reader;
   ReceiverCuts cuts;
   BlockPainter painter;
@@ -72,7 +72,7 @@ struct LightcutsWorkspace {
 using LightcutsPool = WorkspacePool<LightcutsWorkspace>;
 
 // Stretches of rows, which are kept in an order in which neighbours lie close.
-UnitRows stretches(std::size_t rows) {
+RowGroups stretches(std::size_t rows) {
   std::vector<Index> all(rows);
   std::iota(all.begin(), all.end(), 0u);
   std::vector<std::uint32_t> first;
@@ -88,7 +88,7 @@ void write_costs(const LightcutsPool& pool, const matrix::LightingMatrix& matrix
   auto& numbers = trace.numbers;
   pool.for_each([&](const LightcutsWorkspace& w) {
     costs.add({static_cast<double>(w.cuts.cuts_made()), static_cast<double>(w.cuts.nodes()),
-               static_cast<double>(w.cuts.most_nodes()), static_cast<double>(w.cuts.bounds_computed()),
+               static_cast<double>(w.cuts.max_nodes()), static_cast<double>(w.cuts.bounds_computed()),
                static_cast<double>(w.cuts.rounds().entries() + w.painter.shaded())});
     interpolated += static_cast<double>(w.painter.interpolated());
     numbers["cpu_seconds.bounds"] += w.cuts.rounds().seconds_cuts();
@@ -114,8 +114,8 @@ class Lightcuts final : public Method {
     estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
     {
       LightcutsPool pool([&] { return std::make_unique<LightcutsWorkspace>(matrix, tree, settings_); });
-      const UnitControl control{options, timer, 0, "columns"};
-      const UnitResult pass = run_pass(matrix, control, turns, pool, estimate.sums);
+      const RowGroupControl control{options, timer, 0, "columns"};
+      const RowGroupResult pass = run_pass(matrix, control, turns, pool, estimate.sums);
       turns.write(estimate.trace);
       note_stop(pass, estimate);
       estimate.trace.numbers["seconds.columns"] = pass.seconds;
@@ -129,12 +129,11 @@ class Lightcuts final : public Method {
 
  private:
   // A coarser or a finer cut is no other draw of the same, so turns replace each other.
-  UnitResult run_pass(const matrix::LightingMatrix& matrix, const UnitControl& control, Turns& turns,
-                      LightcutsPool& pool, std::span<Rgb> all_sums) const {
+  RowGroupResult run_pass(const matrix::LightingMatrix& matrix, const RowGroupControl& control, Turns& turns,
+                          LightcutsPool& pool, std::span<Rgb> all_sums) const {
     const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
     const auto limits = [this](const Turn& turn) {
-      return CutLimits{std::min(1.0, settings_.error_bound / turn.quality),
-                       turn.scaled(settings_.most_nodes)};
+      return CutLimits{std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.max_nodes)};
     };
     const bool image = matrix.rows() > 0 && !matrix.row_features().pixel.empty();
     if (settings_.reconstruction == Reconstruction::on && image) {
@@ -146,7 +145,7 @@ class Lightcuts final : public Method {
             w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
           });
     }
-    const UnitRows units = stretches(matrix.rows());
+    const RowGroups units = stretches(matrix.rows());
     return run_in_turns(turns, units, control, method, all_sums, pool,
                         [&](std::size_t unit, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
                           w.cuts.limit(limits(turn));
@@ -165,7 +164,7 @@ MethodInfo lightcuts_info() {
       {"lightcuts", "For each receiver a cut through a tree of lights, refined by error bounds.",
        "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
        "illumination, SIGGRAPH 2005",
-       "error-bound or most-nodes"},
+       "error-bound or max-nodes"},
       kLightcutsFields);
 }
 

@@ -40,7 +40,7 @@ class ReceiverCuts {
       for (std::size_t k = 0; k < count; ++k) {
         const Cut& done = cuts_[k];
         ++cuts_made_, nodes_ += done.size(), bounds_computed_ += done.bounds_computed();
-        most_nodes_ = std::max<std::uint64_t>(most_nodes_, done.size());
+        max_nodes_ = std::max<std::uint64_t>(max_nodes_, done.size());
         use(begin + k, done);
       }
     }
@@ -48,7 +48,7 @@ class ReceiverCuts {
 
   std::uint64_t cuts_made() const { return cuts_made_; }
   std::uint64_t nodes() const { return nodes_; }
-  std::uint64_t most_nodes() const { return most_nodes_; }
+  std::uint64_t max_nodes() const { return max_nodes_; }
   std::uint64_t bounds_computed() const { return bounds_computed_; }
   const CutRounds& rounds() const { return rounds_; }
 
@@ -56,7 +56,7 @@ class ReceiverCuts {
   std::vector<std::unique_ptr<matrix::RowBounds>> bounds_;  // one for each cut at hand
   std::vector<Cut> cuts_;
   CutRounds rounds_;
-  std::uint64_t cuts_made_ = 0, nodes_ = 0, most_nodes_ = 0, bounds_computed_ = 0;
+  std::uint64_t cuts_made_ = 0, nodes_ = 0, max_nodes_ = 0, bounds_computed_ = 0;
 };
 
 }  // namespace lumirank::methods

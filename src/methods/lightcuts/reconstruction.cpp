@@ -9,7 +9,7 @@ namespace {
 // tells nothing of the others.
 constexpr float kTypical = 4;
 // The most that texture or shading may brighten a node between two neighbouring receivers.
-constexpr float kMostChange = 8;
+constexpr float kMaxChange = 8;
 }  // namespace
 
 void CutSample::set(const Cut& cut, const LightTree& tree) {
@@ -28,9 +28,9 @@ void CutSample::set(const Cut& cut, const LightTree& tree) {
 
 void ReconstructionCut::find(std::span<const CutSample* const> samples) {
   shaded_.clear(), interpolated_.clear(), stack_.clear();
-  float least_total = luminance(samples[0]->sum);
-  for (const CutSample* s : samples) least_total = std::min(least_total, luminance(s->sum));
-  const float agreed = static_cast<float>(agreement_) * least_total;
+  float min_total = luminance(samples[0]->sum);
+  for (const CutSample* s : samples) min_total = std::min(min_total, luminance(s->sum));
+  const float agreed = static_cast<float>(tolerance_) * min_total;
   for (std::uint32_t root = 0; root < tree_.roots().size(); ++root) {
     Visit visit{tree_.roots()[root], {}};
     visit.places.fill(root);
@@ -76,7 +76,7 @@ Rgb interpolate(std::span<const float> weights, std::span<const Rgb> values, Rgb
   }
   for (int c = 0; c < 3; ++c)
     if (value[c] <= kTypical * scale[c] * there[c] && there[c] > 0)
-      value[c] *= std::min(unoccluded_here[c] / there[c], kMostChange);
+      value[c] *= std::min(unoccluded_here[c] / there[c], kMaxChange);
   return value;
 }
 

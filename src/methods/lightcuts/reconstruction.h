@@ -27,21 +27,21 @@ struct CutSample {
 
 class ReconstructionCut {
  public:
-  static constexpr std::size_t kMostSamples = 4;
+  static constexpr std::size_t kMaxSamples = 4;
 
   struct Shaded {
     LightTree::Node node;
   };
   struct Interpolated {
     LightTree::Node node;
-    std::array<Rgb, kMostSamples> values;  // of the samples
+    std::array<Rgb, kMaxSamples> values;  // of the samples
   };
 
-  // `agreement`: a node is interpolated where the samples' values differ by less than this share of the least
+  // tolerance: a node is interpolated where the samples' values differ by less than this share of the least
   // of their totals and none of them is dark.
-  ReconstructionCut(const LightTree& tree, double agreement) : tree_(tree), agreement_(agreement) {}
+  ReconstructionCut(const LightTree& tree, double tolerance) : tree_(tree), tolerance_(tolerance) {}
 
-  // From the top of the tree down. At most kMostSamples samples.
+  // From the top of the tree down. At most kMaxSamples samples.
   void find(std::span<const CutSample* const> samples);
   std::span<const Shaded> shaded() const { return shaded_; }
   std::span<const Interpolated> interpolated() const { return interpolated_; }
@@ -49,10 +49,10 @@ class ReconstructionCut {
  private:
   struct Visit {
     LightTree::Node node;
-    std::array<std::uint32_t, kMostSamples> places;  // in the samples' nodes
+    std::array<std::uint32_t, kMaxSamples> places;  // in the samples' nodes
   };
   const LightTree& tree_;
-  double agreement_;
+  double tolerance_;
   std::vector<Visit> stack_;
   std::vector<Shaded> shaded_;
   std::vector<Interpolated> interpolated_;

@@ -32,7 +32,7 @@ class LightSlice final : public Method {
     for (const matrix::Index i : rows) sums[i] = Rgb(0);
     for (const matrix::ScaledColumn& c : w.lights.chosen) {
       w.reader->column(c.column, w.entries);
-      for (std::size_t a = 0; a < rows.size(); ++a) sums[rows[a]] += w.lights.shown(c, w.entries[a]);
+      for (std::size_t a = 0; a < rows.size(); ++a) sums[rows[a]] += w.lights.added(c, w.entries[a]);
     }
   }
 

@@ -2,7 +2,7 @@
 // are cut into slices, and every slice gets clusters and columns of its own (slices/slice_lights.h, where our
 // deviations stand).
 //
-// With colour = scalar, zero-columns = sample and most-shown = 0 the estimate is unbiased: given the rows
+// With color = scalar, zero-columns = sample and max-sum-share = 0 the estimate is unbiased: given the rows
 // that were read, every column with any power has a known probability > 0 of being one of the slice's.
 #pragma once
 

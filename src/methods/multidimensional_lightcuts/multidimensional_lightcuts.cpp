@@ -25,7 +25,7 @@ using matrix::Index;
 
 struct MultidimensionalSettings {
   double error_bound = 0.02;
-  std::size_t most_pairs = 2000;
+  std::size_t max_pairs = 2000;
 };
 
 const Fields<MultidimensionalSettings> kMultidimensionalFields{
@@ -33,8 +33,8 @@ const Fields<MultidimensionalSettings> kMultidimensionalFields{
                                             "A pair is refined while its bound exceeds this share of the "
                                             "pixel's sum. 0 with no limit of pairs is brute force."},
                                            &MultidimensionalSettings::error_bound, 0, 1),
-    count_field<MultidimensionalSettings>({"most-pairs", "pairs", "Of a pixel's cut; time is in proportion."},
-                                          &MultidimensionalSettings::most_pairs, 1, kMostColumns)};
+    count_field<MultidimensionalSettings>({"max-pairs", "pairs", "Of a pixel's cut; time is in proportion."},
+                                          &MultidimensionalSettings::max_pairs, 1, kMaxColumns)};
 
 // Pixels whose cuts are refined side by side: neighbours, which ask for like entries.
 constexpr std::size_t kPixelsTogether = 8;
@@ -65,7 +65,7 @@ class PixelWorkspace {
     for (PairCut& cut : cuts_) cut.use(limits);
   }
   // At most kPixelsTogether pixels.
-  void run(const UnitRows& pixels, std::size_t first, std::size_t count, std::span<Rgb> sums) {
+  void run(const RowGroups& pixels, std::size_t first, std::size_t count, std::span<Rgb> sums) {
     const Timer timer;
     double last = 0;
     const auto lap = [&](double& seconds) {
@@ -84,7 +84,7 @@ class PixelWorkspace {
       places_.clear(), columns_.clear(), ends_.clear();
       bool any = false;
       for (std::size_t k = 0; k < count; ++k) {
-        any = cuts_[k].ask(first_place_[k], places_, columns_) || any;
+        any = cuts_[k].request(first_place_[k], places_, columns_) || any;
         ends_.push_back(static_cast<std::uint32_t>(columns_.size()));
       }
       lap(seconds_cuts);
@@ -119,7 +119,7 @@ class PixelWorkspace {
 using PixelPool = WorkspacePool<PixelWorkspace>;
 
 // kPixelsTogether pixels to a unit.
-UnitRows together(const UnitRows& pixels) {
+RowGroups together(const RowGroups& pixels) {
   std::vector<Index> rows;
   std::vector<std::uint32_t> first;
   for (std::size_t p = 0; p < pixels.size(); ++p) {
@@ -155,19 +155,19 @@ class MultidimensionalLightcuts final : public Method {
     const double before_tree = timer.seconds();
     const LightTree lights(matrix, options.seed);
     estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
-    const UnitRows pixels = UnitRows::pixels(matrix);
+    const RowGroups pixels = RowGroups::pixels(matrix);
     {
       PixelPool pool([&] {
         return std::make_unique<PixelWorkspace>(matrix, lights, options.seed,
-                                                PairLimits{settings_.error_bound, settings_.most_pairs});
+                                                PairLimits{settings_.error_bound, settings_.max_pairs});
       });
       // A coarser or a finer cut is no other draw of the same, so turns replace each other.
       const TurnMethod method{.averaged = false, .entries_per_row = kPairEntriesPerRow};
-      const UnitResult pass = run_in_turns(
+      const RowGroupResult pass = run_in_turns(
           turns, together(pixels), {options, timer, 0, "columns"}, method, estimate.sums, pool,
           [&](std::size_t unit, PixelWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
             const std::size_t first = unit * kPixelsTogether;
-            w.limit({std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.most_pairs)});
+            w.limit({std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.max_pairs)});
             w.run(pixels, first, std::min(kPixelsTogether, pixels.size() - first), sums);
           });
       turns.write(estimate.trace);
@@ -192,7 +192,7 @@ MethodInfo multidimensional_lightcuts_info() {
       {"multidimensional-lightcuts",
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
        "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
-       "error-bound or most-pairs"},
+       "error-bound or max-pairs"},
       kMultidimensionalFields);
 }
 

@@ -29,8 +29,8 @@ bool PairCut::split_gather(const Pair& p) const {
          kPixelsFirst * gather_.extent(p.gather) > gather_.extent(lights_.set(p.light));
 }
 
-bool PairCut::ask(std::uint32_t first_place, std::vector<std::uint32_t>& places,
-                  std::vector<Index>& columns) {
+bool PairCut::request(std::uint32_t first_place, std::vector<std::uint32_t>& places,
+                      std::vector<Index>& columns) {
   const auto ask_for = [&](std::uint32_t at) {
     asked_.push_back(at);
     places.push_back(first_place + gather_.representative(pairs_[at].gather));
@@ -43,7 +43,7 @@ bool PairCut::ask(std::uint32_t first_place, std::vector<std::uint32_t>& places,
     return !changed_.empty();
   }
   const float limit = threshold();
-  for (std::size_t k = 0; k < limits_.per_round && pairs_.size() < limits_.most_pairs; ++k) {
+  for (std::size_t k = 0; k < limits_.per_round && pairs_.size() < limits_.max_pairs; ++k) {
     if (heap_.empty() || !(heap_.front().bound > limit)) break;
     const std::uint32_t at = heap_.front().place;
     std::pop_heap(heap_.begin(), heap_.end(), later);

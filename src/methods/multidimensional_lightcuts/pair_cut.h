@@ -12,9 +12,9 @@
 namespace lumirank::methods {
 
 struct PairLimits {
-  double error_bound = 0.02;      // a pair is refined while its bound exceeds this share of the pixel's total
-  std::size_t most_pairs = 2000;  // of a cut
-  std::size_t per_round = 8;      // pairs refined before their entries are asked for
+  double error_bound = 0.02;     // a pair is refined while its bound exceeds this share of the pixel's total
+  std::size_t max_pairs = 2000;  // of a cut
+  std::size_t per_round = 8;     // pairs refined before their entries are asked for
 };
 
 // One pixel at a time.
@@ -31,8 +31,8 @@ class PairCut {
   std::span<const matrix::Index> rows() const { return gather_.order(); }
   // Appends the entries that are needed next: places of rows(), counted from `first_place`, and columns;
   // false: none are, the cut is finished.
-  bool ask(std::uint32_t first_place, std::vector<std::uint32_t>& places,
-           std::vector<matrix::Index>& columns);
+  bool request(std::uint32_t first_place, std::vector<std::uint32_t>& places,
+               std::vector<matrix::Index>& columns);
   // Their values, in the same order.
   void take(std::span<const Rgb> values);
 

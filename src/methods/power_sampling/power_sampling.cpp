@@ -20,9 +20,9 @@ enum class Drawing { stratified, independent };
 
 // Rounds end when they have rendered as many columns as the matrix has: that costs what the exact sum does.
 // A time that was given is used somewhat longer.
-constexpr double kMostOfColumns = 1, kMostOfColumnsInTime = 4;
-constexpr std::size_t kMostPowerDraws = std::size_t{1} << 24;  // of an open-ended round
-constexpr std::size_t kMostDrawsOfColumn = 64;                 // in the mean: draws of one column are merged
+constexpr double kMaxShareOfColumns = 1, kMaxShareOfColumnsInTime = 4;
+constexpr std::size_t kMaxPowerDraws = std::size_t{1} << 24;  // of an open-ended round
+constexpr std::size_t kMaxDrawsOfColumn = 64;                 // in the mean: draws of one column are merged
 
 struct PowerSamplingSettings {
   std::size_t columns = 1000;
@@ -34,7 +34,7 @@ const Fields<PowerSamplingSettings> kPowerSamplingFields{
                                         "Draws with replacement; time is in proportion. With a time or error "
                                         "target it is not used: rounds are added until "
                                         "the target is met."},
-                                       &PowerSamplingSettings::columns, 1, kMostColumns),
+                                       &PowerSamplingSettings::columns, 1, kMaxColumns),
     choice_field<PowerSamplingSettings>(
         {"drawing", "",
          "stratified: one draw in each equal part of the running sum of powers; independent: plain draws."},
@@ -55,9 +55,9 @@ class PowerSampling final : public Method {
 
     // Rows tell when to stop: draws know nothing of them.
     constexpr std::size_t kRows = 64;
-    const KnownRows known = options.target_error > 0 && options.time_seconds <= 0
+    const ExactRows known = options.target_error > 0 && options.time_seconds <= 0
                                 ? read_rows(matrix, kRows, options.seed)
-                                : KnownRows(matrix);
+                                : ExactRows(matrix);
     const double aim =
         target_for_sampling(options.target_error, known.lights().value, known.clamping().value);
 
@@ -68,21 +68,22 @@ class PowerSampling final : public Method {
     std::size_t draws = 0, rendered = 0;
     double seconds = 0;
     // Without this an error that cannot be had would be pursued for ever.
-    const auto most = static_cast<std::size_t>(
-        (options.time_seconds > 0 ? kMostOfColumnsInTime : kMostOfColumns) * static_cast<double>(all.size()));
+    const auto most =
+        static_cast<std::size_t>((options.time_seconds > 0 ? kMaxShareOfColumnsInTime : kMaxShareOfColumns) *
+                                 static_cast<double>(all.size()));
     for (std::size_t round = 0;; ++round) {
       std::size_t count = !open_ended ? settings_.columns : std::max<std::size_t>(draws, 32);
       if (options.time_seconds > 0 && draws > 0) {
         const auto affordable = timed_choice(options, "affordable_draws", INT64_MAX, [&] {
           const double left = deadline_of(options) - timer.seconds();
           const double fit = left * static_cast<double>(rendered) / std::max(seconds, 1e-12);
-          return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMostPowerDraws)));
+          return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMaxPowerDraws)));
         });
         if (affordable == 0) break;
         // A last round that would be cut short is better made to fit.
         if (affordable < 2 * count || options.target_error <= 0) count = affordable;
       }
-      if (open_ended) count = std::min({count, kMostPowerDraws, kMostDrawsOfColumn * all.size()});
+      if (open_ended) count = std::min({count, kMaxPowerDraws, kMaxDrawsOfColumn * all.size()});
       const auto drawn = draw_columns(
           all, power, {count, settings_.drawing == Drawing::stratified, options.seed, Stage::method, round});
       std::vector<Rgb> sums(matrix.rows(), Rgb(0));

@@ -10,12 +10,12 @@ namespace lumirank::methods {
 namespace {
 
 constexpr std::size_t kFirstRows = 100;
-constexpr std::size_t kMostRowsRead = 4096;
+constexpr std::size_t kMaxRowsRead = 4096;
 constexpr std::size_t kHoldOut = 5;  // one row in so many
 constexpr std::size_t kPilotColumns = 48;
-constexpr std::size_t kMostPasses = 5;
+constexpr std::size_t kMaxPasses = 5;
 // Without a target or a time: see kUnaskedTarget.
-constexpr std::size_t kMostColumnsUnasked = 3000;
+constexpr std::size_t kMaxColumnsUnasked = 3000;
 // A target for the whole error is held against what was measured at held-out rows, one draw of a random
 // error: aimed a little lower, it is met more often than not.
 constexpr double kAimBelow = 0.9;
@@ -54,7 +54,7 @@ bool RowColumnRun::target_met() const {
   return parts.total().value <= target_ || parts.sampling.value <= aim;
 }
 
-ErrorCurve RowColumnRun::error_curve(ColumnsKnown& known, double until_error) {
+ErrorCurve RowColumnRun::error_curve(ColumnClusters& known, double until_error) {
   ErrorCurve curve;
   const std::size_t most = std::max<std::size_t>(64, std::min<std::size_t>(columns_ / 2, 8192));
   linalg::Splitter clusters = known.cluster(1, linalg::ClusteringAlgorithm::splitting);
@@ -72,9 +72,9 @@ ErrorCurve RowColumnRun::error_curve(ColumnsKnown& known, double until_error) {
 
 void RowColumnRun::more_rows_while_they_pay(double needed) {
   double columns_before = 0;
-  while (!stopped() && settings_.rows == 0 && rows_read() < std::min(kMostRowsRead, rows_ / 4)) {
+  while (!stopped() && settings_.rows == 0 && rows_read() < std::min(kMaxRowsRead, rows_ / 4)) {
     const double start = timer_.seconds();
-    ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+    ColumnClusters known(matrix_, seen_, settings_, options_.seed);
     const ErrorCurve curve = error_curve(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
     const bool more = timed_choice(options_, "more_rows_pay", 1, [&] {
@@ -102,10 +102,10 @@ void RowColumnRun::more_rows_while_they_pay(double needed) {
   }
 }
 
-linalg::Splitter RowColumnRun::cluster_for(ColumnsKnown& known, double needed) {
+linalg::Splitter RowColumnRun::cluster_for(ColumnClusters& known, double needed) {
   std::size_t most = settings_.columns > 0 ? settings_.columns : columns_;
   const bool asked = options_.target_error > 0 || options_.time_seconds > 0;
-  if (settings_.columns == 0 && !asked) most = std::min(most, kMostColumnsUnasked);
+  if (settings_.columns == 0 && !asked) most = std::min(most, kMaxColumnsUnasked);
   if (options_.time_seconds > 0 && settings_.columns == 0) {
     most = timed_choice(options_, "affordable_columns", static_cast<std::int64_t>(most), [&] {
       const double affordable = kPlannedTime * time_left() / costs().column / (1 + settings_.zero_share);
@@ -137,7 +137,7 @@ linalg::Splitter RowColumnRun::cluster_for(ColumnsKnown& known, double needed) {
 }
 
 void RowColumnRun::pilot() {
-  const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+  const ColumnClusters known(matrix_, seen_, settings_, options_.seed);
   const linalg::Splitter clusters =
       known.cluster(std::min(kPilotColumns, columns_ / 8), settings_.clustering);
   pass(known, clusters, known.expected_error(clusters, unseen_));
@@ -158,12 +158,12 @@ Estimate RowColumnRun::automatic() {
   // A given number of columns is rendered once, and no others beside it.
   if (!stopped() && settings_.columns == 0) pilot();
 
-  while (!stopped() && passes_ < kMostPasses && (passes_ == 0 || !target_met())) {
+  while (!stopped() && passes_ < kMaxPasses && (passes_ == 0 || !target_met())) {
     const double needed = needed_error();
     more_rows_while_they_pay(needed);
     if (stopped()) break;
     const double start = timer_.seconds();
-    ColumnsKnown known(matrix_, seen_, settings_, options_.seed + passes_);
+    ColumnClusters known(matrix_, seen_, settings_, options_.seed + passes_);
     const linalg::Splitter clusters = cluster_for(known, needed);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
     const bool all_fit = timed_choice(options_, "all_columns_fit", 1, [&] {

@@ -51,8 +51,8 @@ double ErrorCurve::columns_for_unseen(double error) const {
 }
 
 bool more_rows_pay_for_target(const ErrorCurve& curve, const TargetQuestion& question, const Costs& costs) {
-  const double unseen = std::min(curve.columns_for_unseen(question.target), question.most_columns);
-  const double seen = std::min(curve.columns_for_seen(question.target), question.most_columns);
+  const double unseen = std::min(curve.columns_for_unseen(question.target), question.max_columns);
+  const double seen = std::min(curve.columns_for_seen(question.target), question.max_columns);
   double saved = 0.5 * (unseen - seen);
   if (question.columns_before > 0) saved = std::min(saved, question.columns_before - unseen);
   return saved * costs.column > static_cast<double>(question.rows) * costs.row;

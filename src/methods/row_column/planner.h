@@ -35,7 +35,7 @@ struct Costs {
 struct TargetQuestion {
   double target;
   std::size_t rows;           // read so far
-  double most_columns;        // more are never needed
+  double max_columns;         // more are never needed
   double columns_before = 0;  // needed before the last rows were added; 0: unknown
 };
 bool more_rows_pay_for_target(const ErrorCurve& curve, const TargetQuestion& question, const Costs& costs);

@@ -1,4 +1,4 @@
-// Row-column sampling: sections 3.2 to 4 of the paper. Read r rows (row_sampler, exploration), cluster the
+// Row-column sampling: sections 3.2 to 4 of the paper. Read r rows (row_sampler, reduced), cluster the
 // columns by them (linalg/clustering), pick a scaled representative of each cluster (representatives), render
 // these (column_pass).
 //
@@ -7,7 +7,7 @@
 // automatically (run.h).
 #include "methods/row_column/row_column.h"
 
-#include "methods/brute_force/brute_force.h"
+#include "methods/common/all_columns.h"
 #include "methods/row_column/run.h"
 
 namespace lumirank::methods {
@@ -19,7 +19,7 @@ class RowColumnSampling final : public Method {
   explicit RowColumnSampling(const RowColumnSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    if (settings_.columns >= matrix.columns()) return sum_all_columns_and_look(matrix, options);
+    if (settings_.columns >= matrix.columns()) return brute_force_with_error(matrix, options);
     RowColumnRun run(matrix, options, settings_);
     return settings_.rows > 0 && settings_.columns > 0 ? run.fixed() : run.automatic();
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "methods/brute_force/brute_force.h"
+#include "methods/common/all_columns.h"
 #include "methods/common/timed_choices.h"
 
 namespace lumirank::methods {
@@ -36,7 +36,7 @@ Estimate RowColumnRun::fixed() {
   explore(sampler_.stratified(settings_.rows), 0, 0);
   if (!stopped()) {
     const double start = timer_.seconds();
-    const ColumnsKnown known(matrix_, seen_, settings_, options_.seed);
+    const ColumnClusters known(matrix_, seen_, settings_, options_.seed);
     const linalg::Splitter clusters = known.cluster(settings_.columns, settings_.clustering);
     trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
     pass(known, clusters, known.expected_error(clusters));
@@ -46,9 +46,9 @@ Estimate RowColumnRun::fixed() {
 
 void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold_out, double until) {
   // Enough held-out rows for the error to expect; they are kept as they are, so their number is bounded.
-  constexpr std::size_t kMostHeldOut = 64;
+  constexpr std::size_t kMaxHeldOut = 64;
   // Fewer are a poor choice of columns, and still a picture.
-  constexpr std::size_t kFewestRows = 8;
+  constexpr std::size_t kMinRows = 8;
   constexpr double kMuchLater = 1.5;
   const double start = timer_.seconds();
   TimedChoices* choices = choices_of(options_);
@@ -58,10 +58,10 @@ void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold
   for (; k < rows.size(); ++k) {
     cancelled_ = cancelled_ || options_.sinks.cancelled();
     const bool enough = earlier ? static_cast<std::int64_t>(k) >= *earlier
-                                : until > 0 && ((timer_.seconds() > until && rows_read() >= kFewestRows) ||
+                                : until > 0 && ((timer_.seconds() > until && rows_read() >= kMinRows) ||
                                                 (timer_.seconds() > kMuchLater * until && rows_read() >= 2));
     if (cancelled_ || enough) break;
-    const bool apart = hold_out > 0 && k % hold_out == hold_out / 2 && unseen_.rows() < kMostHeldOut;
+    const bool apart = hold_out > 0 && k % hold_out == hold_out / 2 && unseen_.rows() < kMaxHeldOut;
     if (apart)
       unseen_.read(rows[k], row_);
     else
@@ -72,7 +72,8 @@ void RowColumnRun::explore(const std::vector<SampledRow>& rows, std::size_t hold
   trace_.numbers["seconds.rows"] += timer_.seconds() - start;
 }
 
-bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clusters, double expected_error) {
+bool RowColumnRun::pass(const ColumnClusters& known, const linalg::Splitter& clusters,
+                        double expected_error) {
   const double start = timer_.seconds();
   const Representatives chosen = known.choose(clusters, passes_);
   trace_.numbers["seconds.clustering"] += timer_.seconds() - start;
@@ -127,7 +128,7 @@ bool RowColumnRun::pass(const ColumnsKnown& known, const linalg::Splitter& clust
 void RowColumnRun::pass_over_all_columns() {
   RunOptions rest = options_;
   if (options_.time_seconds > 0) rest.time_seconds = std::max(time_left(), 1e-9);
-  Estimate all = sum_all_columns(matrix_, rest);
+  Estimate all = brute_force(matrix_, rest);
   const auto done = static_cast<std::size_t>(all.trace.numbers.at("columns"));
   const bool whole = done == columns_;
   rendered_count_ += done;
@@ -158,7 +159,7 @@ Costs RowColumnRun::costs() const {
 }
 
 ErrorParts RowColumnRun::errors() const {
-  KnownRows all = seen_.known(), unseen = unseen_.known();
+  ExactRows all = seen_.known(), unseen = unseen_.known();
   unseen.append(afterwards_);
   all.append(unseen);
   const bool rendered = !blend_.sums().empty();

@@ -9,6 +9,7 @@
 #include "methods/common/run_clock.h"
 #include "methods/row_column/blend.h"
 #include "methods/row_column/planner.h"
+#include "methods/row_column/settings.h"
 
 namespace lumirank::methods {
 
@@ -38,12 +39,12 @@ class RowColumnRun {
   // Reads rows until done, cancelled or `until` (seconds since the call; 0: no limit) has passed. One in
   // `hold_out` is held out; 0: none.
   void explore(const std::vector<SampledRow>& rows, std::size_t hold_out, double until);
-  bool pass(const ColumnsKnown& known, const linalg::Splitter& clusters, double expected_error);
+  bool pass(const ColumnClusters& known, const linalg::Splitter& clusters, double expected_error);
   void pass_over_all_columns();
   void pilot();
   void more_rows_while_they_pay(double needed);
-  linalg::Splitter cluster_for(ColumnsKnown& known, double needed);
-  ErrorCurve error_curve(ColumnsKnown& known, double until_error);
+  linalg::Splitter cluster_for(ColumnClusters& known, double needed);
+  ErrorCurve error_curve(ColumnClusters& known, double until_error);
   double needed_error() const;     // of the next pass, for the blend to meet the target; 0: no target
   double sampling_target() const;  // what the other parts of the error leave to sampling; 0: no target
   bool target_met() const;
@@ -67,13 +68,13 @@ class RowColumnRun {
   double target_;
   std::size_t rows_, columns_;  // of the matrix
   RowSampler sampler_;
-  Exploration seen_;
+  ReducedMatrix seen_;
   HeldOutRows unseen_;
   std::vector<Rgb> row_;  // the last row that was read
   Blend blend_;
   std::vector<matrix::ScaledColumn> combination_;  // whose sums are the blend's
   Trace trace_;
-  KnownRows afterwards_;  // rows that were read to know the error of the finished sums
+  ExactRows afterwards_;  // rows that were read to know the error of the finished sums
   std::set<matrix::Index> rendered_;
   std::size_t rendered_count_ = 0;
   std::size_t passes_ = 0;

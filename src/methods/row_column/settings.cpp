@@ -5,15 +5,16 @@ namespace lumirank::methods {
 const Fields<RowColumnSettings>& row_column_fields() {
   using S = RowColumnSettings;
   static const Fields<S> fields{
+      count_field<S>({"rows", "rows",
+                      "Receivers whose whole row is evaluated; 0: chosen automatically. Costs one entry per "
+                      "column each."},
+                     &S::rows, 0, kMaxRows),
       count_field<S>(
-          {"rows", "rows",
-           "Receivers whose whole row is evaluated; 0: as many as pay. Costs one entry per column each."},
-          &S::rows, 0, kMostRows),
-      count_field<S>({"columns", "columns",
-                      "Clusters, each rendered by one representative; 0: as many as the target needs. Costs "
-                      "one entry per "
-                      "receiver each; as many as there are columns: all are rendered, which is exact."},
-                     &S::columns, 0, kMostColumns),
+          {"columns", "columns",
+           "Clusters, each rendered by one representative; 0: chosen automatically, for the target. Costs "
+           "one entry per "
+           "receiver each; as many as there are columns: all are rendered, which is exact."},
+          &S::columns, 0, kMaxColumns),
       count_field<S>({"projection", "dimensions",
                       "Dimensions to which reduced columns are projected for clustering; 0: none. Time and "
                       "memory of the "
@@ -23,11 +24,11 @@ const Fields<RowColumnSettings>& row_column_fields() {
                        "combined: some by sampling (two thirds; two fifths of many), the rest by splitting; "
                        "or one of them alone."},
                       &S::clustering, {"combined", "sampling", "splitting"}),
-      choice_field<S>({"colour", "",
-                       "averaged: a representative gets its cluster's total colour (less colour noise, a "
+      choice_field<S>({"color", "",
+                       "averaged: a representative gets its cluster's total color (less color noise, a "
                        "little bias); scalar: "
                        "one factor for all channels (unbiased)."},
-                      &S::colour, {"averaged", "scalar"}),
+                      &S::color, {"averaged", "scalar"}),
       choice_field<S>({"zero-columns", "",
                        "Columns that are zero on all sampled rows. sample: a few drawn by power, unbiased; "
                        "ignore: taken as zero "
@@ -44,11 +45,11 @@ const Fields<RowColumnSettings>& row_column_fields() {
            "between sampled rows. Where rows or columns are automatic, held-out rows may choose another."},
           &S::power_share, 0, 1),
       number_field<S>(
-          {"most-shown", "of the hemisphere",
+          {"max-contribution", "of the hemisphere",
            "A representative stands for its cluster's lights and so for their area; near it, it may not "
            "show more than this share of what would fill the receiver's view. Keeps specks away, and takes "
            "a little light from corners that more columns give back; 0: no bound, unbiased."},
-          &S::most_shown, 0, 1e9)};
+          &S::max_contribution, 0, 1e9)};
   return fields;
 }
 

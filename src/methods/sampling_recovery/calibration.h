@@ -26,7 +26,7 @@ class Calibration {
   }
 
   void reset() { tested_ = {}; }
-  // light: what the entry stands for.
+  // light: what the entry would bring.
   void add(std::size_t predictor, std::size_t kind, float probability, bool visible, double light) {
     Tested& t = tested_[predictor][kind][level(probability)];
     t.light += light;

@@ -135,8 +135,7 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
                      std::span<const float> e, std::uint64_t key, SliceEntries& entries,
                      std::span<Entry> state) {
   const std::size_t rows = entries.rows().size();
-  const auto samples =
-      static_cast<std::size_t>(std::max(4.0, std::ceil(settings.rho * static_cast<double>(rows))));
+  const std::size_t samples = settings.samples(rows);
   tally_ = {};
   calibration_.reset();
   counts_.reset(rows, clusters.size());
@@ -159,15 +158,15 @@ void Prediction::run(const RecoverySettings& settings, std::span<const ReducedCo
     column.allowed =
         static_cast<float>(settings.prediction_error / (settings.weighted ? std::max(brighter, 1.0) : 1.0));
     const bool whole = settings.bright > 0 && own > settings.bright * sum;
-    if (whole) entries.look_whole(column.slot);
+    if (whole) entries.sample_all(column.slot);
     column.trained = entries.slot(column.slot).sampled;
     learn(c, 0, column.trained, entries);
     if (!whole) active_.push_back(static_cast<std::uint32_t>(c));
   }
   const std::size_t rounds = settings.prediction ? settings.rounds : kRoundsWithoutPrediction;
   for (std::size_t round = 0; round < rounds && !active_.empty(); ++round) {
-    for (const std::uint32_t c : active_) entries.ask_next(columns_[c].slot, samples);
-    entries.look();
+    for (const std::uint32_t c : active_) entries.request_next(columns_[c].slot, samples);
+    entries.resolve();
     tally_.rounds += active_.size();
     still_active_.clear();
     if (settings.prediction) {

@@ -10,7 +10,7 @@
 #include "methods/common/visibility_predictors.h"
 #include "methods/sampling_recovery/calibration.h"
 #include "methods/sampling_recovery/settings.h"
-#include "methods/sampling_recovery/slice_entries.h"
+#include "methods/slice_cuts/slice_entries.h"
 
 namespace lumirank::methods {
 

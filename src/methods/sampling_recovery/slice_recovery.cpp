@@ -4,19 +4,15 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/timer.h"
-
 namespace lumirank::methods {
 
 using linalg::Entry;
 using matrix::Index;
 
 RecoveryTally& RecoveryTally::operator+=(const RecoveryTally& o) {
-  for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k] += o.seconds[k];
-  slices += o.slices, rows += o.rows, columns += o.columns;
-  columns_most = std::max(columns_most, o.columns_most);
-  shades += o.shades, entries += o.entries, sampled += o.sampled, corrected += o.corrected,
-      uncertain += o.uncertain;
+  SliceTally::operator+=(o);
+  seconds_separation += o.seconds_separation, seconds_correction += o.seconds_correction;
+  corrected += o.corrected, uncertain += o.uncertain;
   rank += o.rank, iterations += o.iterations, converged += o.converged;
   converged_after.resize(std::max(converged_after.size(), o.converged_after.size()));
   for (std::size_t k = 0; k < o.converged_after.size(); ++k) converged_after[k] += o.converged_after[k];
@@ -30,55 +26,12 @@ namespace {
 bool guessed(Entry e) { return e == Entry::predicted_visible || e == Entry::predicted_hidden; }
 }  // namespace
 
-// Splitting asks for a cluster's greatest contribution alone, which few rows tell as well as all. What they
-// know of columns is of no use to the others, so it is left behind; without redrawing it would be the columns
-// themselves.
-void SliceRecovery::choose_columns(std::uint64_t key) {
-  const SliceRows& rows = entries_.rows();
-  const std::size_t scouts = settings_.scouts;
-  const bool few = scouts > 0 && scouts < rows.size() && settings_.splitting && settings_.redraw;
-  scouted_ = few;
-  if (few) {
-    scout_receivers_.clear();
-    for (std::size_t k = 0; k < scouts; ++k) {
-      const std::size_t row = k * rows.size() / scouts;
-      for (std::uint32_t r = rows.begin(row); r < rows.end(row); ++r)
-        scout_receivers_.push_back(rows.receivers()[r]);
-    }
-    scouts_->start(scout_receivers_, key);
-    // As many samples of a column as of the whole slice's rows.
-    RecoverySettings settings = settings_;
-    settings.rho =
-        std::min(1.0, settings.rho * static_cast<double>(rows.size()) / static_cast<double>(scouts));
-    cut_->choose(settings, *scouts_);
-  } else {
-    cut_->choose(settings_, entries_);
-  }
-  reduced_.clear();
-  for (const SliceCut::Cluster& c : cut_->clusters())
-    reduced_.push_back({few ? SliceCut::kNoSlot : c.slot, c.column});
-}
-
-// The columns that splitting has not evaluated, where their shading is asked for.
-void SliceRecovery::evaluate() {
-  if (settings_.visibility == RecoverySettings::Visibility::traced) return;
-  for (ReducedColumn& c : reduced_)
-    if (c.slot == SliceCut::kNoSlot) c.slot = static_cast<std::uint32_t>(entries_.add(c.column));
-}
-
-void SliceRecovery::trace() {
-  const std::size_t rows = entries_.rows().size();
-  visibility_.resize(rows * clusters().size());
-  for (std::size_t c = 0; c < clusters().size(); ++c)
-    entries_.trace(clusters()[c].column.column, std::span(visibility_).subspan(c * rows, rows));
-}
-
 // The scalar reduced matrix, as if all were visible.
 void SliceRecovery::assemble() {
-  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const std::size_t rows = entries().rows().size(), columns = clusters().size();
   e_.resize(rows * columns);
   for (std::size_t c = 0; c < columns; ++c) {
-    const auto scalars = entries_.scalars(clusters()[c].slot);
+    const auto scalars = entries().scalars(clusters()[c].slot);
     const float scale = mean(clusters()[c].column.scale);
     float* const out = &e_[c * rows];
     for (std::size_t i = 0; i < rows; ++i) out[i] = scale * scalars[i];
@@ -95,14 +48,14 @@ void SliceRecovery::choose_separated() {
 void SliceRecovery::separate() {
   if (!settings_.separation) return;
   choose_separated();
-  const std::size_t rows = entries_.rows().size(), columns = separated_.size();
+  const std::size_t rows = entries().rows().size(), columns = separated_.size();
   const bool shading = settings_.separated == RecoverySettings::Separated::shading;
   d_.resize(rows * columns);
   whole_.resize(rows * columns);
   separated_state_.resize(rows * columns);
   for (std::size_t k = 0; k < columns; ++k) {
     const std::size_t c = separated_[k];
-    const auto known = entries_.seen(clusters()[c].slot);
+    const auto known = slice_.entries().seen(clusters()[c].slot);
     const Entry* const state = &state_[c * rows];
     const float* const e = &e_[c * rows];
     for (std::size_t i = 0; i < rows; ++i) {
@@ -116,11 +69,15 @@ void SliceRecovery::separate() {
     }
   }
   linalg::SeparationSettings s;
-  s.most_rank = settings_.rank;
+  s.max_rank = settings_.rank;
   s.iterations = settings_.iterations;
   s.constraint = settings_.constraint;
   s.fit = settings_.fit;
   separation_.run({rows, columns, d_, separated_state_, whole_}, s);
+  tally_separation();
+}
+
+void SliceRecovery::tally_separation() {
   tally_.rank += separation_.rank();
   tally_.iterations += separation_.iterations();
   tally_.converged += separation_.converged() ? 1 : 0;
@@ -134,9 +91,9 @@ void SliceRecovery::separate() {
 }
 
 // Entries whose neighbourhood is full of errors that the separation found (section 6.2).
-void SliceRecovery::ask_where_dense() {
+void SliceRecovery::request_where_dense() {
   if (!settings_.separation || !settings_.correction) return;
-  const std::size_t rows = entries_.rows().size(), columns = separated_.size();
+  const std::size_t rows = entries().rows().size(), columns = separated_.size();
   // Z ≠ 0, up to the rounding of equation 12: an error is all of an entry or nothing, so it counts from half
   // of one on. (What the soft threshold leaves of small differences would make five times as many entries
   // dense.)
@@ -155,14 +112,14 @@ void SliceRecovery::ask_where_dense() {
   for (std::size_t k = 0; k < columns; ++k) {
     const float* const dense = &density[k * rows];
     for (std::size_t i = 0; i < rows; ++i) chosen_[i] = dense[i] > least ? 1 : 0;
-    ask_chosen(separated_[k]);
+    request_chosen(separated_[k]);
   }
 }
 
 // Where a guess may cost much: it is expected to be wrong by 2p(1 − p)E.
-void SliceRecovery::ask_where_uncertain() {
+void SliceRecovery::request_where_uncertain() {
   if (!settings_.prediction || settings_.uncertain <= 0) return;
-  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const std::size_t rows = entries().rows().size(), columns = clusters().size();
   const auto p = prediction_.probabilities();
   row_sums_.assign(rows, 0.0f);
   for (std::size_t c = 0; c < columns; ++c)
@@ -172,12 +129,12 @@ void SliceRecovery::ask_where_uncertain() {
   for (std::size_t c = 0; c < columns; ++c) {
     const float *const pc = &p[c * rows], *const e = &e_[c * rows], *const sums = row_sums_.data();
     for (std::size_t i = 0; i < rows; ++i) chosen_[i] = pc[i] * (1 - pc[i]) * e[i] > sums[i] ? 1 : 0;
-    ask_chosen(c);
+    request_chosen(c);
   }
 }
 
 // Those of a column's guesses that are chosen_.
-void SliceRecovery::ask_chosen(std::size_t c) {
+void SliceRecovery::request_chosen(std::size_t c) {
   const std::size_t rows = chosen_.size();
   const std::uint8_t* const first = chosen_.data();
   const auto from = [&](std::size_t i) {
@@ -186,26 +143,26 @@ void SliceRecovery::ask_chosen(std::size_t c) {
   };
   for (std::size_t i = from(0); i < rows; i = from(i + 1)) {
     const std::size_t at = c * rows + i;
-    if (guessed(state_[at]) && entries_.ask(clusters()[c].slot, i))
-      asked_.push_back(static_cast<std::uint32_t>(at));
+    if (guessed(state_[at]) && slice_.entries().request(clusters()[c].slot, i))
+      requested_.push_back(static_cast<std::uint32_t>(at));
   }
 }
 
-void SliceRecovery::look() {
-  entries_.look();
-  for (const std::uint32_t at : asked_) state_[at] = Entry::exact;
-  asked_.clear();
+void SliceRecovery::resolve() {
+  slice_.entries().resolve();
+  for (const std::uint32_t at : requested_) state_[at] = Entry::exact;
+  requested_.clear();
 }
 
 // What is known, and for the rest L/E; without separation the prediction.
 void SliceRecovery::recover_visibility() {
-  const std::size_t rows = entries_.rows().size(), columns = clusters().size();
+  const std::size_t rows = entries().rows().size(), columns = clusters().size();
   const bool drawn = !settings_.separation && settings_.draw != RecoverySettings::Draw::mean;
   visibility_.resize(rows * columns);
   const auto p = prediction_.probabilities();
   std::size_t next = 0;  // of those that were separated
   for (std::size_t c = 0; c < columns; ++c) {
-    const auto known = entries_.seen(clusters()[c].slot);
+    const auto known = slice_.entries().seen(clusters()[c].slot);
     const std::size_t begin = c * rows;
     const Entry* const state = &state_[begin];
     const float* const predicted = &p[begin];
@@ -229,84 +186,31 @@ void SliceRecovery::recover_visibility() {
   }
 }
 
-// Every receiver gets its own unoccluded contributions times its row's visibility.
-void SliceRecovery::gather(std::span<Rgb> sums) {
-  const SliceRows& rows = entries_.rows();
-  gathered_.assign(rows.receivers().size(), Rgb(0));
-  columns_.clear();
-  for (const ReducedColumn& c : clusters()) columns_.push_back(c.column);
-  entries_.add_to(gathered_, columns_, visibility_);
-  for (std::size_t k = 0; k < gathered_.size(); ++k) sums[rows.receivers()[k]] = gathered_[k];
-}
-
-class SliceRecovery::Steps {
- public:
-  explicit Steps(RecoveryTally& tally) : tally_(tally) {}
-  void done(std::size_t step) {
-    const double now = timer_.seconds();
-    tally_.seconds[step] += now - last_;
-    last_ = now;
-  }
-
- private:
-  RecoveryTally& tally_;
-  const ThreadTimer timer_;
-  double last_ = 0;
-};
-
-void SliceRecovery::run(std::span<const Index> slice, std::uint64_t key, std::span<Rgb> sums) {
-  Steps steps(tally_);
-  entries_.start(slice, key);
-  choose_columns(key);
-  evaluate();
-  steps.done(1);
-  tally_.seconds[0] += cut_->seconds_of_bounds();
-  tally_.seconds[1] -= cut_->seconds_of_bounds();
-  recover(steps, key, sums);
-}
-
-void SliceRecovery::run(std::span<const Index> slice, std::span<const matrix::ScaledColumn> columns,
-                        std::uint64_t key, std::span<Rgb> sums) {
-  Steps steps(tally_);
-  entries_.start(slice, key);
-  scouted_ = false;
-  reduced_.clear();
-  for (const matrix::ScaledColumn& c : columns) reduced_.push_back({SliceCut::kNoSlot, c});
-  evaluate();
-  steps.done(1);
-  recover(steps, key, sums);
-}
-
-void SliceRecovery::recover(Steps& steps, std::uint64_t key, std::span<Rgb> sums) {
-  if (settings_.visibility == RecoverySettings::Visibility::traced) {
-    trace();
-    steps.done(2);
-  } else {
-    assemble();
-    state_.resize(e_.size());
-    prediction_.run(settings_, clusters(), e_, key, entries_, state_);
-    ask_where_uncertain();
-    tally_.uncertain += asked_.size();
-    look();
-    tally_.prediction += prediction_.tally();
-    steps.done(2);
-    separate();
-    steps.done(3);
-    ask_where_dense();
-    tally_.corrected += asked_.size();
-    look();
-    steps.done(4);
-    recover_visibility();
-  }
-  gather(sums);
-  steps.done(5);
-  ++tally_.slices;
-  tally_.rows += entries_.rows().size();
-  tally_.columns += clusters().size();
-  tally_.columns_most = std::max<std::uint64_t>(tally_.columns_most, clusters().size());
-  tally_.shades += clusters().size() * entries_.rows().receivers().size();
-  tally_.entries += entries_.rows().size() * clusters().size();
-  tally_.sampled += entries_.looked() + (scouted_ ? scouts_->looked() : 0);
+void SliceRecovery::run(const RecoverySettings& settings, std::span<const Index> slice, std::uint64_t key,
+                        std::span<Rgb> sums) {
+  settings_ = settings;
+  StepTimer timer;
+  slice_.choose(settings_, slice, key);
+  slice_.evaluate();
+  tally_.add_choice(timer.step(), slice_.cut());
+  assemble();
+  state_.resize(e_.size());
+  prediction_.run(settings_, clusters(), e_, key, slice_.entries(), state_);
+  request_where_uncertain();
+  tally_.uncertain += requested_.size();
+  resolve();
+  tally_.prediction += prediction_.tally();
+  tally_.seconds_visibility += timer.step();
+  separate();
+  tally_.seconds_separation += timer.step();
+  request_where_dense();
+  tally_.corrected += requested_.size();
+  resolve();
+  tally_.seconds_correction += timer.step();
+  recover_visibility();
+  slice_.gather(visibility_, sums);
+  tally_.seconds_gather += timer.step();
+  tally_.add(slice_);
 }
 
 }  // namespace lumirank::methods

@@ -33,7 +33,7 @@ struct StochasticSettings {
 const Fields<StochasticSettings> kStochasticFields{
     count_field<StochasticSettings>(
         {"nodes", "nodes", "Of a receiver's cut at most, and columns drawn; time is in proportion."},
-        &StochasticSettings::nodes, 1, kMostColumns),
+        &StochasticSettings::nodes, 1, kMaxColumns),
     number_field<StochasticSettings>(
         {"error-bound", "",
          "A node is split while its bound exceeds this share of the receiver's total. 0: until the cut is "
@@ -41,7 +41,7 @@ const Fields<StochasticSettings> kStochasticFields{
         &StochasticSettings::error_bound, 0, 1),
     count_field<StochasticSettings>(
         {"pilot", "columns", "By which the total is estimated beforehand, where an error bound needs it."},
-        &StochasticSettings::pilot, 1, kMostColumns)};
+        &StochasticSettings::pilot, 1, kMaxColumns)};
 
 // Receivers whose entries are asked for together: neighbours.
 constexpr std::size_t kRowsTogether = 16;
@@ -57,7 +57,7 @@ struct WalkWorkspace {
   std::vector<Index> rows, columns;
   std::vector<Rgb> entries;
   std::vector<float> limits;
-  std::uint64_t nodes = 0, most_nodes = 0, evaluated = 0;
+  std::uint64_t nodes = 0, max_nodes = 0, evaluated = 0;
   double seconds_cuts = 0, seconds_entries = 0;
 };
 
@@ -77,11 +77,11 @@ class StochasticLightcuts final : public Method {
     auto& numbers = estimate.trace.numbers;
     {
       WorkspacePool<WalkWorkspace> pool([&] { return std::make_unique<WalkWorkspace>(matrix, tree); });
-      const UnitRows units = stretches(matrix.rows());
+      const RowGroups units = stretches(matrix.rows());
       TurnMethod method{.entries_per_row = static_cast<double>(settings_.nodes)};
       if (settings_.error_bound == 0)
         method.exact_from = static_cast<double>(tree.leaves()) / static_cast<double>(settings_.nodes);
-      const UnitResult pass =
+      const RowGroupResult pass =
           run_in_turns(turns, units, {options, timer, 0, "columns"}, method, estimate.sums, pool,
                        [&](std::size_t unit, WalkWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
                          sum_rows(units[unit], options.seed, turn, w, sums);
@@ -98,7 +98,7 @@ class StochasticLightcuts final : public Method {
   }
 
  private:
-  static UnitRows stretches(std::size_t rows) {
+  static RowGroups stretches(std::size_t rows) {
     std::vector<Index> all(rows);
     std::iota(all.begin(), all.end(), 0u);
     std::vector<std::uint32_t> first;
@@ -138,7 +138,7 @@ class StochasticLightcuts final : public Method {
       w.rows.resize(w.drawn.size(), rows[r]);
       if (stream % 2 == 0) {
         w.nodes += w.walk.size();
-        w.most_nodes = std::max<std::uint64_t>(w.most_nodes, w.walk.size());
+        w.max_nodes = std::max<std::uint64_t>(w.max_nodes, w.walk.size());
       }
     }
     for (const DrawnColumn& d : w.drawn) w.columns.push_back(d.column);
@@ -163,7 +163,7 @@ class StochasticLightcuts final : public Method {
     const auto rows = std::max(1.0, static_cast<double>(matrix.rows()));
     double nodes = 0, most = 0, bounds = 0, entries = 0;
     pool.for_each([&](const WalkWorkspace& w) {
-      nodes += static_cast<double>(w.nodes), most = std::max(most, static_cast<double>(w.most_nodes));
+      nodes += static_cast<double>(w.nodes), most = std::max(most, static_cast<double>(w.max_nodes));
       bounds += static_cast<double>(w.walk.bounds_computed()), entries += static_cast<double>(w.evaluated);
       numbers["cpu_seconds.cuts"] += w.seconds_cuts;
       numbers["cpu_seconds.entries"] += w.seconds_entries;

@@ -36,7 +36,7 @@ class RareBits {
 
 // The lowest `size` bits of the last of some words, all of the others.
 Word used_bits(std::size_t word, std::size_t size) {
-  const std::size_t bits = linalg::BooleanBasis::kBits, from = word * bits;
+  const std::size_t bits = 64, from = word * bits;
   return size - from >= bits ? ~Word{0} : (Word{1} << (size - from)) - 1;
 }
 
@@ -55,7 +55,7 @@ void Completion::set(std::size_t row, std::size_t column, bool seen) {
   word = seen ? word | bit : word & ~bit;
 }
 
-void Completion::look(const Slice& slice) {
+void Completion::resolve(const Slice& slice) {
   // Rays of a packet share a light.
   starts_.assign(slice.columns.size() + 1, 0);
   for (const Wanted& w : wanted_) ++starts_[w.column + 1];
@@ -76,15 +76,15 @@ void Completion::look(const Slice& slice) {
     counts_.wrong += w.check && seen != visible(w.row, w.column);
     set(w.row, w.column, seen);
   }
-  counts_.looked_at += sorted_.size();
+  counts_.sampled += sorted_.size();
 }
 
-void Completion::complete_refined(const Slice& slice, const CompletionSettings& settings) {
+void Completion::complete(const Slice& slice, const CompletionSettings& settings) {
   start(slice);
   levels_.build(slice.points, settings.spacing, slice.key);
   for (const std::uint32_t row : levels_.coarsest())
     for (std::size_t column = 0; column < slice.columns.size(); ++column) request(row, column, false);
-  look(slice);
+  resolve(slice);
   const RareBits check(settings.checks);
   for (std::size_t l = 0; l < levels_.levels(); ++l) {
     wanted_.clear();
@@ -103,81 +103,8 @@ void Completion::complete_refined(const Slice& slice, const CompletionSettings& 
           request(step.point, w * kBits + bit, (checked >> bit) & 1u);
         }
       }
-    look(slice);
+    resolve(slice);
   }
-}
-
-void Completion::complete_boolean(const Slice& slice, const CompletionSettings& settings) {
-  start(slice);
-  basis_.clear(slice.rows.size());
-  known_.resize(basis_.words()), value_.resize(basis_.words()), sum_.resize(basis_.words());
-  for (std::size_t column = 0; column < slice.columns.size(); ++column)
-    if (!complete_column(slice, settings, column)) look_at_column(slice, column);
-}
-
-bool Completion::complete_column(const Slice& slice, const CompletionSettings& settings, std::size_t column) {
-  const std::size_t rows = slice.rows.size();
-  const auto samples = static_cast<std::size_t>(std::ceil(settings.rate * static_cast<double>(rows)));
-  const auto checks = static_cast<std::size_t>(std::ceil(settings.checks * static_cast<double>(rows)));
-  if (basis_.rank() == 0 || 2 * (samples + checks) >= rows) return false;
-  Rng rng(slice.key, Stage::method, column);
-  std::fill(known_.begin(), known_.end(), Word{0});
-  std::fill(value_.begin(), value_.end(), Word{0});
-  // Half of them where a vector shows itself, as in the paper.
-  const auto pivots = basis_.pivots();
-  std::size_t pivots_left = std::min(pivots.size(), samples / 2);
-  chosen_.clear();
-  const auto choose = [&](std::size_t row) {
-    Word& word = known_[row / kBits];
-    const Word bit = Word{1} << (row % kBits);
-    if ((word & bit) != 0) return false;
-    word |= bit;
-    chosen_.push_back(static_cast<std::uint32_t>(row));
-    return true;
-  };
-  for (std::size_t k = 0; k < pivots.size() && pivots_left > 0; ++k)
-    if (rng.next_below(pivots.size() - k) < pivots_left) --pivots_left, choose(pivots[k]);
-  while (chosen_.size() < samples) choose(rng.next_below(rows));
-  look_at_rows(slice, column);
-  if (basis_.complete(known_, value_, sum_) > 0) return false;
-  chosen_.clear();
-  while (chosen_.size() < checks) choose(rng.next_below(rows));
-  look_at_rows(slice, column);
-  counts_.checks += checks;
-  for (const std::uint32_t row : chosen_) {
-    const Word bit = Word{1} << (row % kBits);
-    if (((sum_[row / kBits] ^ value_[row / kBits]) & bit) == 0) continue;
-    ++counts_.wrong;
-    return false;
-  }
-  for (std::size_t row = 0; row < rows; ++row)
-    if ((sum_[row / kBits] >> (row % kBits)) & 1u) set(row, column, true);
-  return true;
-}
-
-void Completion::look_at_rows(const Slice& slice, std::size_t column) {
-  rows_.clear();
-  for (const std::uint32_t row : chosen_) rows_.push_back(slice.rows[row]);
-  columns_.assign(rows_.size(), slice.columns[column]);
-  seen_.resize(rows_.size());
-  reader_.entries(rows_, columns_, seen_, matrix::Part::visibility);
-  for (std::size_t k = 0; k < chosen_.size(); ++k)
-    if (seen_[k].r > 0) value_[chosen_[k] / kBits] |= Word{1} << (chosen_[k] % kBits);
-  counts_.looked_at += chosen_.size();
-}
-
-void Completion::look_at_column(const Slice& slice, std::size_t column) {
-  seen_.resize(slice.rows.size());
-  reader_.column(slice.columns[column], seen_, matrix::Part::visibility);
-  std::fill(value_.begin(), value_.end(), Word{0});
-  for (std::size_t row = 0; row < seen_.size(); ++row)
-    if (seen_[row].r > 0) {
-      value_[row / kBits] |= Word{1} << (row % kBits);
-      set(row, column, true);
-    }
-  basis_.add(value_);
-  counts_.looked_at += slice.rows.size();
-  ++counts_.whole_columns;
 }
 
 }  // namespace lumirank::methods

@@ -12,32 +12,20 @@ namespace lumirank::methods {
 
 namespace {
 
-enum class CompletionWay { refined, boolean };
-
 struct Settings : SliceLightSettings, CompletionSettings {
   // A fifth of the rays per column, so twice as many of them.
   Settings() { columns = 600; }
-  CompletionWay completion = CompletionWay::refined;
 };
 
 const Fields<Settings>& fields() {
   static const Fields<Settings> all = with_slice_light_fields<Settings>(
-      {choice_field<Settings>({"completion", "",
-                               "refined: from coarse to fine receivers, looking where coarser neighbours "
-                               "differ; boolean: columns "
-                               "as sums modulo 2 of columns that are known, the paper's."},
-                              &Settings::completion, {"refined", "boolean"}),
-       count_field<Settings>(
-           {"spacing", "receivers",
-            "refined: one of so many receivers of a slice is looked at from all its columns."},
-           &Settings::spacing, 1, kMostRows),
+      {count_field<Settings>(
+           {"spacing", "receivers", "One of so many receivers of a slice is tested against all its columns."},
+           &Settings::spacing, 1, kMaxRows),
        number_field<Settings>(
            {"checks", "",
-            "refined: share of the entries on which neighbours agree that gets a shadow ray all the same; "
-            "boolean: share of a column's rows by which its completion is checked."},
-           &Settings::checks, 0, 1),
-       number_field<Settings>({"rate", "", "boolean: share of a column's rows by which it is completed."},
-                              &Settings::rate, 0, 1)});
+            "Share of the entries on which neighbours agree that gets a shadow ray all the same."},
+           &Settings::checks, 0, 1)});
   return all;
 }
 
@@ -74,18 +62,16 @@ class VisibilityCompletion final : public Method {
     double visibility = 0, shading = 0;
     pool.for_each([&](const CompletionWorkspace& w) {
       const Completion::Counts& c = w.completion.counts();
-      all.entries += c.entries, all.looked_at += c.looked_at, all.checks += c.checks, all.wrong += c.wrong;
-      all.whole_columns += c.whole_columns;
+      all.entries += c.entries, all.sampled += c.sampled, all.checks += c.checks, all.wrong += c.wrong;
       visibility += w.seconds_visibility, shading += w.seconds_shading;
     });
     auto& numbers = estimate.trace.numbers;
     const auto ratio = [](std::uint64_t a, std::uint64_t b) {
       return b > 0 ? static_cast<double>(a) / static_cast<double>(b) : 0.0;
     };
-    numbers["completion.looked_at"] = ratio(all.looked_at, all.entries);
+    numbers["completion.sampled"] = ratio(all.sampled, all.entries);
     numbers["completion.checks"] = ratio(all.checks, all.entries);
     numbers["completion.wrong_checks"] = ratio(all.wrong, all.checks);
-    numbers["completion.whole_columns"] = static_cast<double>(all.whole_columns);
     numbers["cpu_seconds.visibility"] = visibility;
     numbers["cpu_seconds.shading"] = shading;
     return estimate;
@@ -97,16 +83,12 @@ class VisibilityCompletion final : public Method {
     const Timer timer;
     const auto rows = lights.slices().slice(s);
     w.reader->set_rows(rows);
-    // Bright ones first: those are looked at whole and stand for others.
     const auto& chosen = w.lights.chosen;
     w.points.clear(), w.columns.clear();
     for (const matrix::Index i : rows) w.points.push_back(points[i]);
     for (const matrix::ScaledColumn& c : chosen) w.columns.push_back(c.column);
     const Completion::Slice slice{rows, w.points, w.columns, hash_ids(seed, Stage::method, 2, s)};
-    if (settings_.completion == CompletionWay::boolean)
-      w.completion.complete_boolean(slice, settings_);
-    else
-      w.completion.complete_refined(slice, settings_);
+    w.completion.complete(slice, settings_);
     const double seen = timer.seconds();
     w.seconds_visibility += seen;
     shade(chosen, rows, w, sums);
@@ -132,12 +114,12 @@ class VisibilityCompletion final : public Method {
       }
       w.entries.resize(rows.size());
       w.reader->column(chosen[k].column, w.entries, matrix::Part::unoccluded);
-      for (const std::uint32_t a : w.seen) sums[rows[a]] += w.lights.shown(chosen[k], w.entries[a]);
+      for (const std::uint32_t a : w.seen) sums[rows[a]] += w.lights.added(chosen[k], w.entries[a]);
     }
     w.entries.resize(w.places.size());
     w.reader->entries(w.list_rows, w.list_columns, w.entries, matrix::Part::unoccluded);
     for (std::size_t p = 0; p < w.places.size(); ++p)
-      sums[rows[w.places[p].row]] += w.lights.shown(chosen[w.places[p].column], w.entries[p]);
+      sums[rows[w.places[p].row]] += w.lights.added(chosen[w.places[p].column], w.entries[p]);
   }
 
   Settings settings_;

@@ -11,11 +11,11 @@ namespace lumirank::methods {
 
 // Whole numbers, so that their sums do not depend on the order of the threads.
 struct CutCosts {
-  double cuts = 0, nodes = 0, most_nodes = 0;  // nodes: or pairs of nodes
+  double cuts = 0, nodes = 0, max_nodes = 0;  // nodes: or pairs of nodes
   double bounds = 0, entries = 0;
 
   void add(const CutCosts& o) {
-    cuts += o.cuts, nodes += o.nodes, most_nodes = std::max(most_nodes, o.most_nodes);
+    cuts += o.cuts, nodes += o.nodes, max_nodes = std::max(max_nodes, o.max_nodes);
     bounds += o.bounds, entries += o.entries;
   }
   // `nodes_key`: what the mean size of a cut is called.
@@ -25,7 +25,7 @@ struct CutCosts {
     const auto rows = static_cast<double>(matrix.rows()), columns = static_cast<double>(matrix.columns());
     numbers["rows"] = 0;
     numbers["columns"] = per(entries, rows);
-    numbers["columns_max"] = most_nodes;
+    numbers["columns_max"] = max_nodes;
     numbers["cuts"] = cuts;
     numbers[nodes_key] = per(nodes, cuts);
     numbers["bounds"] = per(bounds, rows);

@@ -10,15 +10,15 @@ namespace {
 
 using matrix::Index;
 
-constexpr std::size_t kLeastSliceRows = 128,
-                      kMostRowsFound = 4096;  // of a slice, where their number is found
+constexpr std::size_t kMinSliceRows = 128,
+                      kMaxRowsFound = 4096;  // of a slice, where their number is found
 
 constexpr double kPlanned = 0.6;  // of the time: the rest is for what clusters cost beyond a guess
 
 // Reading a row costs an entry per column, rendering a slice's columns `columns` per row.
 std::size_t slice_rows(const SliceLightSettings& settings, std::size_t columns) {
   if (settings.slice_rows > 0) return settings.slice_rows;
-  return std::clamp(columns / std::max<std::size_t>(settings.columns, 1), kLeastSliceRows, kMostRowsFound);
+  return std::clamp(columns / std::max<std::size_t>(settings.columns, 1), kMinSliceRows, kMaxRowsFound);
 }
 
 // Seconds of a row: the fastest of three spread over the matrix, since the first warms caches.

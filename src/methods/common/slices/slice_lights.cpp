@@ -18,8 +18,8 @@ using matrix::ScaledColumn;
 namespace {
 
 constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
-constexpr float kLeastEntry = 1e-17f;        // its square is a number still
-constexpr float kNoSliceColour = 1e-3f;      // of the scalar norm: no colour to scale
+constexpr float kMinEntry = 1e-17f;          // its square is a number still
+constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no colour to scale
 constexpr float kLargestSliceGain = 4;       // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
@@ -33,17 +33,17 @@ const Fields<SliceLightSettings>& slice_light_fields() {
   using S = SliceLightSettings;
   static const Fields<S> fields{
       count_field<S>({"columns", "columns",
-                      "Columns of a slice: clusters, each with one that stands for it. Costs one entry per "
+                      "Columns of a slice: clusters, each with one representative. Costs one entry per "
                       "receiver each; as many as there are columns is exact."},
-                     &S::columns, 1, kMostColumns),
+                     &S::columns, 1, kMaxColumns),
       count_field<S>({"slice-rows", "rows",
                       "Receivers of a slice, at most; 0: as many as cost a slice's columns as much as its "
                       "row, one entry per column."},
-                     &S::slice_rows, 0, kMostRows),
+                     &S::slice_rows, 0, kMaxRows),
       count_field<S>({"initial-clusters", "clusters",
                       "Of all columns by the rows of all slices, before slices split them further; 0: three "
                       "tenths of `columns`."},
-                     &S::initial_clusters, 0, kMostColumns),
+                     &S::initial_clusters, 0, kMaxColumns),
       count_field<S>({"neighbours", "slices",
                       "Slices by whose rows one splits its clusters: the nearest, itself among them. Time of "
                       "the clustering is in proportion."},
@@ -51,27 +51,27 @@ const Fields<SliceLightSettings>& slice_light_fields() {
       count_field<S>({"projection", "dimensions",
                       "Dimensions to which columns are projected for the clusters of all slices; 0: none."},
                      &S::projection, 0, 1000),
-      choice_field<S>({"colour", "",
-                       "averaged: who stands for a cluster gets its total colour; scalar: one factor for all "
-                       "channels (unbiased)."},
-                      &S::colour, {"averaged", "scalar"}),
+      choice_field<S>(
+          {"color", "",
+           "averaged: the representative gets its cluster's total color; scalar: one factor for all "
+           "channels (unbiased)."},
+          &S::color, {"averaged", "scalar"}),
       choice_field<S>({"zero-columns", "",
-                       "Columns that are zero on all rows that a slice looks at. sample: a few drawn by "
+                       "Columns that are zero on all rows that a slice reads. sample: a few drawn by "
                        "power, unbiased; ignore: taken as zero in the slice (biased, less noise)."},
                       &S::zero_columns, {"sample", "ignore"}),
       number_field<S>(
           {"zero-share", "of columns", "How many of them are drawn, as a share of `columns`; at least one."},
           &S::zero_share, 0, 1),
       number_field<S>({"global-share", "",
-                       "Share of the choice of who stands for a cluster that goes by the rows of all slices "
+                       "Share of the choice of representatives that goes by the rows of all slices "
                        "instead of by the slice's own few."},
                       &S::global_share, 0, 1),
-      number_field<S>(
-          {"most-shown", "of the sum",
-           "A column that stands for others may not add more to a receiver than this share of the "
-           "greatest sum among the rows that its slice looks at. Keeps specks away, and takes light "
-           "from receivers that are much brighter than those; 0: no bound, unbiased."},
-          &S::most_shown, 0, 1e9)};
+      number_field<S>({"max-sum-share", "of the sum",
+                       "A representative may not add more to a receiver than this share of the "
+                       "greatest sum among the rows that its slice reads. Keeps specks away, and takes light "
+                       "from receivers that are much brighter than those; 0: no bound, unbiased."},
+                      &S::max_sum_share, 0, 1e9)};
   return fields;
 }
 
@@ -83,8 +83,7 @@ SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions&
       seed_(options.seed),
       turn_seed_(options.seed),
       slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),
-      exploration_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection),
-                   options.seed),
+      reduced_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection), options.seed),
       rows_(slices_.count(), matrix.columns()) {
   const double begin = clock.seconds();
   const bool all = read_rows(options, clock, row_sum);
@@ -113,12 +112,12 @@ bool SliceLights::read_rows(const RunOptions& options, const RunClock& clock, st
       Rng rng(seed_, Stage::method, 1, s);
       const double share = static_cast<double>(slice.size()) * static_cast<double>(slices_.count()) /
                            static_cast<double>(matrix_.rows());
-      exploration_.read({slice[rng.next_below(slice.size())], static_cast<float>(std::sqrt(share))}, values);
+      reduced_.read({slice[rng.next_below(slice.size())], static_cast<float>(std::sqrt(share))}, values);
       parallel_for(values.size(), kSliceStretch, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j) scalars[j] = norm2(values[j]);
       });
       rows_.set(s, scalars);
-      last = exploration_.known().rows().back().sum;
+      last = reduced_.known().rows().back().sum;
       options.sinks.report("rows", static_cast<double>(s + 1) / static_cast<double>(slices_.count()));
     }
     for (const Index i : slice) row_sum[i] = last;
@@ -160,9 +159,8 @@ void SliceLights::find_neighbours() {
 }
 
 void SliceLights::cluster() {
-  RowColumnSettings settings;
-  settings.projection = settings_.projection;
-  const ColumnsKnown columns(matrix_, exploration_, settings, seed_);
+  const ClusterSettings settings;
+  const ColumnClusters columns(matrix_, reduced_, settings, seed_);
   const std::size_t clusters = settings_.initial_clusters > 0
                                    ? std::min(settings_.initial_clusters, settings_.columns)
                                    : std::max<std::size_t>(settings_.columns * 3 / 10, 1);
@@ -170,7 +168,7 @@ void SliceLights::cluster() {
     initial_ = columns.cluster(clusters, linalg::ClusteringAlgorithm::combined).partition();
   dark_.assign(columns.zero().begin(), columns.zero().end());
   rows_.permute(initial_.order);
-  const linalg::ColumnSketch& sketch = exploration_.sketch();
+  const linalg::ColumnSketch& sketch = reduced_.sketch();
   norms_.resize(matrix_.columns());
   parallel_for(norms_.size(), kSliceStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
@@ -203,7 +201,7 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
         w.point[r] = w.entries[r * kSliceStretch + k] / static_cast<float>(r + 1);
         most = std::max(most, w.point[r]);
       }
-      if (most > kLeastEntry)
+      if (most > kMinEntry)
         w.splitter.add(initial_.order[begin + k], w.point.data());
       else
         w.zero.push_back(initial_.order[begin + k]);
@@ -241,10 +239,10 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
   }
   const auto factor = static_cast<float>(s / static_cast<double>(w.chance[chosen]));
   ScaledColumn column{members[chosen], Rgb(factor)};
-  if (settings_.colour == ColourMode::averaged)
+  if (settings_.color == ColorMode::averaged)
     for (std::size_t c = 0; c < 3; ++c) {
       const float own = norms_[members[chosen]].channel[c];
-      if (own > kNoSliceColour)
+      if (own > kNoSliceColor)
         column.scale[static_cast<int>(c)] *=
             std::min(static_cast<float>(channels[c] / energy) / own, kLargestSliceGain);
     }
@@ -252,7 +250,7 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
 }
 
 void SliceLights::set_turn(std::size_t columns, std::uint64_t turn) {
-  settings_.columns = std::max(columns, least_columns());
+  settings_.columns = std::max(columns, min_columns());
   turn_seed_ = turn == 0 ? seed_ : hash_ids(seed_, Stage::representatives, turn);
 }
 
@@ -261,7 +259,7 @@ void SliceLights::choose(std::size_t slice, Workspace& w) const {
   float greatest = 0;
   for (std::size_t r = 0; r < neighbour_count_; ++r)
     greatest = std::max(greatest, norm2(known().rows()[neighbours_[slice * neighbour_count_ + r]].sum));
-  w.most_shown = static_cast<float>(settings_.most_shown) * greatest;
+  w.max_added = static_cast<float>(settings_.max_sum_share) * greatest;
   if (settings_.columns >= matrix_.columns()) {
     for (std::size_t j = 0; j < matrix_.columns(); ++j) w.chosen.push_back({static_cast<Index>(j)});
     return;

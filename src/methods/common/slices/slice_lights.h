@@ -1,14 +1,14 @@
-// For every slice of rows its own clusters of columns, each with one column that stands for it (Ou and
+// For every slice of rows its own clusters of columns, each with one representative (Ou and
 // Pellacini 2011, sections 4.2 to 4.4). One row of each slice is read whole. By all of these rows the columns
 // are clustered once, as in row-column sampling; each slice then splits these clusters further, by its own
 // row and those of the slices nearest to it alone.
 //
 // Ours: nearer slices count for more, the k-th as 1/(k + 1), so that twice the paper's eight can be looked
-// at: fewer columns are zero on all of them. The paper draws who stands for a cluster by norms over all rows
+// at: fewer columns are zero on all of them. The paper draws representatives by norms over all rows
 // that were read, and gives it the cluster's whole norm there. Here the norms are those over the slice's own
 // few rows, with a share for the others (global-share), so that a column which is bright elsewhere does not
-// stand for one that is bright here. What one column adds can be
-// bounded where it stands for others (most-shown).
+// represent one that is bright here. What one column adds can be
+// bounded where it represents others (max-sum-share).
 // Cuts are the best of 31 along the line between the two members that differ most; the paper's is the middle.
 #pragma once
 
@@ -20,9 +20,10 @@
 #include "linalg/local_splitter.h"
 #include "linalg/partition.h"
 #include "linalg/short_rows.h"
+#include "methods/common/cluster_settings.h"
 #include "methods/common/reduced_matrix.h"
 #include "methods/common/slices/slices.h"
-#include "methods/row_column/settings.h"
+#include "methods/parameters.h"
 
 namespace lumirank::methods {
 
@@ -32,11 +33,11 @@ struct SliceLightSettings {
   std::size_t neighbours = 16;       // slices by which one is refined, itself among them
   std::size_t slice_rows = 0;        // at most; 0: as many as cost a slice as much as its row
   std::size_t projection = 50;
-  ColourMode colour = ColourMode::averaged;
+  ColorMode color = ColorMode::averaged;
   ZeroColumns zero_columns = ZeroColumns::sample;
   double zero_share = 0.02;
   double global_share = 0.1;
-  double most_shown = 0;
+  double max_sum_share = 0;
 };
 
 const Fields<SliceLightSettings>& slice_light_fields();
@@ -64,11 +65,11 @@ class SliceLights {
   bool ready() const { return ready_; }
   // Columns of a slice, and the least that the clusters of all slices allow.
   std::size_t columns() const { return settings_.columns; }
-  std::size_t least_columns() const { return initial_.clusters() + 1; }
+  std::size_t min_columns() const { return initial_.clusters() + 1; }
   // From now on, but no fewer than those; and what is drawn is another turn's (0 at first).
   void set_turn(std::size_t columns, std::uint64_t turn);
   const Slices& slices() const { return slices_; }
-  const KnownRows& known() const { return exploration_.known(); }
+  const ExactRows& known() const { return reduced_.known(); }
   // Bytes that stay: the rows that were read, at two bytes an entry, and four norms per column.
   std::size_t memory_bytes() const;
   double seconds_rows() const { return seconds_rows_; }
@@ -79,14 +80,14 @@ class SliceLights {
     std::vector<float> entries, point, chance;
     std::vector<matrix::Index> zero;
     std::vector<matrix::ScaledColumn> chosen;
-    // A column that stands for others may not add more than this to a row (2-norm); 0: no bound.
-    float most_shown = 0;
+    // A column that represents others may not add more than this to a row (2-norm); 0: no bound.
+    float max_added = 0;
     // What a chosen column adds where its entry is `entry`.
-    Rgb shown(const matrix::ScaledColumn& column, Rgb entry) const {
+    Rgb added(const matrix::ScaledColumn& column, Rgb entry) const {
       const Rgb scaled = column.scale * entry;
-      if (!(most_shown > 0)) return scaled;
-      const float most = std::max(most_shown, norm2(entry)), is = norm2(scaled);
-      return is > most ? scaled * (most / is) : scaled;
+      if (!(max_added > 0)) return scaled;
+      const float limit = std::max(max_added, norm2(entry)), own = norm2(scaled);
+      return own > limit ? scaled * (limit / own) : scaled;
     }
   };
   // The columns of a slice: at most `columns` of them, into workspace.chosen; all columns where there are no
@@ -105,7 +106,7 @@ class SliceLights {
   SliceLightSettings settings_;
   std::uint64_t seed_, turn_seed_;
   Slices slices_;
-  Exploration exploration_;
+  ReducedMatrix reduced_;
   linalg::ShortRows rows_;  // one per slice, columns in the order of initial_
   linalg::Partition initial_;
   std::vector<matrix::Index> dark_;  // columns that are zero on all rows

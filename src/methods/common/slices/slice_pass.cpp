@@ -45,7 +45,7 @@ Estimate SlicePass::finish() {
   numbers["slices"] = static_cast<double>(lights_.slices().count());
   numbers["rows"] = read;
   numbers["columns"] = rows > 0 ? entries / rows : 0;
-  numbers["columns_max"] = static_cast<double>(costs_.most_columns);
+  numbers["columns_max"] = static_cast<double>(costs_.max_columns);
   numbers["memory.reduced_bytes"] = static_cast<double>(lights_.memory_bytes());
   numbers["sampling_rate"] = rows * columns > 0 ? (entries + read * columns) / (rows * columns) : 1.0;
   turns_.write(estimate_.trace);

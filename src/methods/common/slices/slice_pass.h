@@ -18,7 +18,7 @@ namespace lumirank::methods {
 // Of one thread's slices.
 struct SliceCosts {
   double seconds_clustering = 0, seconds_columns = 0;
-  std::uint64_t entries = 0, most_columns = 0;
+  std::uint64_t entries = 0, max_columns = 0;
 };
 
 // Sums, progress, previews and costs of a run, without what happens in a slice.
@@ -32,7 +32,7 @@ class SlicePass {
   template <typename Workspace, typename Body>
   void run(WorkspacePool<Workspace>& pool, Body&& body) {
     if (!lights_.ready()) return;
-    const UnitRows units(lights_.slices().rows, lights_.slices().first);
+    const RowGroups units(lights_.slices().rows, lights_.slices().first);
     const auto render = [&](std::size_t s, Workspace& w, const Turn&, std::span<Rgb> sums) {
       const Timer timer;
       lights_.choose(s, w.lights);
@@ -40,7 +40,7 @@ class SlicePass {
       body(lights_, s, w, sums);
       const std::size_t columns = w.lights.chosen.size();
       w.costs.entries += columns * lights_.slices().slice(s).size();
-      w.costs.most_columns = std::max<std::uint64_t>(w.costs.most_columns, columns);
+      w.costs.max_columns = std::max<std::uint64_t>(w.costs.max_columns, columns);
       w.costs.seconds_clustering += chosen;
       w.costs.seconds_columns += timer.seconds() - chosen;
     };
@@ -48,7 +48,7 @@ class SlicePass {
     const auto own = static_cast<double>(std::max<std::size_t>(columns, 1));
     TurnMethod method{.entries_per_row = own};
     if (options_.time_seconds > 0) {
-      method.least = std::min(1.0, static_cast<double>(lights_.least_columns()) / own);
+      method.least = std::min(1.0, static_cast<double>(lights_.min_columns()) / own);
       method.exact_from = static_cast<double>(matrix_.columns()) / own;
       method.of_own = own / static_cast<double>(std::max<std::size_t>(given_columns_, 1));
       method.prepare = [&, columns](const Turn& turn) {
@@ -69,7 +69,7 @@ class SlicePass {
       all.seconds_clustering += w.costs.seconds_clustering;
       all.seconds_columns += w.costs.seconds_columns;
       all.entries += w.costs.entries;
-      all.most_columns = std::max(all.most_columns, w.costs.most_columns);
+      all.max_columns = std::max(all.max_columns, w.costs.max_columns);
     });
     return all;
   }
@@ -83,7 +83,7 @@ class SlicePass {
   std::vector<Rgb> row_sums_;  // of slices, where rows have an estimate already
   SliceLights lights_;
   std::size_t given_columns_;
-  UnitResult result_;
+  RowGroupResult result_;
   SliceCosts costs_;
 };
 

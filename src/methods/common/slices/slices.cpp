@@ -98,13 +98,13 @@ SlicePoints::Point SlicePoints::operator[](Index i) const {
   return {p.x, p.y, p.z, n.x, n.y, n.z};
 }
 
-Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::size_t most_rows) {
-  if (most_rows == 0) throw InternalError("make_slices: slices of no rows");
+Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::size_t max_rows) {
+  if (max_rows == 0) throw InternalError("make_slices: slices of no rows");
   Slices slices;
   slices.rows.resize(rows);
   std::iota(slices.rows.begin(), slices.rows.end(), Index{0});
-  // Rounding makes no slice too large: if n ≤ c·most_rows, both ⌊n·a/c⌋ and ⌈n·a/c⌉ are at most a·most_rows.
-  const std::size_t count = (rows + most_rows - 1) / most_rows;
+  // Rounding makes no slice too large: if n ≤ c·max_rows, both ⌊n·a/c⌋ and ⌈n·a/c⌉ are at most a·max_rows.
+  const std::size_t count = (rows + max_rows - 1) / max_rows;
   slices.first.assign(count + 1, static_cast<std::uint32_t>(rows));
   if (count > 0) Cutter(SlicePoints(features, rows), slices).cut(0, rows, 0, count);
   return slices;

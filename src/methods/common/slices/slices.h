@@ -39,11 +39,11 @@ class SlicePoints {
   float normal_weight_ = 0;
 };
 
-// Every row is in one slice of at most `most_rows`; slices have as many rows as each other, ± 1, but where
+// Every row is in one slice of at most `max_rows`; slices have as many rows as each other, ± 1, but where
 // rounding adds up. Cells are cut across their longest axis. Deterministic; rows of equal points go by index.
 //
 // Rows of a slice ascend: receivers are numbered along the film, those of one pixel in a stretch, so the ones
 // that a slice has of a pixel lie together.
-Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::size_t most_rows = 1024);
+Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::size_t max_rows = 1024);
 
 }  // namespace lumirank::methods

@@ -1,4 +1,4 @@
-#include "methods/sampling_recovery/automatic.h"
+#include "methods/slice_cuts/level_search.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "methods/common/exact_rows.h"
-#include "methods/common/row_group_pass.h"
-#include "methods/sampling_recovery/slice_recovery.h"
+#include "methods/slice_cuts/slice_rows.h"
 
 namespace lumirank::methods {
 
@@ -19,48 +18,23 @@ using matrix::Index;
 namespace {
 
 constexpr double kTarget = 0.03;
-constexpr std::size_t kFewestSlices = 3, kMostSlices = 12, kPixelsPerSlice = 5, kMostTrials = 16;
-// A visibility costs about as much as this many unoccluded entries.
-constexpr double kRay = 8;
+constexpr std::size_t kMinSlices = 3, kMaxSlices = 12, kPixelsPerSlice = 5, kMaxTrials = 16;
 
 // From coarse to fine.
-constexpr std::array kAlpha{0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005};
-constexpr std::array kWrong{0.2, 0.1, 0.05, 0.025, 0.0125};
+constexpr std::array<double, kCutLevels> kAlpha{0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005};
 
-struct Level {
-  std::size_t alpha = 3, wrong = 1;
-  friend bool operator<(const Level& a, const Level& b) {
-    return a.alpha != b.alpha ? a.alpha < b.alpha : a.wrong < b.wrong;
-  }
-};
 struct Trial {
-  Level level;
+  SliceLevel level;
   double error = 0, cost = 0;
 };
 
-RecoverySettings at_level(const RecoverySettings& given, Level level) {
-  RecoverySettings s = given;
-  s.alpha = kAlpha[level.alpha];
-  s.initial_columns = std::clamp(static_cast<std::size_t>(2.5 / s.alpha), std::size_t{50}, std::size_t{1000});
-  s.most_columns = std::max(s.most_columns, 4 * s.initial_columns);
-  s.prediction_error = kWrong[level.wrong];
-  s.uncertain = 0.02 * s.prediction_error;
-  s.rho = s.prediction_error < 0.05 ? 0.02 : 0.01;
-  return s;
-}
-
-class Search {
+class LevelSearch {
  public:
-  Search(const RecoverySettings& given, const LightTree& tree, const matrix::LightingMatrix& matrix,
-         const Slices& slices, const RunOptions& options)
-      : given_(given),
-        slices_(slices),
-        options_(options),
-        known_(matrix),
-        pool_([&] { return std::make_unique<SliceRecovery>(given_, &tree, matrix); }),
-        sums_(matrix.rows()) {
+  LevelSearch(const matrix::LightingMatrix& matrix, const Slices& slices, const RunOptions& options,
+              const LevelTrials& trials)
+      : slices_(slices), options_(options), trials_(trials), known_(matrix), sums_(matrix.rows()) {
     const std::size_t count =
-        std::min(slices.count(), std::clamp(slices.count() / 16, kFewestSlices, kMostSlices));
+        std::min(slices.count(), std::clamp(slices.count() / 16, kMinSlices, kMaxSlices));
     std::vector<Rgb> values(matrix.columns());
     Rng rng(options.seed, Stage::method, 0x4155544f);
     for (std::size_t k = 0; k < count; ++k) {
@@ -80,10 +54,9 @@ class Search {
     }
   }
 
-  AutomaticChoice run() {
-    AutomaticChoice choice;
+  LevelChoice run() {
+    LevelChoice choice;
     choice.rows = known_.size();
-    choice.slices = chosen_.size();
     choice.target =
         options_.target_error > 0
             ? target_for_sampling(options_.target_error, known_.lights().value, known_.clamping().value)
@@ -94,34 +67,23 @@ class Search {
       refine(first, choice.target);
     else
       coarsen(first, choice.target);
-    choice.settings = at_level(given_, best_.level);
+    choice.level = best_.level;
     choice.error = best_.error;
     choice.trials = tried_.size();
     return choice;
   }
 
  private:
-  Trial trial(Level level) {
+  Trial trial(SliceLevel level) {
     if (const auto found = tried_.find(level); found != tried_.end()) return found->second;
-    const RecoverySettings settings = at_level(given_, level);
     std::vector<double> costs(chosen_.size());
-    parallel_for(chosen_.size(), 1, [&](std::size_t k, std::size_t) {
-      WorkspacePool<SliceRecovery>::Lease lease(pool_);
-      SliceRecovery& slice = *lease;
-      slice.use(settings);
-      const double before = cost(slice.tally());
-      slice.run(slices_.slice(chosen_[k]), hash_ids(options_.seed, Stage::method, 0x5245434f, chosen_[k]),
-                sums_);
-      costs[k] = cost(slice.tally()) - before;
-    });
+    parallel_for(chosen_.size(), 1,
+                 [&](std::size_t k, std::size_t) { costs[k] = trials_.render(level, chosen_[k], sums_); });
     Trial t{level, error(), 0};
     for (const double c : costs) t.cost += c;
     spent_ += t.cost;
     tried_[level] = t;
     return t;
-  }
-  static double cost(const RecoveryTally& t) {
-    return static_cast<double>(t.shades) + kRay * static_cast<double>(t.sampled);
   }
   // Relative L1 over the known pixels.
   double error() const {
@@ -130,7 +92,7 @@ class Search {
     for (const std::size_t end : pixel_end_) {
       Rgb estimated(0), exact(0);
       for (; k < end; ++k) {
-        const KnownRow& known = known_.rows()[k];
+        const ExactRow& known = known_.rows()[k];
         const auto weight = static_cast<float>(known.share);
         estimated += sums_[known.from.row] * weight;
         exact += known.sum * weight;
@@ -146,19 +108,18 @@ class Search {
   bool affordable(const Trial& at) const {
     return spent_ * static_cast<double>(chosen_.size()) < at.cost * static_cast<double>(slices_.count());
   }
-  bool may_try() const { return tried_.size() < kMostTrials && !options_.sinks.cancelled(); }
+  bool may_try() const { return tried_.size() < kMaxTrials && !options_.sinks.cancelled(); }
 
   // The neighbours in one direction of both ladders.
-  std::vector<Trial> neighbours(Level at, bool finer) {
+  std::vector<Trial> neighbours(SliceLevel at, bool finer) {
     std::vector<Trial> found;
     const auto step = [&](std::size_t k, std::size_t size) -> std::optional<std::size_t> {
       if (finer) return k + 1 < size ? std::optional(k + 1) : std::nullopt;
       return k > 0 ? std::optional(k - 1) : std::nullopt;
     };
-    if (const auto a = step(at.alpha, kAlpha.size()); a && may_try()) found.push_back(trial({*a, at.wrong}));
-    const bool predicts = given_.visibility == RecoverySettings::Visibility::sampled;
-    if (const auto w = step(at.wrong, kWrong.size()); predicts && w && may_try())
-      found.push_back(trial({at.alpha, *w}));
+    if (const auto c = step(at.cut, kCutLevels); c && may_try()) found.push_back(trial({*c, at.visibility}));
+    if (const auto v = step(at.visibility, kVisibilityLevels); trials_.predicts && v && may_try())
+      found.push_back(trial({at.cut, *v}));
     return found;
   }
 
@@ -186,27 +147,36 @@ class Search {
     }
   }
 
-  const RecoverySettings& given_;
   const Slices& slices_;
   const RunOptions& options_;
-  KnownRows known_;
-  WorkspacePool<SliceRecovery> pool_;
+  const LevelTrials& trials_;
+  ExactRows known_;
   std::vector<Rgb> sums_;
   std::vector<std::size_t> chosen_;
   std::vector<std::size_t> pixel_end_;  // of the known rows, by pixel
   double spent_ = 0;
-  std::map<Level, Trial> tried_;
+  std::map<SliceLevel, Trial> tried_;
   Trial best_;
 };
 
 }  // namespace
 
-AutomaticChoice choose_parameters(const RecoverySettings& given, const LightTree& tree,
-                                  const matrix::LightingMatrix& matrix, const Slices& slices,
-                                  const RunOptions& options) {
-  if (slices.count() == 0 || matrix.columns() == 0 || options.sinks.cancelled())
-    return {given, 0, 0, 0, 0, 0};
-  return Search(given, tree, matrix, slices, options).run();
+void set_cut_level(std::size_t level, SliceCutSettings& settings) {
+  settings.alpha = kAlpha[level];
+  settings.initial_columns =
+      std::clamp(static_cast<std::size_t>(2.5 / settings.alpha), std::size_t{50}, std::size_t{1000});
+  settings.max_columns = std::max(settings.max_columns, 4 * settings.initial_columns);
+}
+
+void write_cut_level(const SliceCutSettings& settings, Trace& trace) {
+  trace.numbers["automatic.alpha"] = settings.alpha;
+  trace.numbers["automatic.initial_columns"] = static_cast<double>(settings.initial_columns);
+}
+
+LevelChoice choose_level(const matrix::LightingMatrix& matrix, const Slices& slices,
+                         const RunOptions& options, const LevelTrials& trials) {
+  if (slices.count() == 0 || matrix.columns() == 0 || options.sinks.cancelled()) return {};
+  return LevelSearch(matrix, slices, options, trials).run();
 }
 
 }  // namespace lumirank::methods

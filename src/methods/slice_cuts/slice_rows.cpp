@@ -1,4 +1,4 @@
-#include "methods/sampling_recovery/slice_rows.h"
+#include "methods/slice_cuts/slice_rows.h"
 
 #include <algorithm>
 #include <cmath>

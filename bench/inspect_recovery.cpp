@@ -2,12 +2,12 @@
 // is wrong, slice by slice, against all visibilities of the reduced matrices; how fast separations converge;
 // and the matrices of two slices. bench/papers/sampling_recovery_2015.py calls it and paints the pictures.
 //
-//   look_into_recovery scene folder [--size 400x300] [--lights 20000] [--spp 4] [--seed 1] [--threads 0]
+//   inspect_recovery scene folder [--size 400x300] [--lights 20000] [--spp 4] [--seed 1] [--threads 0]
 //                      [--set key=value …, of sampling-recovery]
 //
 // Writes results.json and pictures as PFM with numbers in place of colours:
 //   image                      what the method renders
-//   wrong_P, wrong_equal_P     share of the entries not looked at whose drawn prediction is wrong; P:
+//   wrong_P, wrong_equal_P     share of the entries not sampled whose drawn prediction is wrong; P:
 //   nearest,
 //                              plane, bayes, all. Until the prediction error is met; _equal: all after the
 //                              same five rounds. −1 where no receiver is.
@@ -24,7 +24,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/pfm.h"
-#include "recovery_looker.h"
+#include "recovery_inspector.h"
 #include "scenedesc/readers.h"
 #include "transport/cpu/scene_matrix.h"
 #include "transport/lights/virtual_lights.h"
@@ -52,7 +52,7 @@ image::Image render(const transport::Receivers& receivers, std::span<const Rgb> 
   return image;
 }
 
-void run(const bench::LookOptions& options) {
+void run(const bench::InspectOptions& options) {
   std::filesystem::create_directories(options.folder);
   scenedesc::SceneDesc desc = scenedesc::read_scene(options.scene);
   desc.sensors.at(0).film.width = options.width;
@@ -71,24 +71,24 @@ void run(const bench::LookOptions& options) {
   matrix_settings.clamp = 0.03f;  // the renderer's default
   const transport::SceneMatrix matrix(world, receivers, lights, matrix_settings);
 
-  bench::Looker looker(options, matrix);
-  looker.look();
+  bench::RecoveryInspector inspector(options, matrix);
+  inspector.inspect();
   image::write_pfm((std::filesystem::path(options.folder) / "image.pfm").string(),
-                   render(receivers, looker.sums()));
-  nlohmann::json told = looker.tell();
+                   render(receivers, inspector.sums()));
+  nlohmann::json told = inspector.summary();
   told["receivers"] = receivers.size();
   told["lights"] = lights.size();
-  told["predictors"] = looker.write_pictures();
-  told["few"] = looker.write_matrices(looker.slice_at(0.25), "few");
-  told["many"] = looker.write_matrices(looker.slice_at(0.9), "many");
+  told["predictors"] = inspector.write_pictures();
+  told["few"] = inspector.write_matrices(inspector.slice_at(0.25), "few");
+  told["many"] = inspector.write_matrices(inspector.slice_at(0.9), "many");
   std::ofstream file(std::filesystem::path(options.folder) / "results.json");
   file << told.dump(1) << "\n";
   file.close();
   if (!file) throw InputError("results.json cannot be written to " + options.folder);
 }
 
-bench::LookOptions read(int argc, char** argv) {
-  bench::LookOptions o;
+bench::InspectOptions read(int argc, char** argv) {
+  bench::InspectOptions o;
   std::vector<std::string> plain;
   for (int k = 1; k < argc; ++k) {
     const std::string name = argv[k];
@@ -107,7 +107,8 @@ bench::LookOptions read(int argc, char** argv) {
       o.settings[value.substr(0, at)] = value.substr(at + 1);
     } else {
       std::size_t number = 0;
-      if (!methods::parse_count(value, 0, number)) throw InputError(name + " needs a number");
+      if (!methods::parse_count(value, 0, methods::kMaxColumns, number))
+        throw InputError(name + " needs a number");
       if (name == "--lights")
         o.lights = number;
       else if (name == "--spp")
@@ -120,7 +121,7 @@ bench::LookOptions read(int argc, char** argv) {
         throw InputError("there is no option " + name);
     }
   }
-  if (plain.size() != 2) throw InputError("look_into_recovery scene folder [options]");
+  if (plain.size() != 2) throw InputError("inspect_recovery scene folder [options]");
   o.scene = plain[0], o.folder = plain[1];
   return o;
 }
@@ -129,10 +130,10 @@ bench::LookOptions read(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    const bench::LookOptions options = read(argc, argv);
+    const bench::InspectOptions options = read(argc, argv);
     with_threads(options.threads, [&] { run(options); });
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "look_into_recovery: %s\n", error.what());
+    std::fprintf(stderr, "inspect_recovery: %s\n", error.what());
     return 1;
   }
 }

@@ -1,4 +1,4 @@
-#include "methods/sampling_recovery/sample_patterns.h"
+#include "methods/slice_cuts/sample_patterns.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Runs matrix sampling and recovery slice by slice and compares what happens inside with the truth, for
-// look_into_recovery.cpp.
+// inspect_recovery.cpp.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 #include "methods/common/slices/slices.h"
 #include "methods/sampling_recovery/settings.h"
 #include "methods/sampling_recovery/slice_recovery.h"
+#include "methods/slice_cuts/slice_run.h"
 
 namespace lumirank::bench {
 
@@ -25,7 +26,7 @@ inline constexpr std::array<const char*, 4> kPredictors{"nearest", "plane", "bay
 inline constexpr std::size_t kIterations = 20;
 inline constexpr float kNothing = -1;  // no receiver in a pixel, no light at an entry
 
-struct LookOptions {
+struct InspectOptions {
   std::string scene, folder;
   int width = 400, height = 300, spp = 4, threads = 0;
   std::size_t lights = 20000;
@@ -44,14 +45,14 @@ struct Wrong {
     entries += o.entries, wrong += o.wrong, light += o.light, wrong_light += o.wrong_light;
   }
   double share() const { return entries > 0 ? wrong / entries : 0; }
-  json told() const {
+  json summary() const {
     return {{"entries", entries}, {"wrong", share()}, {"wrong_light", light > 0 ? wrong_light / light : 0}};
   }
 };
 
 struct Predicted {
-  Wrong wrong;  // of what was not looked at
-  double looked = 0;
+  Wrong wrong;  // of what was not sampled
+  double sampled = 0;
   std::array<double, 3> chosen{};  // columns
   double failed = 0;
 };
@@ -64,7 +65,7 @@ struct Findings {
   double rank = 0, iterations = 0, nonzero = 0;      // Z ≠ 0 by half an entry
   bool converged = false;
   // ‖XY + Z − D‖ / ‖D‖: as the method stops; through all iterations; the same with the fit as printed; the
-  // same as the method is set, but for Z, which entries that were looked at may have, too.
+  // same as the method is set, but for Z, which entries that were sampled may have, too.
   std::vector<double> residuals, endless, printed, everywhere;
   Wrong drawn, separated;                                                   // guesses, before and after
   double light = 0, error_drawn = 0, error_separated = 0, error_final = 0;  // Σ over rows of |sum − truth|
@@ -82,37 +83,35 @@ struct Workspace {
   std::vector<float> truth, drawn, separated;
 };
 
-class Looker {
+class RecoveryInspector {
  public:
   // The matrix must outlive it.
-  Looker(const LookOptions& options, const matrix::LightingMatrix& matrix);
+  RecoveryInspector(const InspectOptions& options, const matrix::LightingMatrix& matrix);
 
   // All slices, on all threads.
-  void look();
+  void inspect();
   const std::vector<Rgb>& sums() const { return sums_; }  // of the method as it is set
   // Of predictors; numbers about them.
   json write_pictures() const;
   // Numbers about slices, separations and what recovery brings.
-  json tell() const;
+  json summary() const;
   // The slice at the quantile q of the share of entries in the minority of their column.
   std::size_t slice_at(double q) const;
   // One slice's matrices as pictures NAME_…; numbers about it.
   json write_matrices(std::size_t s, const std::string& name);
 
  private:
-  std::uint64_t key(std::size_t s) const;
-  std::size_t most_receivers() const;
   methods::RecoverySettings alone(std::size_t predictor, bool equal) const;
   void run(const methods::RecoverySettings& settings, std::size_t s, Workspace& w);
   void find_truth(Workspace& w) const;
   void judge(std::size_t s, Workspace& w, const methods::RecoverySettings& settings, Predicted& out);
   void separate_endlessly(Workspace& w, Findings& f) const;
   void compare_rows(Workspace& w, Findings& f, std::vector<double>& right) const;
-  void look_at(std::size_t s, Workspace& w);
+  void inspect_slice(std::size_t s, Workspace& w);
   image::Image paint(const std::function<Rgb(const Findings&)>& value) const;
   void write(const std::string& name, const image::Image& image) const;
 
-  LookOptions options_;
+  InspectOptions options_;
   methods::RecoverySettings settings_;
   const matrix::LightingMatrix& matrix_;
   methods::LightTree tree_;

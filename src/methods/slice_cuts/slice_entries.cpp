@@ -1,4 +1,4 @@
-#include "methods/sampling_recovery/slice_entries.h"
+#include "methods/slice_cuts/slice_entries.h"
 
 #include <algorithm>
 
@@ -22,19 +22,19 @@ void SliceEntries::start(std::span<const Index> slice, std::uint64_t key) {
   patterns_.build(rows_.curves(), mix64(key));
   reader_->set_rows(rows_.receivers());
   key_ = key;
-  looked_ = 0;
+  sampled_ = 0;
   slots_.clear();
   requests_.clear();
   first_layer_.resize(rows_.size());
   row_of_.resize(rows_.receivers().size());
-  std::uint32_t most = 1;
+  std::uint32_t largest = 1;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const std::uint32_t count = receivers_of(r);
     first_layer_[r] = static_cast<std::uint8_t>(mix64(key ^ mix64(r)) >> 56);
-    most = std::max(most, count);
+    largest = std::max(largest, count);
     for (std::uint32_t k = rows_.begin(r); k < rows_.end(r); ++k) row_of_[k] = static_cast<std::uint32_t>(r);
   }
-  layer_count_ = std::min<std::size_t>(most, kLayers);
+  layer_count_ = std::min<std::size_t>(largest, kLayers);
   while (layers_.size() < layer_count_) layers_.push_back(matrix_.reader());
   layer_receivers_.resize(rows_.size());
   for (std::size_t l = 0; l < layer_count_; ++l) {
@@ -57,11 +57,11 @@ std::size_t SliceEntries::add(const matrix::ScaledColumn& column) {
   Slot& slot = slots_[s];
   const auto out = std::span(scalars_).subspan(s * rows, rows);
   layers_[slot.layer]->unoccluded_scalars(column.column, weights(column.scale), out);
-  for (const float e : out) slot.most = std::max(slot.most, e);
+  for (const float e : out) slot.max_scalar = std::max(slot.max_scalar, e);
   return s;
 }
 
-void SliceEntries::look_whole(std::size_t s) {
+void SliceEntries::sample_all(std::size_t s) {
   Slot& slot = slots_[s];
   answers_.resize(rows_.size());
   layers_[slot.layer]->column(slot.column, answers_, Part::visibility);
@@ -72,7 +72,7 @@ void SliceEntries::look_whole(std::size_t s) {
     const bool visible = answers_[i].r > 0.5f;
     known[i] = visible ? seen::kVisible : seen::kHidden;
     slot.any_visible |= visible;
-    ++looked_;
+    ++sampled_;
   }
   slot.sampled = static_cast<std::uint32_t>(rows_.size());
 }
@@ -81,56 +81,56 @@ void SliceEntries::trace(Index column, std::span<float> out) {
   answers_.resize(rows_.size());
   layers_[layer(column)]->column(column, answers_, Part::visibility);
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = answers_[i].r;
-  looked_ += rows_.size();
+  sampled_ += rows_.size();
 }
 
-bool SliceEntries::ask(std::size_t s, std::size_t row) {
+bool SliceEntries::request(std::size_t s, std::size_t row) {
   const std::uint32_t receiver = place(s, row);
   if (receiver == kNowhere) return false;
   requests_.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(row)});
-  asked_places_.push_back(receiver);
-  asked_columns_.push_back(slots_[s].column);
+  requested_places_.push_back(receiver);
+  requested_columns_.push_back(slots_[s].column);
   return true;
 }
 
-void SliceEntries::ask_next(std::size_t s, std::size_t count) {
+void SliceEntries::request_next(std::size_t s, std::size_t count) {
   Slot& slot = slots_[s];
   const auto order = patterns_.order(slot.pattern);
   const std::size_t end = std::min(order.size(), slot.sampled + count);
   // In the rows' order, so that rays that are shot together start near each other.
-  asked_rows_.assign(order.begin() + slot.sampled, order.begin() + static_cast<std::ptrdiff_t>(end));
-  std::sort(asked_rows_.begin(), asked_rows_.end());
-  for (const std::uint32_t row : asked_rows_) ask(s, row);
+  requested_rows_.assign(order.begin() + slot.sampled, order.begin() + static_cast<std::ptrdiff_t>(end));
+  std::sort(requested_rows_.begin(), requested_rows_.end());
+  for (const std::uint32_t row : requested_rows_) request(s, row);
   slot.sampled = static_cast<std::uint32_t>(end);
 }
 
-void SliceEntries::look() {
+void SliceEntries::resolve() {
   answers_.resize(requests_.size());
-  reader_->entries_at(asked_places_, asked_columns_, answers_, Part::visibility);
+  reader_->entries_at(requested_places_, requested_columns_, answers_, Part::visibility);
   for (std::size_t k = 0; k < requests_.size(); ++k) {
     const bool visible = answers_[k].r > 0.5f;
     seen(requests_[k].slot)[requests_[k].row] = visible ? seen::kVisible : seen::kHidden;
     slots_[requests_[k].slot].any_visible |= visible;
   }
-  looked_ += requests_.size();
+  sampled_ += requests_.size();
   requests_.clear();
-  asked_places_.clear();
-  asked_columns_.clear();
+  requested_places_.clear();
+  requested_columns_.clear();
 }
 
-void SliceEntries::look_at(std::span<const std::uint32_t> rows, std::span<const Index> columns,
-                           std::vector<float>& out) {
-  asked_places_.clear();
+void SliceEntries::values_at(std::span<const std::uint32_t> rows, std::span<const Index> columns,
+                             std::vector<float>& out) {
+  requested_places_.clear();
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::uint32_t begin = rows_.begin(rows[k]), count = rows_.end(rows[k]) - begin;
     const auto draw =
         static_cast<std::uint32_t>(mix64(key_ ^ mix64((std::uint64_t{columns[k]} << 32) | rows[k])) >> 32);
-    asked_places_.push_back(begin + draw % count);
+    requested_places_.push_back(begin + draw % count);
   }
   answers_.resize(rows.size());
-  reader_->entries_at(asked_places_, columns, answers_, Part::value);
-  asked_places_.clear();
-  looked_ += rows.size();
+  reader_->entries_at(requested_places_, columns, answers_, Part::value);
+  requested_places_.clear();
+  sampled_ += rows.size();
   out.resize(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) out[k] = mean(answers_[k]);
 }

@@ -1,11 +1,11 @@
 // Which clusters of lights a slice's reduced matrix has: first a cut by bounds, then splitting by the
 // greatest contribution (Huo et al. 2015, section 4.2 and algorithm 1).
 //
-// Where we deviate: the paper splits node after node and looks again at the neighbours of each; here all
-// clusters above the threshold are split together, then all contributions and the threshold are taken anew,
-// until nothing is above it. The result does not depend on an order, and costs O(log) rounds. The rows that
-// equation 7 takes its maximum over are those that `entries` was started with: some of the slice's, for a
-// maximum over all is often that of one pixel beside a light (SliceRecovery::choose_columns).
+// Where we deviate: the paper splits node after node and takes the contributions of the neighbours of each
+// anew; here all clusters above the threshold are split together, then all contributions and the threshold
+// are taken anew, until nothing is above it. The result does not depend on an order, and costs O(log) rounds.
+// The rows that equation 7 takes its maximum over are those that `entries` was started with: some of the
+// slice's, for a maximum over all is often that of one pixel beside a light (SliceColumns::choose).
 #pragma once
 
 #include <span>
@@ -13,8 +13,8 @@
 
 #include "matrix/entry_bounds.h"
 #include "methods/common/light_tree/light_tree.h"
-#include "methods/sampling_recovery/settings.h"
-#include "methods/sampling_recovery/slice_entries.h"
+#include "methods/slice_cuts/settings.h"
+#include "methods/slice_cuts/slice_entries.h"
 
 namespace lumirank::methods {
 
@@ -25,7 +25,7 @@ class SliceCut {
     LightTree::Node node;
     std::uint32_t slot;  // of its representative; kNoSlot: it is not evaluated
     matrix::ScaledColumn column;
-    // Of its members at some rows, with visibility: greatest entry over power. < 0: not looked at yet.
+    // Of its members at some rows, with visibility: greatest entry over power. < 0: not sampled yet.
     float lit = -1;
   };
 
@@ -33,7 +33,7 @@ class SliceCut {
       : tree_(tree), bounds_(matrix.row_bounds()) {}
 
   // Evaluates representatives in `entries`, as far as it takes, and samples them for sparse visibility.
-  void choose(const RecoverySettings& settings, SliceEntries& entries);
+  void choose(const SliceCutSettings& settings, SliceEntries& entries);
   // In the order of the tree: neighbours are near.
   std::span<const Cluster> clusters() const { return clusters_; }
   // What the cut by bounds took of the last choose().
@@ -41,11 +41,11 @@ class SliceCut {
 
  private:
   void initial_cut(std::size_t count, std::span<const matrix::Index> receivers);
-  void add_slots(const RecoverySettings& settings, SliceEntries& entries);
+  void add_slots(const SliceCutSettings& settings, SliceEntries& entries);
   void redraw(std::uint64_t key);
-  void look_at_members(const RecoverySettings& settings, SliceEntries& entries);
-  void contributions(const RecoverySettings& settings, SliceEntries& entries);
-  bool split(const RecoverySettings& settings, SliceEntries& entries);
+  void sample_members(const SliceCutSettings& settings, SliceEntries& entries);
+  void contributions(const SliceCutSettings& settings, SliceEntries& entries);
+  bool split(const SliceCutSettings& settings, SliceEntries& entries);
   std::uint32_t place(LightTree::Node node) const;
 
   struct Bounded {
@@ -58,7 +58,7 @@ class SliceCut {
   std::vector<Bounded> heap_;
   std::vector<Cluster> clusters_, next_;
   double seconds_of_bounds_ = 0;
-  std::vector<float> most_;          // M·G: greatest entry over power, by cluster
+  std::vector<float> max_entry_;     // M·G: greatest entry over power, by cluster
   std::vector<float> contribution_;  // Γ, by cluster
   std::vector<std::uint32_t> member_rows_, member_cluster_;
   std::vector<matrix::Index> members_;

@@ -1,4 +1,4 @@
-#include "methods/sampling_recovery/slice_cut.h"
+#include "methods/slice_cuts/slice_cut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,24 +55,23 @@ void SliceCut::initial_cut(std::size_t count, std::span<const Index> receivers) 
             [&](const Cluster& a, const Cluster& b) { return place(a.node) < place(b.node); });
 }
 
-void SliceCut::add_slots(const RecoverySettings& settings, SliceEntries& entries) {
-  const bool look = settings.sparse_visibility;
-  const auto samples = static_cast<std::size_t>(
-      std::max(4.0, std::ceil(settings.rho * static_cast<double>(entries.rows().size()))));
+void SliceCut::add_slots(const SliceCutSettings& settings, SliceEntries& entries) {
+  const bool sample = settings.sparse_visibility;
+  const std::size_t samples = settings.samples(entries.rows().size());
   for (Cluster& c : clusters_) {
     if (c.slot != kNoSlot) continue;
     c.slot = static_cast<std::uint32_t>(entries.add(c.column));
-    if (look) entries.ask_next(c.slot, samples);
+    if (sample) entries.request_next(c.slot, samples);
   }
-  if (look) {
-    entries.look();
-    look_at_members(settings, entries);
+  if (sample) {
+    entries.resolve();
+    sample_members(settings, entries);
   }
 }
 
 // A representative tells of one light; whether the others are hidden as well is asked of some of them, at
 // rows spread over the slice.
-void SliceCut::look_at_members(const RecoverySettings& settings, SliceEntries& entries) {
+void SliceCut::sample_members(const SliceCutSettings& settings, SliceEntries& entries) {
   const std::size_t rows = entries.rows().size();
   // Two fifths of the representative's own samples.
   const auto samples = static_cast<std::size_t>(
@@ -91,7 +90,7 @@ void SliceCut::look_at_members(const RecoverySettings& settings, SliceEntries& e
       member_cluster_.push_back(static_cast<std::uint32_t>(c));
     }
   }
-  entries.look_at(member_rows_, members_, member_light_);
+  entries.values_at(member_rows_, members_, member_light_);
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const float power = mean(tree_.emitted_of(members_[k]));
     float& lit = clusters_[member_cluster_[k]].lit;
@@ -102,14 +101,14 @@ void SliceCut::look_at_members(const RecoverySettings& settings, SliceEntries& e
 // Equation 7: Γ = (greatest M·G among the neighbours) · (whether any sample of theirs is visible) · power.
 // Where none is, the paper's factor is 0; but hidden are only so many representatives, each one light of
 // many. By the rule of succession the next would be visible with probability 1/(number + 2).
-void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& entries) {
+void SliceCut::contributions(const SliceCutSettings& settings, SliceEntries& entries) {
   const std::size_t n = clusters_.size();
-  most_.resize(n);
+  max_entry_.resize(n);
   contribution_.resize(n);
   for (std::size_t c = 0; c < n; ++c) {
     const float power = mean(tree_.emitted(clusters_[c].node));
-    const float scaled = mean(clusters_[c].column.scale) * entries.slot(clusters_[c].slot).most;
-    most_[c] = std::max(power > 0 ? scaled / power : 0, clusters_[c].lit);
+    const float scaled = mean(clusters_[c].column.scale) * entries.slot(clusters_[c].slot).max_scalar;
+    max_entry_[c] = std::max(power > 0 ? scaled / power : 0, clusters_[c].lit);
   }
   for (std::size_t c = 0; c < n; ++c) {
     const Node node = clusters_[c].node;
@@ -120,28 +119,28 @@ void SliceCut::contributions(const RecoverySettings& settings, SliceEntries& ent
       above = p;
     const std::uint32_t begin = place(above),
                         end = begin + static_cast<std::uint32_t>(tree_.columns(above).size());
-    float most = 0;
+    float greatest = 0;
     bool visible = !settings.sparse_visibility;
-    float looked_at = 0;
+    float sampled = 0;
     const auto take = [&](std::size_t k) {
       const std::uint32_t at = place(clusters_[k].node);
       if (at < begin || at >= end) return false;
-      most = std::max(most, most_[k]);
+      greatest = std::max(greatest, max_entry_[k]);
       visible |= entries.slot(clusters_[k].slot).any_visible || clusters_[k].lit > 0;
-      ++looked_at;
+      ++sampled;
       return true;
     };
     for (std::size_t k = c; k < std::min(n, c + kReach + 1) && take(k); ++k) {
     }
     for (std::size_t k = c; k > 0 && c - k < kReach && take(k - 1); --k) {
     }
-    contribution_[c] = most * power * (visible ? 1 : 1 / (looked_at + 2));
+    contribution_[c] = greatest * power * (visible ? 1 : 1 / (sampled + 2));
   }
 }
 
 // Splits what is above the threshold of equation 8, the greatest first while there is room. False if nothing
 // was.
-bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
+bool SliceCut::split(const SliceCutSettings& settings, SliceEntries& entries) {
   double sum = 0;
   for (const float g : contribution_) sum += static_cast<double>(g);
   const double threshold = settings.alpha * sum;
@@ -150,8 +149,8 @@ bool SliceCut::split(const RecoverySettings& settings, SliceEntries& entries) {
     if (!tree_.is_leaf(clusters_[c].node) &&
         (settings.alpha == 0 || static_cast<double>(contribution_[c]) > threshold))
       candidates_.push_back(static_cast<std::uint32_t>(c));
-  if (candidates_.empty() || clusters_.size() >= settings.most_columns) return false;
-  const std::size_t room = settings.most_columns - clusters_.size();
+  if (candidates_.empty() || clusters_.size() >= settings.max_columns) return false;
+  const std::size_t room = settings.max_columns - clusters_.size();
   if (candidates_.size() > room) {
     std::sort(candidates_.begin(), candidates_.end(), [&](std::uint32_t a, std::uint32_t b) {
       return contribution_[a] != contribution_[b] ? contribution_[a] > contribution_[b] : a < b;
@@ -190,9 +189,9 @@ void SliceCut::redraw(std::uint64_t key) {
   }
 }
 
-void SliceCut::choose(const RecoverySettings& settings, SliceEntries& entries) {
+void SliceCut::choose(const SliceCutSettings& settings, SliceEntries& entries) {
   const ThreadTimer timer;
-  initial_cut(std::min(settings.initial_columns, settings.most_columns), entries.rows().receivers());
+  initial_cut(std::min(settings.initial_columns, settings.max_columns), entries.rows().receivers());
   seconds_of_bounds_ = timer.seconds();
   if (settings.splitting) {
     add_slots(settings, entries);

@@ -1,4 +1,4 @@
-#include "recovery_looker.h"
+#include "recovery_inspector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,38 +14,21 @@ using matrix::Index;
 using matrix::Part;
 using methods::RecoverySettings;
 
-Looker::Looker(const LookOptions& options, const matrix::LightingMatrix& matrix)
+RecoveryInspector::RecoveryInspector(const InspectOptions& options, const matrix::LightingMatrix& matrix)
     : options_(options),
       settings_(methods::read_settings("sampling-recovery", methods::recovery_fields(), options.settings)),
       matrix_(matrix),
       tree_(matrix, options.seed),
-      slices_(methods::make_slices(matrix.row_features(), matrix.rows(), most_receivers())),
+      slices_(methods::make_slices(matrix.row_features(), matrix.rows(),
+                                   methods::max_slice_receivers(matrix, settings_.slice_rows, false))),
       sums_(matrix.rows()),
       pool_([this] {
-        return std::make_unique<Workspace>(Workspace{methods::SliceRecovery(settings_, &tree_, matrix_),
-                                                     matrix_.reader(),
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {},
-                                                     {}});
+        return std::make_unique<Workspace>(
+            Workspace{methods::SliceRecovery(tree_, matrix_), matrix_.reader(), {}, {}, {}, {}, {}, {}, {}});
       }) {}
 
-// As the method does.
-std::uint64_t Looker::key(std::size_t s) const {
-  return hash_ids(options_.seed, Stage::method, 0x5245434f, s);
-}
-
-std::size_t Looker::most_receivers() const {
-  const std::size_t pixels = methods::UnitRows::pixels(matrix_).size();
-  const std::size_t per_pixel = pixels > 0 ? (matrix_.rows() + pixels / 2) / pixels : 1;
-  return settings_.slice_rows * std::max<std::size_t>(per_pixel, 1);
-}
-
 // Predictors as the only step.
-RecoverySettings Looker::alone(std::size_t predictor, bool equal) const {
+RecoverySettings RecoveryInspector::alone(std::size_t predictor, bool equal) const {
   RecoverySettings s = settings_;
   s.separation = s.correction = false;
   s.uncertain = 0;
@@ -56,21 +39,20 @@ RecoverySettings Looker::alone(std::size_t predictor, bool equal) const {
   return s;
 }
 
-void Looker::run(const RecoverySettings& settings, std::size_t s, Workspace& w) {
-  w.recovery.use(settings);
-  w.recovery.run(slices_.slice(s), key(s), sums_);
+void RecoveryInspector::run(const RecoverySettings& settings, std::size_t s, Workspace& w) {
+  w.recovery.run(settings, slices_.slice(s), methods::slice_key(options_.seed, s), sums_);
 }
 
-void Looker::look() {
+void RecoveryInspector::inspect() {
   findings_.resize(slices_.count());
   parallel_for(slices_.count(), 1, [&](std::size_t s, std::size_t) {
     methods::WorkspacePool<Workspace>::Lease lease(pool_);
-    look_at(s, *lease);
+    inspect_slice(s, *lease);
   });
 }
 
 // All visibilities of the reduced matrix, each from where the method would look; kNothing where E is 0.
-void Looker::find_truth(Workspace& w) const {
+void RecoveryInspector::find_truth(Workspace& w) const {
   const auto& entries = w.recovery.entries();
   const std::size_t rows = entries.rows().size(), columns = w.recovery.clusters().size();
   w.truth.assign(rows * columns, kNothing);
@@ -90,14 +72,14 @@ void Looker::find_truth(Workspace& w) const {
   }
 }
 
-void Looker::judge(std::size_t s, Workspace& w, const RecoverySettings& settings, Predicted& out) {
+void RecoveryInspector::judge(std::size_t s, Workspace& w, const RecoverySettings& settings, Predicted& out) {
   const auto before = w.recovery.tally();
   run(settings, s, w);
   const auto& after = w.recovery.tally();
   const auto states = w.recovery.states();
   if (states.size() != w.truth.size()) throw InternalError("the clusters depend on the predictor");
   for (std::size_t at = 0; at < states.size(); ++at) {
-    if (states[at] == Entry::exact) out.looked += 1;
+    if (states[at] == Entry::exact) out.sampled += 1;
     if (states[at] == Entry::exact || states[at] == Entry::free) continue;
     const bool visible = states[at] == Entry::predicted_visible;
     out.wrong.add(visible == (w.truth[at] > 0.5f) ? 0 : 1, w.recovery.unoccluded()[at]);
@@ -108,12 +90,12 @@ void Looker::judge(std::size_t s, Workspace& w, const RecoverySettings& settings
 }
 
 // The same separation once more, through all its iterations, and in two other ways.
-void Looker::separate_endlessly(Workspace& w, Findings& f) const {
+void RecoveryInspector::separate_endlessly(Workspace& w, Findings& f) const {
   if (!settings_.separation) return;
   linalg::SeparationSettings s;
-  s.most_rank = settings_.rank;
+  s.max_rank = settings_.rank;
   s.iterations = kIterations;
-  s.tolerance = s.least_progress = 0;
+  s.tolerance = s.min_progress = 0;
   s.constraint = settings_.constraint;
   s.fit = settings_.fit;
   const linalg::CorruptedMatrix matrix = w.recovery.corrupted();
@@ -131,7 +113,7 @@ void Looker::separate_endlessly(Workspace& w, Findings& f) const {
 }
 
 // Sums of rows as drawn and as separated against the true ones; guesses against the truth.
-void Looker::compare_rows(Workspace& w, Findings& f, std::vector<double>& right) const {
+void RecoveryInspector::compare_rows(Workspace& w, Findings& f, std::vector<double>& right) const {
   const auto e = w.recovery.unoccluded();
   const std::size_t rows = w.recovery.entries().rows().size();
   const auto states = w.recovery.states();
@@ -156,7 +138,7 @@ void Looker::compare_rows(Workspace& w, Findings& f, std::vector<double>& right)
   }
 }
 
-void Looker::look_at(std::size_t s, Workspace& w) {
+void RecoveryInspector::inspect_slice(std::size_t s, Workspace& w) {
   Findings& f = findings_[s];
   const auto count = [&] {
     return static_cast<double>(std::ranges::count(w.recovery.states(), Entry::exact));

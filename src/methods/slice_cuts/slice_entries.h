@@ -1,4 +1,4 @@
-// What is known of a slice's entries: for every column that was looked at, its unoccluded contribution to
+// What is known of a slice's entries: for every column that was added, its unoccluded contribution to
 // each row, and the visibilities that were sampled.
 //
 // A row is a pixel's receivers of one surface, any of which speaks for the others: they are dealt to a few
@@ -13,8 +13,8 @@
 #include "base/random.h"
 #include "matrix/entry_reader.h"
 #include "methods/common/visibility_predictors.h"
-#include "methods/sampling_recovery/sample_patterns.h"
-#include "methods/sampling_recovery/slice_rows.h"
+#include "methods/slice_cuts/sample_patterns.h"
+#include "methods/slice_cuts/slice_rows.h"
 
 namespace lumirank::methods {
 
@@ -30,7 +30,7 @@ class SliceEntries {
     matrix::Index column;
     std::uint32_t pattern;
     std::uint32_t sampled;  // the first of the pattern's rows are known where the column reaches them
-    float most;             // greatest unoccluded scalar
+    float max_scalar;       // unoccluded
     std::uint16_t layer;
     bool any_visible;  // among the samples
   };
@@ -44,11 +44,11 @@ class SliceEntries {
   const SliceRows& rows() const { return rows_; }
   SamplePatterns& patterns() { return patterns_; }
 
-  // Evaluates a column without visibility, at one receiver of each row; the number of its slot. Colours count
+  // Evaluates a column without visibility, at one receiver of each row; the number of its slot. Colors count
   // by its scale.
   std::size_t add(const matrix::ScaledColumn& column);
-  // Looks at all rows of a slot that it reaches.
-  void look_whole(std::size_t s);
+  // Visibilities of all rows of a slot that it reaches.
+  void sample_all(std::size_t s);
   // Visibility, 0 or 1, of all rows.
   void trace(matrix::Index column, std::span<float> out);
   Slot& slot(std::size_t s) { return slots_[s]; }
@@ -68,21 +68,21 @@ class SliceEntries {
     reader_->add_unoccluded(columns, visibility, row_of_, sums);
   }
 
-  // The receiver that an entry is looked from; kNowhere if the column does not reach it.
+  // The receiver whose visibility an entry takes; kNowhere if the column does not reach it.
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
   std::uint32_t place(std::size_t s, std::size_t row) const {
     return scalars_[s * rows_.size() + row] > 0 ? receiver(row, slots_[s].layer) : kNowhere;
   }
-  // Asks for an entry, as seen from its place(). False if there is none. Answered by look().
-  bool ask(std::size_t s, std::size_t row);
+  // Asks for an entry, as seen from its place(). False if there is none. Answered by resolve().
+  bool request(std::size_t s, std::size_t row);
   // Asks for the next `count` rows of the slot's pattern.
-  void ask_next(std::size_t s, std::size_t count);
-  void look();
+  void request_next(std::size_t s, std::size_t count);
+  void resolve();
   // Means of r, g, b of entries (row, column) with visibility, each from one of the row's receivers at
   // random.
-  void look_at(std::span<const std::uint32_t> rows, std::span<const matrix::Index> columns,
-               std::vector<float>& out);
-  std::size_t looked() const { return looked_; }  // entries, since start()
+  void values_at(std::span<const std::uint32_t> rows, std::span<const matrix::Index> columns,
+                 std::vector<float>& out);
+  std::size_t sampled() const { return sampled_; }  // entries, since start()
 
  private:
   static constexpr std::size_t kLayers = 4;
@@ -103,7 +103,7 @@ class SliceEntries {
   SliceRows rows_;
   SamplePatterns patterns_;
   std::uint64_t key_ = 0;
-  std::size_t looked_ = 0;
+  std::size_t sampled_ = 0;
   std::vector<Slot> slots_;
   std::vector<Rgb> answers_;
   std::vector<float> scalars_;
@@ -116,8 +116,8 @@ class SliceEntries {
     std::uint32_t slot, row;
   };
   std::vector<Request> requests_;
-  std::vector<matrix::Index> asked_places_, asked_columns_;
-  std::vector<std::uint32_t> asked_rows_;
+  std::vector<matrix::Index> requested_places_, requested_columns_;
+  std::vector<std::uint32_t> requested_rows_;
 };
 
 }  // namespace lumirank::methods
