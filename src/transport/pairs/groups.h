@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/lanes.h"
-#include "transport/cpu/scene_matrix.h"
 #include "transport/lights/virtual_lights.h"
 #include "transport/pairs/scatter_forms.h"
+#include "transport/pairs/scene_matrix_settings.h"
 #include "transport/pairs/tile_plan.h"
 #include "transport/rows/receivers.h"
 
