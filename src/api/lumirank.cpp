@@ -214,8 +214,9 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     task.view = pipeline::make_view(scene.impl().desc, settings);
     task.info = &pipeline::chosen_method(settings, &task.why);
     task.by_default = settings.method == "auto" && settings.method_settings.empty() && settings.error <= 0 &&
-                      !task.info->combination;
+                      !task.info->contract.combination;
     pipeline::check_layers(*task.info, settings);
+    methods::require_capabilities(*task.info, transport::SceneMatrix::kCapabilities);
     task.method = task.info->make(settings.method_settings);
     if (const std::string text = pipeline::error_not_aimed_at(*task.info, settings.error); !text.empty())
       sinks.warn(text);

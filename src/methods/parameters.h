@@ -96,7 +96,7 @@ struct MethodText {
   std::string name, summary;
   std::string paper = "";
   std::string error_decided_by = "";  // as in MethodInfo
-  bool combination = false;           // as in MethodInfo
+  matrix::MethodContract contract{};  // as in MethodInfo
 };
 
 // The entry of a method M whose constructor takes its settings S, and which uses all generated lights.
@@ -111,7 +111,7 @@ MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
           text.error_decided_by,
-          text.combination};
+          text.contract};
 }
 
 // Every parameter of the method with the value that a run with these settings uses: what a report records.

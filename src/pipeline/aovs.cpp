@@ -100,12 +100,12 @@ bool parts_light(const std::string& aov) {
 }
 
 void check_layers(const methods::MethodInfo& method, const RenderSettings& settings) {
-  if (method.combination) return;
+  if (method.contract.combination) return;
   for (const std::string& aov : settings.aovs) {
     if (!parts_light(aov)) continue;
     std::string able;
     for (const auto& other : methods::all_methods())
-      if (other.combination) able += (able.empty() ? "" : ", ") + other.name;
+      if (other.contract.combination) able += (able.empty() ? "" : ", ") + other.name;
     throw InputError("the method '" + method.name + "' cannot give the layer '" + aov +
                          "': its columns differ from receiver to receiver",
                      "choose one of " + able + ", or leave '--method auto'");

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "matrix/metered_matrix.h"
 #include "methods/common/timed_choices.h"
 #include "pipeline/aovs.h"
 #include "pipeline/error_advice.h"
@@ -226,7 +227,9 @@ class RenderRun {
         throttle_.show(as_asked(image));
       };
     const Timer timer;
-    estimate_ = task_.method->run(*setup_.matrix, run);
+    const matrix::MeteredMatrix metered(*setup_.matrix);
+    estimate_ = task_.method->run(metered, run);
+    cost_ = metered.total();
     setup_.seconds["method"] = timer.seconds();
     result_.interrupted = estimate_.interrupted;
     advise(run.time_seconds);
@@ -342,16 +345,11 @@ class RenderRun {
     const Timer layer_timer;
     compensate(image);
     result_.picture = as_asked(image);
-    // The report counts what the method looked at; layers look at the chosen columns once more.
-    auto& counters = setup_.matrix->counters();
-    const auto evaluated = counters.entries_evaluated.load(), culled = counters.entries_culled.load(),
-               rays = counters.rays_shadow.load();
     if (!add_aovs(result_.picture, setup_, settings_, estimate_, sinks_)) result_.interrupted = true;
     if (illuminance_)
       result_.picture.planes.push_back({"illuminance", to_picture(*illuminance_).planes[0].rgb});
     else if (wants_illuminance(settings_))
       sinks_.warn("interrupted: the picture has no layer illuminance");
-    counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
     setup_.seconds["film"] = developed + layer_timer.seconds();
     // An interrupted run cannot be repeated: where it was stopped was no choice of its own.
     if (result_.interrupted) choices_ = {};
@@ -363,8 +361,8 @@ class RenderRun {
           static_cast<double>(setup_.view.width) / static_cast<double>(task_.view.width);
     estimate_.trace.notes["method.why"] = task_.why;
     if (!plan_.shortage.empty()) estimate_.trace.notes["budget.short"] = plan_.shortage;
-    result_.report_json =
-        make_report(setup_, asked_, *task_.info, estimate_, choices_.made(), task_.timer.seconds(), lights_);
+    result_.report_json = make_report(setup_, asked_, *task_.info, estimate_, cost_, choices_.made(),
+                                      task_.timer.seconds(), lights_);
     return std::move(result_);
   }
 
@@ -385,6 +383,7 @@ class RenderRun {
   double direct_pace_ = 0, rest_pace_ = 0;
   int rest_paths_ = 0;
   methods::Estimate estimate_;
+  matrix::Cost cost_;  // of the method; layers by light go over its columns once more
   std::optional<image::Image> illuminance_;
   RenderResult result_;
 };

@@ -16,8 +16,9 @@ std::size_t peak_memory_bytes() {
 }
 
 std::string make_report(const Setup& setup, const RenderSettings& settings, const methods::MethodInfo& method,
-                        const methods::Estimate& estimate, const methods::TimedChoices::Lists& choices,
-                        double total_seconds, std::size_t lights_asked) {
+                        const methods::Estimate& estimate, const matrix::Cost& cost,
+                        const methods::TimedChoices::Lists& choices, double total_seconds,
+                        std::size_t lights_asked) {
   nlohmann::ordered_json json;
   json["method"] = method.name;
   json["version"] = program_version();
@@ -28,18 +29,16 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   for (const auto& [key, value] : estimate.trace.notes) json[key] = value;
   if (json.contains("error.estimate")) json["error.of"] = "the light that columns carry";
 
-  const auto& counters = setup.matrix->counters();
   const double entries =
       static_cast<double>(setup.matrix->rows()) * static_cast<double>(setup.matrix->columns());
   const double pixels = static_cast<double>(setup.view.width) * static_cast<double>(setup.view.height);
-  json["entries.evaluated"] = counters.entries_evaluated.load();
-  json["entries.culled"] = counters.entries_culled.load();
-  json["rays.shadow"] = counters.rays_shadow.load();
-  json["rays.per_pixel"] = static_cast<double>(counters.rays_shadow.load()) / pixels;
+  json["entries.evaluated"] = cost.entries;
+  json["entries.culled"] = cost.culled;
+  json["rays.shadow"] = cost.rays;
+  json["rays.per_pixel"] = static_cast<double>(cost.rays) / pixels;
   // Some methods know a better one: of their reduced matrices.
   if (!json.contains("sampling_rate"))
-    json["sampling_rate"] =
-        entries > 0 ? static_cast<double>(counters.entries_evaluated.load()) / entries : 0.0;
+    json["sampling_rate"] = entries > 0 ? static_cast<double>(cost.entries) / entries : 0.0;
 
   json["virtual_lights"] = setup.lights.size();
   json["virtual_lights.asked"] = lights_asked;
@@ -49,7 +48,7 @@ std::string make_report(const Setup& setup, const RenderSettings& settings, cons
   json["receivers"] = setup.receivers.size();
   json["pixels"] = pixels;
   if (setup.radius_scale > 0) json["virtual_lights.radius_scale"] = setup.radius_scale;
-  json["clamp.removed_fraction"] = setup.matrix->clamped_fraction();
+  json["clamp.removed_fraction"] = matrix::clamped_fraction(cost);
   json["traced_direct.samples"] = setup.direct_samples;
   json["traced_direct.below_roughness"] = setup.traced_direct.empty() ? 0.0 : setup.traced_below;
 

@@ -14,6 +14,7 @@ namespace lumirank::methods {
 namespace {
 
 using matrix::ColumnSet;
+using matrix::Cost;
 using matrix::Emission;
 using matrix::Index;
 using Node = LightTree::Node;
@@ -48,13 +49,18 @@ class MixedLights final : public matrix::LightingMatrix {
   }
   std::size_t rows() const override { return 0; }
   std::size_t columns() const override { return sets.size(); }
-  void row(Index, std::span<Rgb>, matrix::Part) const override {}
-  void column(Index, std::span<Rgb>, matrix::Part) const override {}
-  void block(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {}
-  void entries(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {}
-  void accumulate(std::span<const matrix::ScaledColumn>, std::span<Rgb>, const Sinks&) const override {}
+  Cost row(Index, std::span<Rgb>, matrix::Part) const override { return {}; }
+  Cost column(Index, std::span<Rgb>, matrix::Part) const override { return {}; }
+  Cost block(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {
+    return {};
+  }
+  Cost entries(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {
+    return {};
+  }
+  Cost accumulate(std::span<const matrix::ScaledColumn>, std::span<Rgb>, const Sinks&) const override {
+    return {};
+  }
   ColumnSet column_set(Index j) const override { return sets[j]; }
-  std::unique_ptr<matrix::RowBounds> row_bounds() const override { return nullptr; }
   matrix::ColumnFeatures column_features() const override {
     matrix::ColumnFeatures features;
     features.group = group, features.emitted = emitted;

@@ -201,18 +201,25 @@ class SliceCuts final : public SamplingRecovery {
 
 }  // namespace
 
+// What its cuts sample of visibilities says which clusters to split; what it sums it traces, so visibilities
+// may lie between 0 and 1.
 MethodInfo slice_cuts_info() {
   return method_info<SliceCuts>(
       {"slice-cuts",
        "Cuts the light tree for every slice of receivers, and traces a visibility per pixel's surface.",
-       "The light clusters of Huo et al. 2015 (section 4), without their recovery"},
+       "The light clusters of Huo et al. 2015 (section 4), without their recovery",
+       "",
+       {{matrix::Ability::bounds}}},
       slice_cut_fields());
 }
 
 MethodInfo sampling_recovery_info() {
   return method_info<SamplingRecovery>(
-      {"sampling-recovery", "Samples few visibilities of every slice of receivers and recovers the others.",
-       "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering"},
+      {"sampling-recovery",
+       "Samples few visibilities of every slice of receivers and recovers the others.",
+       "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering",
+       "",
+       {{matrix::Ability::binary_visibility, matrix::Ability::bounds}}},
       recovery_fields());
 }
 

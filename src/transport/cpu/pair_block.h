@@ -24,24 +24,13 @@ struct PairContext {
   const geometry::RayScene* rays;
   std::uint64_t pair_seed;  // hashed once: with the two ids it decides cut-outs
   float clamp;              // X; infinite: off
+  bool compensated;         // what clamping takes is given back elsewhere
   bool has_cutouts;         // rays need keys
   bool has_spheres;         // surface lights are spherical
   SphereBackground spheres;
   bool has_smooth;  // rays need transmittances
   bool has_directional;
   bool has_two_sided;  // some surface shines through or is a fibre, see GroupStore::two_sided
-};
-
-// What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.
-struct Tally {
-  std::uint64_t evaluated = 0, culled = 0, rays = 0;
-  double value = 0, removed = 0;  // Σ over visible entries of r + g + b, after clamping and taken away by it
-  Tally& operator+=(const Tally& o) {
-    evaluated += o.evaluated, culled += o.culled, rays += o.rays;
-    value += o.value, removed += o.removed;
-    return *this;
-  }
-  friend Tally operator+(Tally a, const Tally& b) { return a += b; }
 };
 
 // The pairs of a block in one of three shapes. Places count from 0 within the block, 16 to a group.
@@ -158,8 +147,15 @@ class PairBlock {
   std::vector<Attenuation> attenuations_;
 };
 
-// Finishes an evaluated block: rays where they are needed, and the cost. `pairs`: without padding.
-Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs);
+// Finishes an evaluated block: rays where they are needed, and the cost, all but what of it is lost. `pairs`:
+// without padding.
+matrix::Cost finish(PairBlock& block, matrix::Part part, std::size_t pairs);
+
+// The cost of a whole call.
+inline matrix::Cost with_loss(const PairContext& context, matrix::Cost cost) {
+  cost.lost = context.compensated ? 0 : cost.clamped;
+  return cost;
+}
 
 // Copies what was asked for to out(items[place]), leaving out the places of kNoItem.
 template <typename Out>

@@ -86,21 +86,21 @@ void PairBlock::add_shares(Rgb scale, std::span<const float> shares, std::span<c
   }
 }
 
-Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs) {
-  Tally tally;
-  tally.evaluated = pairs;
-  tally.culled = pairs - block.survivors();
+matrix::Cost finish(PairBlock& block, matrix::Part part, std::size_t pairs) {
+  matrix::Cost cost;
+  cost.entries = pairs;
+  cost.culled = pairs - block.survivors();
   if (part == matrix::Part::unoccluded) {
     block.skip_visibility();
-    return tally;
+    return cost;
   }
   block.trace(part == matrix::Part::value);
-  tally.rays = block.survivors();
+  cost.rays = block.survivors();
   if (part == matrix::Part::value) {
-    tally.value = block.visible_energy();
-    tally.removed = block.removed_energy();
+    cost.energy = block.visible_energy();
+    cost.clamped = block.removed_energy();
   }
-  return tally;
+  return cost;
 }
 
 }  // namespace lumirank::transport
