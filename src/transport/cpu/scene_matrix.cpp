@@ -54,7 +54,7 @@ std::size_t items_in_tile(const TilePlan& plan, std::size_t tile) {
 
 // What a_j·G·(π f_x)(π f_y) of a column may be because it stands for `scale` times its area. Without clamping
 // nothing is bounded, so that who switches it off gets an unbiased picture.
-float most_shown(const matrix::ScaledColumn& s, float clamp) {
+float max_contribution(const matrix::ScaledColumn& s, float clamp) {
   if (!(s.most_shown > 0) || clamp == kInfinity) return kInfinity;
   return s.most_shown / std::max(max_component(s.scale), 1e-30f);
 }
@@ -194,8 +194,9 @@ Cost SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
       const std::size_t items = items_in_tile(plan, tile);
       for (const matrix::ScaledColumn& s : scaled) {
         if (sinks.cancelled()) throw Cancelled();
-        block->set_column(impl_->columns.plan.slot[s.column],
-                          impl_->settings.compensated ? kInfinity : most_shown(s, impl_->context.clamp));
+        block->set_column(
+            impl_->columns.plan.slot[s.column],
+            impl_->settings.compensated ? kInfinity : max_contribution(s, impl_->context.clamp));
         block->trace();
         cost.entries += items;
         cost.culled += items - block->survivors();

@@ -83,7 +83,7 @@ scatter::ClosureBound SceneRowBounds::closure_bound(Index i) const {
 
 void SceneRowBounds::set_rows(std::span<const Index> rows) {
   box_ = {};
-  matt_ = most_ = most_direct_ = Rgb(0);
+  matt_ = most_ = max_direct_ = Rgb(0);
   closures_.clear();
   behind_ = sharp_ = false;
   std::size_t closures = 0;
@@ -118,7 +118,7 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
     if (many_) {
       const scatter::ClosureBound bound = closure_bound(i);
       most_ = greater(most_, bound.anywhere(Slant::cosine));
-      most_direct_ = greater(most_direct_, bound.anywhere(Slant::cosine, rules_.traced_direct_below));
+      max_direct_ = greater(max_direct_, bound.anywhere(Slant::cosine, rules_.traced_direct_below));
     } else {
       closures_.push_back(closure_bound(i));
     }
@@ -129,7 +129,7 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
 // f times the cosine for light from a cone of directions that make at most this cosine with a normal.
 Rgb SceneRowBounds::scattered(const DirectionCone& cone, float cosine, bool direct) const {
   Rgb most = cosine > 0 ? matt_ * cosine : Rgb(0);
-  if (many_) return cosine > 0 || behind_ ? greater(most, direct ? most_direct_ : most_) : most;
+  if (many_) return cosine > 0 || behind_ ? greater(most, direct ? max_direct_ : most_) : most;
   for (const scatter::ClosureBound& closure : closures_)
     most = greater(most, closure.within(cone, Slant::cosine, direct ? rules_.traced_direct_below : 0));
   return most;
