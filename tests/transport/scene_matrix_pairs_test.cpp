@@ -240,7 +240,9 @@ TEST_F(SceneMatrixPairs, ClampedEnergyIsTheCallsOwn) {
 
 // What the matrix tells of all worlds is so: features of the right lengths, visibilities of 0 and 1.
 TEST_F(SceneMatrixPairs, TellsWhatItSays) {
-  const SceneMatrix scene = make();
+  VirtualLights lights = ends_->lights;
+  lights.half.assign(lights.size(), 1);
+  const SceneMatrix scene(*world_, ends_->receivers, lights, {});
   constexpr matrix::Capabilities kByCalls{matrix::Ability::bounds, matrix::Ability::binary_visibility};
   EXPECT_EQ(scene.matrix::LightingMatrix::capabilities().with(kByCalls), SceneMatrix::kCapabilities);
   EXPECT_EQ(scene.capabilities(), SceneMatrix::kCapabilities);
