@@ -38,7 +38,7 @@ class MixedLights final : public matrix::LightingMatrix {
       if (set.emission != Emission::omni)
         set.cone = {alike ? Vec3f{0, 0, 1} : normalize(warp_sphere(rng.next_2d()) + Vec3f{0, 0, 0.5f}),
                     rng.next_float() < 0.1f ? 0.9f : 1.0f};
-      if (set.spherical) set.radius = set.least_radius = rng.next_float() + 0.01f;
+      if (set.spherical) set.radius = set.min_radius = rng.next_float() + 0.01f;
       set.intensity =
           rng.next_float() < 0.05f ? Rgb(0) : Rgb(rng.next_float(), rng.next_float(), rng.next_float());
       if (rng.next_float() < 0.5f) set.ceiling = set.intensity * 2;
@@ -129,7 +129,7 @@ TEST(LightTree, NodesBoundTheirColumnsAndAddThemUp) {
         ASSERT_TRUE(holds(set.cone, one.cone));
       }
       if (set.spherical) {
-        ASSERT_LE(set.least_radius, one.radius);
+        ASSERT_LE(set.min_radius, one.radius);
         ASSERT_GE(set.radius, one.radius);
       }
       power += luminance(lights.emitted[j]);

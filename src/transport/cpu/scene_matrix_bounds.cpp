@@ -79,7 +79,7 @@ ColumnSet SceneMatrix::column_set(Index j) const {
   }
   if (sphere) {
     set.spherical = true;
-    set.radius = set.least_radius = lights.radius[j];
+    set.radius = set.min_radius = lights.radius[j];
     const SphereRules& rules = impl_->settings.spheres;
     if (rules.strategies == SphereRules::Strategies::all) {
       if (rules.samples == SphereRules::Samples::cone) {

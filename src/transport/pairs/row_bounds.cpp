@@ -64,9 +64,9 @@ float towards(float cosine, float cos_spread, float sin_spread) {
 float sine_of(float cosine) { return std::sqrt(std::max(0.0f, 1 - cosine * cosine)); }
 
 // Solid angle of a sphere over π times its radius squared, where it is largest; from inside, a hemisphere's.
-float sphere_geometry(float distance2, float radius, float least_radius, float beyond) {
-  distance2 = std::max(distance2, square(beyond * least_radius));
-  if (distance2 <= radius * radius) return 2 / std::max(distance2, least_radius * least_radius);
+float sphere_geometry(float distance2, float radius, float min_radius, float beyond) {
+  distance2 = std::max(distance2, square(beyond * min_radius));
+  if (distance2 <= radius * radius) return 2 / std::max(distance2, min_radius * min_radius);
   return 2 / (distance2 * (1 + std::sqrt(1 - radius * radius / distance2)));
 }
 
@@ -166,7 +166,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     if (!set.spherical) {
       parts.near = d.distance2 > 0 ? 1 / d.distance2 : kInfinity;
     } else {
-      parts.near = sphere_geometry(d.distance2, set.radius, set.least_radius, rules_.spheres.beyond);
+      parts.near = sphere_geometry(d.distance2, set.radius, set.min_radius, rules_.spheres.beyond);
       parts.far = std::min(parts.near, parts.far);
       const bool near = d.distance2 < square(kDiscReach * set.radius) * 1.00001f;
       if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) slanted = false;
