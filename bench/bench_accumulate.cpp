@@ -192,21 +192,19 @@ void columns_against_bare(benchmark::State& state, const Bench& bench) {
   const auto columns = bench.pick_columns();
   std::vector<Rgb> sums(bench.receivers.size());
   std::vector<double> bare_rates, rates, ratios;
-  const auto& rays = bench.matrix.counters().rays_shadow;
   for (auto _ : state) {
     const Timer bare_timer;
     const BareResult bare = trace_bare(bench.bare, bench.bare_receivers, bench.lights, columns);
     const double bare_seconds = bare_timer.seconds();
-    const std::uint64_t before = rays;
     const Timer timer;
-    bench.matrix.accumulate(columns, sums, {});
+    const std::uint64_t rays = bench.matrix.accumulate(columns, sums, {}).rays;
     const double seconds = timer.seconds();
     bare_rates.push_back(1e-6 * static_cast<double>(bare.rays) / bare_seconds);
-    rates.push_back(1e-6 * static_cast<double>(rays - before) / seconds);
+    rates.push_back(1e-6 * static_cast<double>(rays) / seconds);
     ratios.push_back(rates.back() / bare_rates.back());
     state.SetIterationTime(seconds);
     state.counters["culled"] =
-        1 - static_cast<double>(rays - before) / static_cast<double>(columns.size() * bench.receivers.size());
+        1 - static_cast<double>(rays) / static_cast<double>(columns.size() * bench.receivers.size());
   }
   state.counters["bare Mrays/s"] = median(bare_rates);
   state.counters["accumulate Mrays/s"] = median(rates);
@@ -216,16 +214,13 @@ void columns_against_bare(benchmark::State& state, const Bench& bench) {
 void rows(benchmark::State& state, const Bench& bench) {
   Rng rng(2, Stage::benchmark);
   std::vector<Rgb> out(bench.lights.size());
-  const auto& rays = bench.matrix.counters().rays_shadow;
   std::uint64_t traced = 0;
   double seconds = 0;
   for (auto _ : state) {
     const auto i = static_cast<matrix::Index>(rng.next_below(bench.receivers.size()));
-    const std::uint64_t before = rays;
     const Timer timer;
-    bench.matrix.row(i, out, matrix::Part::value);
+    traced += bench.matrix.row(i, out, matrix::Part::value).rays;
     seconds += timer.seconds();
-    traced += rays - before;
     benchmark::DoNotOptimize(out.data());
   }
   state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced) / seconds;

@@ -10,6 +10,7 @@ namespace lumirank {
 namespace {
 
 using matrix::ColumnSet;
+using matrix::Cost;
 using matrix::Index;
 
 // Lights on the walls, the floor and the ceiling of a room, brighter ones fewer, in no order; no entries.
@@ -29,11 +30,17 @@ class MadeUpLights final : public matrix::LightingMatrix {
   }
   std::size_t rows() const override { return 0; }
   std::size_t columns() const override { return position_.size(); }
-  void row(Index, std::span<Rgb>, matrix::Part) const override {}
-  void column(Index, std::span<Rgb>, matrix::Part) const override {}
-  void block(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {}
-  void entries(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {}
-  void accumulate(std::span<const matrix::ScaledColumn>, std::span<Rgb>, const Sinks&) const override {}
+  Cost row(Index, std::span<Rgb>, matrix::Part) const override { return {}; }
+  Cost column(Index, std::span<Rgb>, matrix::Part) const override { return {}; }
+  Cost block(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {
+    return {};
+  }
+  Cost entries(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {
+    return {};
+  }
+  Cost accumulate(std::span<const matrix::ScaledColumn>, std::span<Rgb>, const Sinks&) const override {
+    return {};
+  }
   ColumnSet column_set(Index j) const override {
     ColumnSet set;
     set.emission = matrix::Emission::oriented;
@@ -42,7 +49,6 @@ class MadeUpLights final : public matrix::LightingMatrix {
     set.intensity = emitted_[j];
     return set;
   }
-  std::unique_ptr<matrix::RowBounds> row_bounds() const override { return nullptr; }
   matrix::ColumnFeatures column_features() const override {
     matrix::ColumnFeatures features;
     features.emitted = emitted_;

@@ -17,6 +17,7 @@
 #include "base/random.h"
 #include "bench_scene.h"
 #include "matrix/entry_reader.h"
+#include "matrix/metered_matrix.h"
 #include "methods/common/slices/slices.h"
 #include "transport/cpu/scene_matrix.h"
 
@@ -39,7 +40,8 @@ void for_slices(const matrix::LightingMatrix& matrix, const methods::Slices& sli
 void run(const std::string& file) {
   const bench::BenchScene scene(file, 800, 600);
   const transport::VirtualLights lights = scene.lights(100000);
-  const transport::SceneMatrix matrix(scene.world, scene.receivers, lights, {});
+  const transport::SceneMatrix scene_matrix(scene.world, scene.receivers, lights, {});
+  const matrix::MeteredMatrix matrix(scene_matrix);
   const methods::Slices slices = methods::make_slices(matrix.row_features(), matrix.rows());
 
   Rng rng(1, Stage::benchmark);
@@ -78,20 +80,21 @@ void run(const std::string& file) {
               {"single visibilities in slices", singles}};
   std::printf("%s: %zu receivers in %zu slices, %zu lights, %zu columns\n", file.c_str(), matrix.rows(),
               slices.count(), lights.size(), columns.size());
-  auto& counters = matrix.counters();
   int number = 0;
   for (const auto& way : ways) {
     if (const int only = setting("BENCH_ONLY", 0); ++number != only && only != 0) continue;
     double best_entry = 1e30, best_ray = 1e30, culled = 0;
     for (int round = 0; round < setting("BENCH_ROUNDS", 5); ++round) {
-      counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;
+      const matrix::Cost before = matrix.total();
       const std::clock_t start = std::clock();  // of all threads: others' programs do not count
       way.go();
       const double ns = 1e9 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-      best_entry = std::min(best_entry, ns / static_cast<double>(counters.entries_evaluated));
-      if (counters.rays_shadow > 0)
-        best_ray = std::min(best_ray, ns / static_cast<double>(counters.rays_shadow));
-      culled = static_cast<double>(counters.entries_culled) / static_cast<double>(counters.entries_evaluated);
+      const matrix::Cost after = matrix.total();
+      const auto entries = static_cast<double>(after.entries - before.entries);
+      best_entry = std::min(best_entry, ns / entries);
+      if (after.rays > before.rays)
+        best_ray = std::min(best_ray, ns / static_cast<double>(after.rays - before.rays));
+      culled = static_cast<double>(after.culled - before.culled) / entries;
     }
     std::printf("%-32s %7.1f ns per entry", way.name, best_entry);
     if (best_ray < 1e30) std::printf(", %7.1f ns per ray", best_ray);

@@ -47,8 +47,9 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
     task.info = &pipeline::chosen_method(settings, &task.why);
     task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&
-                      settings.method.target_error <= 0 && !task.info->combination;
+                      settings.method.target_error <= 0 && !task.info->contract.combination;
     pipeline::check_layers(*task.info, settings);
+    methods::require_capabilities(*task.info, transport::SceneMatrix::kCapabilities);
     task.method = task.info->make(settings.method.parameters);
     if (const std::string text = pipeline::error_not_aimed_at(*task.info, settings.method.target_error);
         !text.empty())

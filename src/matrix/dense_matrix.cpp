@@ -8,11 +8,12 @@
 namespace lumirank::matrix {
 
 DenseMatrix::DenseMatrix(std::size_t rows, std::size_t columns, std::vector<Rgb> unoccluded,
-                         std::vector<std::uint8_t> visibility)
+                         std::vector<float> visibility)
     : rows_(rows), columns_(columns), unoccluded_(std::move(unoccluded)), visibility_(std::move(visibility)) {
   if (unoccluded_.size() != rows * columns) throw InternalError("dense matrix: wrong number of entries");
   if (!visibility_.empty() && visibility_.size() != rows * columns)
     throw InternalError("dense matrix: wrong number of visibilities");
+  binary_ = std::ranges::all_of(visibility_, [](float v) { return v == 0 || v == 1; });
 }
 
 DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
@@ -30,11 +31,12 @@ DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
       rows_(other.rows_),
       columns_(other.columns_),
       unoccluded_(std::move(other.unoccluded_)),
-      visibility_(std::move(other.visibility_)) {}
+      visibility_(std::move(other.visibility_)),
+      binary_(other.binary_) {}
 
 Rgb DenseMatrix::at(std::size_t i, std::size_t j, Part part) const {
   const Rgb e = unoccluded_[i * columns_ + j];
-  const float v = visibility_.empty() ? 1.0f : static_cast<float>(visibility_[i * columns_ + j]);
+  const float v = visibility_.empty() ? 1.0f : visibility_[i * columns_ + j];
   switch (part) {
     case Part::unoccluded:
       return e;
@@ -46,56 +48,71 @@ Rgb DenseMatrix::at(std::size_t i, std::size_t j, Part part) const {
   return e * v;
 }
 
-void DenseMatrix::pay(std::size_t i, std::size_t j) const {
-  Counters& c = counters();
-  c.entries_evaluated.fetch_add(1, std::memory_order_relaxed);
-  (is_black(unoccluded_[i * columns_ + j]) ? c.entries_culled : c.rays_shadow)
-      .fetch_add(1, std::memory_order_relaxed);
+void DenseMatrix::add_to(Cost& cost, std::size_t i, std::size_t j) const {
+  ++cost.entries;
+  ++(is_black(unoccluded_[i * columns_ + j]) ? cost.culled : cost.rays);
 }
 
-void DenseMatrix::row(Index i, std::span<Rgb> out, Part part) const {
+Cost DenseMatrix::row(Index i, std::span<Rgb> out, Part part) const {
+  Cost cost;
   for (std::size_t j = 0; j < columns_; ++j) {
-    pay(i, j);
+    add_to(cost, i, j);
     out[j] = at(i, j, part);
   }
+  return cost;
 }
 
-void DenseMatrix::column(Index j, std::span<Rgb> out, Part part) const {
+Cost DenseMatrix::column(Index j, std::span<Rgb> out, Part part) const {
+  Cost cost;
   for (std::size_t i = 0; i < rows_; ++i) {
-    pay(i, j);
+    add_to(cost, i, j);
     out[i] = at(i, j, part);
   }
+  return cost;
 }
 
-void DenseMatrix::block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+Cost DenseMatrix::block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                         Part part) const {
+  Cost cost;
   for (std::size_t a = 0; a < rows.size(); ++a)
     for (std::size_t b = 0; b < columns.size(); ++b) {
-      pay(rows[a], columns[b]);
+      add_to(cost, rows[a], columns[b]);
       out[a * columns.size() + b] = at(rows[a], columns[b], part);
     }
+  return cost;
 }
 
-void DenseMatrix::entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+Cost DenseMatrix::entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                           Part part) const {
+  Cost cost;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    pay(rows[k], columns[k]);
+    add_to(cost, rows[k], columns[k]);
     out[k] = at(rows[k], columns[k], part);
   }
+  return cost;
 }
 
-void DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
+Cost DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                              const Sinks& sinks) const {
   if (sums.size() != rows_) throw InternalError("dense matrix: sums of the wrong length");
   if (sinks.cancelled()) throw Cancelled();
-  parallel_for(rows_, 64, [&](std::size_t begin, std::size_t end) {
+  const Cost all = parallel_sum(rows_, 64, Cost{}, [&](std::size_t begin, std::size_t end) {
+    Cost cost;
     for (std::size_t i = begin; i < end; ++i)
       for (const ScaledColumn& c : columns) {
-        pay(i, c.column);
+        add_to(cost, i, c.column);
         sums[i] += c.scale * at(i, c.column);
       }
+    return cost;
   });
   sinks.report("columns", 1.0);
+  return all;
+}
+
+Capabilities DenseMatrix::capabilities() const {
+  Capabilities told = LightingMatrix::capabilities().with({Ability::bounds});
+  if (binary_) told = told.with({Ability::binary_visibility});
+  return told;
 }
 
 ColumnSet DenseMatrix::column_set(Index j) const {

@@ -12,22 +12,23 @@ namespace lumirank::matrix {
 
 class DenseMatrix : public LightingMatrix {
  public:
-  // unoccluded: rows × columns, row-major. visibility: the same number of 0s and 1s, or empty (all visible).
+  // unoccluded: rows × columns, row-major. visibility: the same number of values from 0 to 1, or empty (all
+  // visible); it is binary where none lies between.
   DenseMatrix(std::size_t rows, std::size_t columns, std::vector<Rgb> unoccluded,
-              std::vector<std::uint8_t> visibility = {});
-  // Takes the numbers along; what was paid is not (counters start at 0).
+              std::vector<float> visibility = {});
   DenseMatrix(DenseMatrix&& other) noexcept;
 
   std::size_t rows() const override { return rows_; }
   std::size_t columns() const override { return columns_; }
-  void row(Index i, std::span<Rgb> out, Part part = Part::value) const override;
-  void column(Index j, std::span<Rgb> out, Part part = Part::value) const override;
-  void block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+  Cost row(Index i, std::span<Rgb> out, Part part = Part::value) const override;
+  Cost column(Index j, std::span<Rgb> out, Part part = Part::value) const override;
+  Cost block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
              Part part = Part::value) const override;
-  void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+  Cost entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                Part part = Part::value) const override;
-  void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
+  Cost accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                   const Sinks& sinks = {}) const override;
+  Capabilities capabilities() const override;
   // The greatest entries of the column, whatever the row: bounds know nothing better of a made-up matrix.
   ColumnSet column_set(Index j) const override;
   std::unique_ptr<RowBounds> row_bounds() const override;
@@ -49,11 +50,13 @@ class DenseMatrix : public LightingMatrix {
   std::vector<Rgb> emitted;
 
  private:
-  void pay(std::size_t i, std::size_t j) const;
+  // Adds an entry to what a call cost.
+  void add_to(Cost& cost, std::size_t i, std::size_t j) const;
 
   std::size_t rows_, columns_;
   std::vector<Rgb> unoccluded_;
-  std::vector<std::uint8_t> visibility_;
+  std::vector<float> visibility_;
+  bool binary_ = true;
   mutable std::once_flag greatest_known_;
   mutable std::vector<Rgb> greatest_;  // by column: the greatest entries, as if all were visible
 };

@@ -54,7 +54,7 @@ ColumnSet join(const ColumnSet& a, const ColumnSet& b) {
   set.box.extend(b.box);
   set.cone = join(a.cone, b.cone);
   set.radius = std::max(a.radius, b.radius);
-  set.least_radius = std::min(a.least_radius, b.least_radius);
+  set.min_radius = std::min(a.min_radius, b.min_radius);
   set.direct = a.direct && b.direct;
   set.intensity += b.intensity;
   set.ceiling += b.ceiling;

@@ -39,7 +39,7 @@ struct ColumnSet {
   bool direct = false;
   Bounds3f box;                        // positions; not used if directional
   Cone cone;                           // oriented: normals; directional: directions towards the light
-  float radius = 0, least_radius = 0;  // of the largest and the smallest sphere
+  float radius = 0, min_radius = 0;  // of the largest and the smallest sphere
   // Sum over the columns of the greatest radiant intensity that each has in any direction, before the cosine
   // (directional: irradiance).
   Rgb intensity{0};

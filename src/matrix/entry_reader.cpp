@@ -6,16 +6,18 @@
 
 namespace lumirank::matrix {
 
-void EntryReader::unoccluded_scalars(Index j, Rgb weights, std::span<float> out) {
+Cost EntryReader::unoccluded_scalars(Index j, Rgb weights, std::span<float> out) {
   column_.resize(out.size());
-  column(j, column_, Part::unoccluded);
+  const Cost cost = column(j, column_, Part::unoccluded);
   for (std::size_t a = 0; a < out.size(); ++a)
     out[a] = weights.r * column_[a].r + weights.g * column_[a].g + weights.b * column_[a].b;
+  return cost;
 }
 
-void EntryReader::add_unoccluded(std::span<const ScaledColumn> columns, std::span<const float> shares,
+Cost EntryReader::add_unoccluded(std::span<const ScaledColumn> columns, std::span<const float> shares,
                                  std::span<const std::uint32_t> of, std::span<Rgb> sums) {
-  if (columns.empty()) return;
+  Cost cost;
+  if (columns.empty()) return cost;
   if (shares.size() % columns.size() != 0 || of.size() != sums.size())
     throw InternalError("add_unoccluded: as many shares for every column, and one of them for every row");
   const std::size_t each = shares.size() / columns.size();
@@ -23,9 +25,10 @@ void EntryReader::add_unoccluded(std::span<const ScaledColumn> columns, std::spa
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto share = shares.subspan(k * each, each);
     if (std::ranges::all_of(share, [](float s) { return s == 0; })) continue;
-    column(columns[k].column, column_, Part::unoccluded);
+    cost += column(columns[k].column, column_, Part::unoccluded);
     for (std::size_t a = 0; a < sums.size(); ++a) sums[a] += columns[k].scale * share[of[a]] * column_[a];
   }
+  return cost;
 }
 
 }  // namespace lumirank::matrix

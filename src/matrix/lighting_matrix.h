@@ -1,13 +1,12 @@
 // The lighting matrix: one row per receiver, one column per virtual light, entries on demand and in bulk
 // only.
 //
-// A(i,j) = E(i,j)·V(i,j): E the unoccluded contribution (RGB), V the visibility (0 or 1 between surfaces). An
-// entry is a pure function of (seed, receiver id, light id): the same number whether it comes in a row, a
-// column, a block or a list. Implemented by transport's SceneMatrix and by the synthetic matrices of the
-// tests; methods see nothing else.
+// A(i,j) = E(i,j)·V(i,j): E the unoccluded contribution (RGB), V the visibility, from 0 to 1; 0 or 1 alone
+// where the matrix says so (Ability::binary_visibility). An entry is a pure function of (seed, receiver id,
+// light id): the same number whether it comes in a row, a column, a block or a list. Implemented by
+// transport's SceneMatrix and by the synthetic matrices of the tests; methods see nothing else.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,18 +17,13 @@
 #include "base/rgb.h"
 #include "base/sinks.h"
 #include "base/vec.h"
+#include "matrix/capabilities.h"
+#include "matrix/cost.h"
 #include "matrix/entry_bounds.h"
 
 namespace lumirank::matrix {
 
 class EntryReader;
-
-// What has been paid so far. Methods compare by cost as well as by time.
-struct Counters {
-  std::atomic<std::uint64_t> entries_evaluated{0};  // entries whose value was needed (zero or not)
-  std::atomic<std::uint64_t> entries_culled{0};     // of these, decided without a ray because E = 0
-  std::atomic<std::uint64_t> rays_shadow{0};
-};
 
 // Plain numbers about rows, for methods that use geometry. Arrays of length rows(); may be empty if unknown.
 struct RowFeatures {
@@ -66,6 +60,8 @@ struct ScaledColumn {
   float most_shown = 0;
 };
 
+// Required: sizes and entries. Optional: features, bounds, and what capabilities() tells of them. A call's
+// cost is what it spent itself; whoever wants a total asks a MeteredMatrix.
 class LightingMatrix {
  public:
   virtual ~LightingMatrix() = default;
@@ -73,41 +69,36 @@ class LightingMatrix {
   virtual std::size_t rows() const = 0;
   virtual std::size_t columns() const = 0;
 
-  // Entries of one row for all columns: out[j], j < columns(). Part::visibility fills all three channels with
-  // 0 or 1.
-  virtual void row(Index i, std::span<Rgb> out, Part part = Part::value) const = 0;
+  // Entries of one row for all columns: out[j], j < columns(). Part::visibility fills all three channels
+  // with V.
+  virtual Cost row(Index i, std::span<Rgb> out, Part part = Part::value) const = 0;
   // Entries of one column for all rows.
-  virtual void column(Index j, std::span<Rgb> out, Part part = Part::value) const = 0;
+  virtual Cost column(Index j, std::span<Rgb> out, Part part = Part::value) const = 0;
   // The sub-matrix rows × columns, row-major: out[a·columns.size() + b].
-  virtual void block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+  virtual Cost block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                      Part part = Part::value) const = 0;
   // Single entries: out[k] = A(rows[k], columns[k]).
-  virtual void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+  virtual Cost entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                        Part part = Part::value) const = 0;
   // sums[i] += Σ_k scale_k · A(i, column_k), without storing a column. The order of the sum is the order of
   // `columns`. Most of a render's time is spent here. Checks `sinks.cancel` and reports progress between
   // blocks.
-  virtual void accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
+  virtual Cost accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                           const Sinks& sinks = {}) const = 0;
-
-  // r + g + b that clamping took away from the visible entries that have been evaluated so far, 0 if nothing
-  // is clamped: what a row lost is the difference before and after it.
-  virtual double clamped_energy() const { return 0; }
 
   // Entries for one thread at a time.
   virtual std::unique_ptr<EntryReader> reader() const;
 
-  // Bounds: what column j is by itself, and a work space for questions about rows.
-  virtual ColumnSet column_set(Index j) const = 0;
-  virtual std::unique_ptr<RowBounds> row_bounds() const = 0;
+  // What it can tell, which does not change. By itself: the features whose lengths are those of the matrix.
+  virtual Capabilities capabilities() const;
+
+  // Bounds (Ability::bounds; without it InternalError): what column j is by itself, and a work space for
+  // questions about rows.
+  virtual ColumnSet column_set(Index j) const;
+  virtual std::unique_ptr<RowBounds> row_bounds() const;
 
   virtual RowFeatures row_features() const { return {}; }
   virtual ColumnFeatures column_features() const { return {}; }
-
-  Counters& counters() const { return counters_; }
-
- private:
-  mutable Counters counters_;
 };
 
 }  // namespace lumirank::matrix

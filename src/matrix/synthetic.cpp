@@ -93,7 +93,7 @@ DenseMatrix low_rank_matrix(const SyntheticSize& size, std::size_t rank, std::si
 
 DenseMatrix sparse_matrix(const SyntheticSize& size, double share) {
   std::vector<Rgb> entries(size.rows * size.columns);
-  std::vector<std::uint8_t> visible(size.rows * size.columns);
+  std::vector<float> visible(size.rows * size.columns);
   std::vector<float> power(size.columns);
   const auto patch = static_cast<std::size_t>(share * static_cast<double>(size.rows)) + 1;
   for (std::size_t j = 0; j < size.columns; ++j) {
@@ -105,12 +105,29 @@ DenseMatrix sparse_matrix(const SyntheticSize& size, double share) {
     for (std::size_t i = 0; i < size.rows; ++i) {
       entries[i * size.columns + j] = colour * (0.2f + rng.next_float());
       const bool in_patch = (i + size.rows - start) % size.rows < patch;
-      visible[i * size.columns + j] = in_patch && j % 13 != 0;
+      visible[i * size.columns + j] = in_patch && j % 13 != 0 ? 1.0f : 0.0f;
     }
   }
   DenseMatrix m(size.rows, size.columns, std::move(entries), std::move(visible));
   m.pixel = square_pixels(size.rows);
   m.power = power;
+  return m;
+}
+
+DenseMatrix hazy_matrix(const SyntheticSize& size) {
+  DenseMatrix clear = low_rank_matrix(size, 4);
+  std::vector<Rgb> entries(size.rows * size.columns);
+  std::vector<float> visible(size.rows * size.columns);
+  for (std::size_t i = 0; i < size.rows; ++i) {
+    Rng rng(size.seed, Stage::test, 10, i);
+    for (std::size_t j = 0; j < size.columns; ++j) {
+      entries[i * size.columns + j] = clear.at(i, j);
+      visible[i * size.columns + j] = std::exp(-2 * rng.next_float());
+    }
+  }
+  DenseMatrix m(size.rows, size.columns, std::move(entries), std::move(visible));
+  m.pixel = clear.pixel;
+  m.power = clear.power;
   return m;
 }
 
@@ -170,7 +187,7 @@ DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
         {{place.x, place.y, 0.2f + 0.6f * rng.next_float()}, 0.05f + 0.1f * rng.next_float(), k % 2 == 0});
   }
   std::vector<Rgb> entries(size.rows * size.columns);
-  std::vector<std::uint8_t> visible(size.rows * size.columns);
+  std::vector<float> visible(size.rows * size.columns);
   for (std::size_t i = 0; i < size.rows; ++i)
     for (std::size_t j = 0; j < size.columns; ++j) {
       const Vec3f to = lamps[j] - receivers[i];
@@ -178,7 +195,7 @@ DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
       entries[i * size.columns + j] = colour[j] * (to.z * to.z / (d2 * d2) * kInvPi);
       bool seen = true;
       for (const Occluder& o : in_the_way) seen = seen && !blocks(o, receivers[i], lamps[j]);
-      visible[i * size.columns + j] = seen;
+      visible[i * size.columns + j] = seen ? 1.0f : 0.0f;
     }
   DenseMatrix m(size.rows, size.columns, std::move(entries), std::move(visible));
   m.pixel = pixel;

@@ -27,6 +27,10 @@ DenseMatrix low_rank_matrix(const SyntheticSize& size, std::size_t rank, std::si
 // the unoccluded part. Some columns are zero everywhere and some have no power.
 DenseMatrix sparse_matrix(const SyntheticSize& size, double share);
 
+// The low-rank matrix of rank 4 as if through fog: visibilities between 0 and 1, apart from the unoccluded
+// part.
+DenseMatrix hazy_matrix(const SyntheticSize& size);
+
 // The adversary of figure 8: omni lamps in recesses. A smooth common part reaches all rows; besides, every
 // column lights a few rows of its own, strongly, so columns look alike on most sampled rows.
 DenseMatrix recess_matrix(const SyntheticSize& size);

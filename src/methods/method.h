@@ -77,8 +77,8 @@ struct MethodInfo {
   // For a method that does not aim at RunOptions::target_error though its sums err: the parameters that
   // decide its error, for a warning. "error-bound or max-nodes"; empty for all others.
   std::string error_parameters{};
-  // Whether its estimate is one combination of columns (Estimate::combination), which splits by light.
-  bool combination = false;
+  // What it needs of a matrix, and whether its estimate is one combination of columns.
+  matrix::MethodContract contract{};
 };
 
 // The list: adding a method here enrols it in the command line, the documentation and the tests that all
@@ -86,5 +86,9 @@ struct MethodInfo {
 const std::vector<MethodInfo>& all_methods();
 // Throws InputError naming the valid methods.
 const MethodInfo& find_method(const std::string& name);
+// Throws InputError if the method needs something that a matrix with these capabilities does not tell, naming
+// it and the methods that do without. Every method of the list asks this of its matrix before it runs; who
+// knows the capabilities earlier asks earlier.
+void require_capabilities(const MethodInfo& method, matrix::Capabilities offered);
 
 }  // namespace lumirank::methods

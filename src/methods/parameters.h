@@ -104,7 +104,7 @@ struct MethodText {
   std::string name, summary;
   std::string paper = "";
   std::string error_parameters = "";  // as in MethodInfo
-  bool combination = false;           // as in MethodInfo
+  matrix::MethodContract contract{};  // as in MethodInfo
 };
 
 // The entry of a method M whose constructor takes its settings S, and which uses all generated lights.
@@ -119,7 +119,7 @@ MethodInfo method_info(const MethodText& text, const Fields<S>& fields) {
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
           text.error_parameters,
-          text.combination};
+          text.contract};
 }
 
 // Every parameter of the method with the value that a run with these settings uses: what a report records.

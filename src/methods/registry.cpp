@@ -15,18 +15,37 @@
 
 namespace lumirank::methods {
 
+namespace {
+
+class CheckedMethod final : public Method {
+ public:
+  CheckedMethod(std::string name, std::unique_ptr<Method> method)
+      : name_(std::move(name)), method_(std::move(method)) {}
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    require_capabilities(find_method(name_), matrix.capabilities());
+    return method_->run(matrix, options);
+  }
+
+ private:
+  std::string name_;
+  std::unique_ptr<Method> method_;
+};
+
+std::vector<MethodInfo> checked(std::vector<MethodInfo> methods) {
+  for (MethodInfo& m : methods)
+    m.make = [name = m.name, make = std::move(m.make)](const auto& settings) -> std::unique_ptr<Method> {
+      return std::make_unique<CheckedMethod>(name, make(settings));
+    };
+  return methods;
+}
+
+}  // namespace
+
 const std::vector<MethodInfo>& all_methods() {
-  static const std::vector<MethodInfo> methods{brute_force_info(),
-                                               instant_radiosity_info(),
-                                               power_sampling_info(),
-                                               row_column_info(),
-                                               lightcuts_info(),
-                                               multidimensional_lightcuts_info(),
-                                               stochastic_lightcuts_info(),
-                                               lightslice_info(),
-                                               sampling_recovery_info(),
-                                               slice_cuts_info(),
-                                               visibility_completion_info()};
+  static const std::vector<MethodInfo> methods =
+      checked({brute_force_info(), instant_radiosity_info(), power_sampling_info(), row_column_info(),
+               lightcuts_info(), multidimensional_lightcuts_info(), stochastic_lightcuts_info(),
+               lightslice_info(), sampling_recovery_info(), slice_cuts_info(), visibility_completion_info()});
   return methods;
 }
 
@@ -37,6 +56,17 @@ const MethodInfo& find_method(const std::string& name) {
     list += (list.empty() ? "" : ", ") + m.name;
   }
   throw InputError("there is no method '" + name + "'", "methods: " + list);
+}
+
+void require_capabilities(const MethodInfo& method, matrix::Capabilities offered) {
+  const matrix::Capabilities missing = method.contract.needs.without(offered);
+  if (missing.empty()) return;
+  std::string others;
+  for (const MethodInfo& m : all_methods())
+    if (m.contract.needs.without(offered).empty()) others += (others.empty() ? "" : ", ") + m.name;
+  throw InputError(
+      "the method '" + method.name + "' needs " + describe(missing) + ", which the scene does not provide",
+      others.empty() ? "no method does without" : "methods that do without: " + others);
 }
 
 }  // namespace lumirank::methods

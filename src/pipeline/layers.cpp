@@ -120,12 +120,12 @@ bool wants_illuminance(const RenderSettings& settings) {
 }
 
 void check_layers(const methods::MethodInfo& method, const RenderSettings& settings) {
-  if (method.combination) return;
+  if (method.contract.combination) return;
   for (const std::string& layer : settings.layers) {
     if (!parts_light(layer)) continue;
     std::string able;
     for (const auto& other : methods::all_methods())
-      if (other.combination) able += (able.empty() ? "" : ", ") + other.name;
+      if (other.contract.combination) able += (able.empty() ? "" : ", ") + other.name;
     throw InputError("the method '" + method.name + "' cannot give the layer '" + layer +
                          "': its columns differ from receiver to receiver",
                      "choose one of " + able + ", or leave '--method auto'");

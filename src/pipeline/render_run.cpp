@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "matrix/metered_matrix.h"
 #include "methods/common/timed_choices.h"
 #include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
@@ -242,7 +243,9 @@ class RenderRun {
         if (throttle_.due()) throttle_.show(as_asked(image_of(sums)));
       };
     Timer timer;
-    estimate_ = task_.method->run(*prepared_->matrix, run);
+    const matrix::MeteredMatrix metered(*prepared_->matrix);
+    estimate_ = task_.method->run(metered, run);
+    cost_ = metered.total();
     seconds_["method"] = timer.seconds();
     result_.interrupted = estimate_.interrupted;
     advise(run.time_seconds);
@@ -329,17 +332,12 @@ class RenderRun {
   }
 
   void layers() {
-    // The report counts what the method looked at; layers look at the chosen columns once more.
-    auto& counters = prepared_->matrix->counters();
-    const auto evaluated = counters.entries_evaluated.load(), culled = counters.entries_culled.load(),
-               rays = counters.rays_shadow.load();
     if (!add_layers(result_.picture, *prepared_, traced_, estimate_, asked_.layers, sinks_))
       result_.interrupted = true;
     if (illuminance_)
       result_.picture.planes.push_back({"illuminance", to_picture(*illuminance_).planes[0].rgb});
     else if (wants_illuminance(asked_))
       sinks_.warn("interrupted: the picture has no layer illuminance");
-    counters.entries_evaluated = evaluated, counters.entries_culled = culled, counters.rays_shadow = rays;
   }
 
   RenderResult picture() {
@@ -368,7 +366,7 @@ class RenderRun {
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
     estimate_.trace.notes["method.why"] = task_.why;
     if (!plan_.shortage.empty()) estimate_.trace.notes["budget.short"] = plan_.shortage;
-    result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, choices_.made());
+    result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
     seconds_["total"] = task_.timer.seconds();
     result_.report.seconds = seconds_;
   }
@@ -394,6 +392,7 @@ class RenderRun {
   double direct_pace_ = 0;
   SharedPrepared prepared_;
   methods::Estimate estimate_;
+  matrix::Cost cost_;  // of the method; layers by light go over its columns once more
   std::optional<image::Image> illuminance_;
   std::map<std::string, double> seconds_;
   RenderResult result_;

@@ -66,7 +66,7 @@ std::size_t peak_memory_bytes() {
 }
 
 Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
-                   const methods::MethodInfo& method, const methods::Estimate& estimate,
+                   const methods::MethodInfo& method, const methods::Estimate& estimate, const matrix::Cost& spent,
                    const methods::TimedChoices::Lists& choices) {
   Report report;
   report.method = method.name;
@@ -78,11 +78,9 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
   auto& numbers = report.numbers;
   if (numbers.contains("error.estimate")) report.notes["error.of"] = "the light that columns carry";
 
-  const auto& matrix = *prepared.matrix;
-  const auto& counters = matrix.counters();
-  const double all = static_cast<double>(matrix.rows()) * static_cast<double>(matrix.columns());
-  Report::Cost cost{counters.entries_evaluated.load(), counters.entries_culled.load(),
-                    counters.rays_shadow.load(), 0};
+  const transport::SceneMatrix& scene_matrix = *prepared.matrix;
+  const double all = static_cast<double>(scene_matrix.rows()) * static_cast<double>(scene_matrix.columns());
+  Report::Cost cost{spent.entries, spent.culled, spent.rays, 0};
   // Some methods know a better one: of their reduced matrices.
   if (const auto own = numbers.find("sampling_rate"); own != numbers.end())
     cost.sampling_rate = own->second, numbers.erase(own);
@@ -100,13 +98,13 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
                                lights.paths};
   if (prepared.columns.radius_scale > 0)
     numbers["virtual_lights.radius_scale"] = prepared.columns.radius_scale;
-  numbers["clamp.removed_fraction"] = matrix.clamped_fraction();
+  numbers["clamp.removed_fraction"] = matrix::clamped_fraction(spent);
   numbers["traced_direct.samples"] = traced.direct_samples;
   numbers["traced_direct.below_roughness"] =
       traced.direct.empty() ? 0.0 : static_cast<double>(prepared.recipe.traced_below);
   numbers["meshes.left_out"] = static_cast<double>(prepared.world->info().meshes_left_out);
   report.memory = {peak_memory_bytes(), prepared.world->info().memory_bytes,
-                   prepared.receivers().memory_bytes(), lights.memory_bytes(), matrix.memory_bytes()};
+                   prepared.receivers().memory_bytes(), lights.memory_bytes(), scene_matrix.memory_bytes()};
   report.settings = settings;
   report.choices = choices;
   return report;

@@ -17,6 +17,7 @@
 #include "image/image_io.h"
 #include "image/metrics.h"
 #include "linalg/svd.h"
+#include "matrix/metered_matrix.h"
 #include "pages/html_text.h"
 #include "pages/page.h"
 #include "pathtrace/reference.h"
@@ -49,6 +50,8 @@ class Comparison {
     results_.scene = (file.parent_path().filename() / file.filename()).string();
     results_.version = program_version();
     results_.width = view_.width, results_.height = view_.height;
+    for (const PlannedRun& run : plan_)
+      methods::require_capabilities(methods::find_method(run.method), transport::SceneMatrix::kCapabilities);
     require_memory_of_runs();
     if (is_file()) read_reference();
     require_receivers();
@@ -274,16 +277,15 @@ class Comparison {
       if (const std::size_t wanted = info.lights_wanted(method_settings); wanted > 0)
         prepare(wanted, run.spp, run.seed);
 
-    auto& counters = prepared_->matrix->counters();
-    counters.entries_evaluated = counters.entries_culled = counters.rays_shadow = 0;
     methods::RunOptions options;
     options.seed = run.seed;
     options.time_seconds = run.time;
     options.target_error = settings_.base.method.target_error;
     options.sinks = sinks_;
     options.sinks.progress = {};
+    const matrix::MeteredMatrix metered(*prepared_->matrix);
     const Timer timer;
-    const methods::Estimate estimate = info.make(method_settings)->run(*prepared_->matrix, options);
+    const methods::Estimate estimate = info.make(method_settings)->run(metered, options);
     if (estimate.interrupted) return false;
 
     CompareRun result;
@@ -293,8 +295,9 @@ class Comparison {
     result.settings = method_settings;
     result.settings["lights"] = std::to_string(prepared_->lights().size());
     result.settings["spp"] = std::to_string(run.spp);
-    result.rays = static_cast<double>(counters.rays_shadow.load());
-    result.entries = static_cast<double>(counters.entries_evaluated.load());
+    const matrix::Cost cost = metered.total();
+    result.rays = static_cast<double>(cost.rays);
+    result.entries = static_cast<double>(cost.entries);
     result.sampling_rate = result.entries / (static_cast<double>(prepared_->matrix->rows()) *
                                              static_cast<double>(prepared_->matrix->columns()));
     result.numbers = estimate.trace.numbers;

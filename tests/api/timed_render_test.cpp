@@ -148,7 +148,7 @@ TEST(Layers, AreRefusedBeforeAnythingIsMadeWhereTheMethodCannotGiveThem) {
       RenderSettings s;
       s.method.name = info.name;
       s.layers = {aov};
-      if (info.combination) {
+      if (info.contract.combination) {
         EXPECT_NO_THROW(pipeline::check_layers(info, s)) << info.name;
         continue;
       }
@@ -158,7 +158,7 @@ TEST(Layers, AreRefusedBeforeAnythingIsMadeWhereTheMethodCannotGiveThem) {
       } catch (const InputError& e) {
         const std::string text = e.what();
         for (const auto& other : methods::all_methods())
-          if (other.combination) {
+          if (other.contract.combination) {
             EXPECT_NE(text.find(other.name), std::string::npos) << text;
           }
       }

@@ -16,6 +16,7 @@ std::vector<DenseMatrix> all_synthetic() {
   all.push_back(sparse_matrix({60, 45, 3}, 0.2));
   all.push_back(recess_matrix({60, 45, 4}));
   all.push_back(occluded_matrix({60, 45, 5}, 6));
+  all.push_back(hazy_matrix({60, 45, 6}));
   return all;
 }
 
@@ -48,7 +49,7 @@ TEST(DenseMatrix, ValueIsUnoccludedTimesVisibility) {
     for (std::size_t i = 0; i < m.rows(); ++i)
       for (std::size_t j = 0; j < m.columns(); ++j) {
         const Rgb v = m.at(i, j, Part::visibility);
-        EXPECT_TRUE(v == Rgb(0) || v == Rgb(1));
+        EXPECT_TRUE(v == Rgb(0) || v == Rgb(1) || !m.capabilities().has(Ability::binary_visibility));
         EXPECT_EQ(m.at(i, j), m.at(i, j, Part::unoccluded) * v);
         EXPECT_GE(std::min({m.at(i, j).r, m.at(i, j).g, m.at(i, j).b}), 0.0f);
       }
@@ -60,9 +61,10 @@ TEST(DenseMatrix, AccumulatesScaledColumnsInOrderAndCounts) {
   std::vector<Rgb> sums(30, Rgb(1)), expected(30, Rgb(1));
   for (std::size_t i = 0; i < 30; ++i)
     for (const auto& c : columns) expected[i] += c.scale * m.at(i, c.column);
-  m.accumulate(columns, sums);
+  const Cost cost = m.accumulate(columns, sums);
   EXPECT_EQ(sums, expected);
-  EXPECT_EQ(m.counters().entries_evaluated.load(), 90u);
+  EXPECT_EQ(cost.entries, 90u);
+  EXPECT_EQ(cost.culled + cost.rays, 90u);
 }
 
 TEST(DenseMatrix, StopsWhenCancelled) {
@@ -76,7 +78,7 @@ TEST(DenseMatrix, StopsWhenCancelled) {
 
 TEST(DenseMatrix, RefusesWrongSizes) {
   EXPECT_THROW(DenseMatrix(2, 3, std::vector<Rgb>(5)), InternalError);
-  EXPECT_THROW(DenseMatrix(2, 3, std::vector<Rgb>(6), std::vector<std::uint8_t>(5)), InternalError);
+  EXPECT_THROW(DenseMatrix(2, 3, std::vector<Rgb>(6), std::vector<float>(5)), InternalError);
 }
 
 TEST(Synthetic, FeaturesHaveTheLengthsOfTheMatrix) {

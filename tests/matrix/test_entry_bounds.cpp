@@ -70,13 +70,13 @@ TEST(ColumnSets, JoinedAddUp) {
   ColumnSet a, b;
   a.box.extend(Vec3f{0, 0, 0}), b.box.extend(Vec3f{1, 2, 3});
   a.intensity = Rgb(1, 2, 3), b.intensity = Rgb(4, 5, 6), a.ceiling = Rgb(1), b.ceiling = Rgb(2);
-  a.radius = a.least_radius = 1, b.radius = b.least_radius = 3, a.direct = true;
+  a.radius = a.min_radius = 1, b.radius = b.min_radius = 3, a.direct = true;
   const ColumnSet both = join(a, b);
   EXPECT_EQ(both.intensity, Rgb(5, 7, 9));
   EXPECT_EQ(both.ceiling, Rgb(3));
   EXPECT_EQ(both.box.hi, (Vec3f{1, 2, 3}));
   EXPECT_EQ(both.radius, 3);
-  EXPECT_EQ(both.least_radius, 1);
+  EXPECT_EQ(both.min_radius, 1);
   EXPECT_FALSE(both.direct);
 }
 

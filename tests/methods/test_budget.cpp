@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "matrix/metered_matrix.h"
 #include "matrix/synthetic.h"
 #include "methods/common/coarse_picture.h"
 #include "methods/common/column_pass.h"
@@ -24,6 +25,10 @@ struct TimedRun {
   double seconds = 0;
 };
 
+double seconds_of(const matrix::MeteredMatrix& m) {
+  return kSecondsOfEntry * static_cast<double>(m.total().entries);
+}
+
 class EveryBudget : public testing::TestWithParam<std::string> {
  protected:
   const MethodInfo& info() const { return find_method(GetParam()); }
@@ -40,13 +45,12 @@ class EveryBudget : public testing::TestWithParam<std::string> {
     RunOptions options;
     options.time_seconds = seconds;
     options.choices = choices;
-    const auto now = [&m] {
-      return kSecondsOfEntry * static_cast<double>(m.counters().entries_evaluated.load());
-    };
+    const matrix::MeteredMatrix metered(m);
+    const auto now = [&] { return seconds_of(metered); };
     options.clock = now;
     TimedRun run;
     const double begin = now();
-    with_threads(1, [&] { run.estimate = info().make(settings())->run(m, options); });
+    with_threads(1, [&] { run.estimate = info().make(settings())->run(metered, options); });
     run.seconds = now() - begin;
     return run;
   }
@@ -129,8 +133,9 @@ TEST_P(EveryBudget, AnUnreachableErrorEnds) {
   const auto m = matrix::occluded_matrix({400, 300, 3}, 8);
   RunOptions options;
   options.target_error = 1e-9;
-  const Estimate e = info().make(settings())->run(m, options);
-  EXPECT_LT(static_cast<double>(m.counters().entries_evaluated.load()), 10.0 * 400 * 300);
+  const matrix::MeteredMatrix metered(m);
+  const Estimate e = info().make(settings())->run(metered, options);
+  EXPECT_LT(static_cast<double>(metered.total().entries), 10.0 * 400 * 300);
   EXPECT_TRUE(e.trace.numbers.contains("error.estimate"));
 }
 
@@ -166,17 +171,18 @@ INSTANTIATE_TEST_SUITE_P(All, EveryBudget, testing::ValuesIn(budget_names()), []
 struct Covered {
   std::vector<Rgb> sums;
   CoarsePicture picture;
+  double seconds;
 };
 Covered coarse(const matrix::LightingMatrix& m, double seconds, std::uint64_t seed = 1) {
   RunOptions options;
   options.time_seconds = seconds;
   options.seed = seed;
-  options.clock = [&m] {
-    return kSecondsOfEntry * static_cast<double>(m.counters().entries_evaluated.load());
-  };
+  const matrix::MeteredMatrix metered(m);
+  options.clock = [&] { return seconds_of(metered); };
   const RunClock clock(options);
-  Covered c{std::vector<Rgb>(m.rows()), {}};
-  with_threads(1, [&] { c.picture = make_coarse_picture(m, options, clock, c.sums); });
+  Covered c{std::vector<Rgb>(m.rows()), {}, 0};
+  with_threads(1, [&] { c.picture = make_coarse_picture(metered, options, clock, c.sums); });
+  c.seconds = seconds_of(metered);
   return c;
 }
 
@@ -216,11 +222,10 @@ TEST(CoarsePicture, IsUnbiased) {
 TEST(CoarsePicture, TakesATwentiethOfTheTime) {
   const auto m = matrix::low_rank_matrix({2000, 500, 1}, 4);
   for (const double seconds : {0.04, 0.2, 1.0, 3.0}) {
-    m.counters().entries_evaluated = 0;
     const Covered c = coarse(m, seconds);
     EXPECT_TRUE(c.picture.all_rows_read);
     const double most = seconds < 0.7 ? 0.25 : 0.07;
-    EXPECT_LE(kSecondsOfEntry * static_cast<double>(m.counters().entries_evaluated.load()), most * seconds);
+    EXPECT_LE(c.seconds, most * seconds);
     EXPECT_GE(c.picture.columns, seconds < 0.1 ? 3u : 15u);
   }
   EXPECT_EQ(coarse(m, 1e-9).picture.columns, 1u);
@@ -233,10 +238,9 @@ TEST(SliceCuts, HasSlicesEnoughForTurns) {
   const auto slices = [&](double seconds, SettingsMap settings) {
     RunOptions options;
     options.time_seconds = seconds;
-    options.clock = [&m] {
-      return kSecondsOfEntry * static_cast<double>(m.counters().entries_evaluated.load());
-    };
-    return find_method("slice-cuts").make(settings)->run(m, options).trace.numbers.at("slices");
+    const matrix::MeteredMatrix metered(m);
+    options.clock = [&] { return seconds_of(metered); };
+    return find_method("slice-cuts").make(settings)->run(metered, options).trace.numbers.at("slices");
   };
   EXPECT_LE(slices(0, {}), 2);
   EXPECT_GE(slices(0.5, {}), 4);

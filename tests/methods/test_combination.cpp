@@ -57,7 +57,8 @@ std::vector<std::string> names() {
 
 // A picture is refused before it is made where a layer takes what the method does not have.
 TEST(LocalMethods, EveryMethodSaysWhetherItHasOne) {
-  for (const MethodInfo& m : all_methods()) EXPECT_EQ(m.combination, !kLocal.contains(m.name)) << m.name;
+  for (const MethodInfo& m : all_methods())
+    EXPECT_EQ(m.contract.combination, !kLocal.contains(m.name)) << m.name;
 }
 
 TEST(LocalMethods, CombinationIsLeftEmptyWhereColumnsDifferFromRowToRow) {

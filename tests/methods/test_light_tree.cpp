@@ -14,6 +14,7 @@ namespace lumirank::methods {
 namespace {
 
 using matrix::ColumnSet;
+using matrix::Cost;
 using matrix::Emission;
 using matrix::Index;
 using Node = LightTree::Node;
@@ -37,7 +38,7 @@ class MixedLights final : public matrix::LightingMatrix {
       if (set.emission != Emission::omni)
         set.cone = {alike ? Vec3f{0, 0, 1} : normalize(warp_sphere(rng.next_2d()) + Vec3f{0, 0, 0.5f}),
                     rng.next_float() < 0.1f ? 0.9f : 1.0f};
-      if (set.spherical) set.radius = set.least_radius = rng.next_float() + 0.01f;
+      if (set.spherical) set.radius = set.min_radius = rng.next_float() + 0.01f;
       set.intensity =
           rng.next_float() < 0.05f ? Rgb(0) : Rgb(rng.next_float(), rng.next_float(), rng.next_float());
       if (rng.next_float() < 0.5f) set.ceiling = set.intensity * 2;
@@ -48,13 +49,18 @@ class MixedLights final : public matrix::LightingMatrix {
   }
   std::size_t rows() const override { return 0; }
   std::size_t columns() const override { return sets.size(); }
-  void row(Index, std::span<Rgb>, matrix::Part) const override {}
-  void column(Index, std::span<Rgb>, matrix::Part) const override {}
-  void block(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {}
-  void entries(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {}
-  void accumulate(std::span<const matrix::ScaledColumn>, std::span<Rgb>, const Sinks&) const override {}
+  Cost row(Index, std::span<Rgb>, matrix::Part) const override { return {}; }
+  Cost column(Index, std::span<Rgb>, matrix::Part) const override { return {}; }
+  Cost block(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {
+    return {};
+  }
+  Cost entries(std::span<const Index>, std::span<const Index>, std::span<Rgb>, matrix::Part) const override {
+    return {};
+  }
+  Cost accumulate(std::span<const matrix::ScaledColumn>, std::span<Rgb>, const Sinks&) const override {
+    return {};
+  }
   ColumnSet column_set(Index j) const override { return sets[j]; }
-  std::unique_ptr<matrix::RowBounds> row_bounds() const override { return nullptr; }
   matrix::ColumnFeatures column_features() const override {
     matrix::ColumnFeatures features;
     features.group = group, features.emitted = emitted;
@@ -123,7 +129,7 @@ TEST(LightTree, NodesBoundTheirColumnsAndAddThemUp) {
         ASSERT_TRUE(holds(set.cone, one.cone));
       }
       if (set.spherical) {
-        ASSERT_LE(set.least_radius, one.radius);
+        ASSERT_LE(set.min_radius, one.radius);
         ASSERT_GE(set.radius, one.radius);
       }
       power += luminance(lights.emitted[j]);

@@ -1,6 +1,7 @@
 // LightSlice: its estimate's expectation, and that it ends at the exact sums.
 #include <gtest/gtest.h>
 
+#include "matrix/metered_matrix.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
 #include "methods/method.h"
@@ -11,7 +12,7 @@ namespace {
 
 using Settings = std::map<std::string, std::string>;
 
-Estimate run(const matrix::DenseMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
+Estimate run(const matrix::LightingMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
   RunOptions options;
   options.seed = seed;
   return find_method("lightslice").make(settings)->run(m, options);
@@ -68,13 +69,14 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
 
 TEST(LightSlice, StatesWhatItCost) {
   const auto m = matrix::low_rank_matrix({400, 900, 1}, 5);
-  const Estimate e = run(m, {{"slice-rows", "100"}, {"columns", "30"}});
+  const matrix::MeteredMatrix metered(m);
+  const Estimate e = run(metered, {{"slice-rows", "100"}, {"columns", "30"}});
   const auto& n = e.trace.numbers;
   EXPECT_EQ(n.at("slices"), 4);
   EXPECT_EQ(n.at("columns"), 30);
   // 4 whole rows, and 30 of 900 columns.
   EXPECT_DOUBLE_EQ(n.at("sampling_rate"), 4.0 / 400 + 30.0 / 900);
-  EXPECT_DOUBLE_EQ(static_cast<double>(m.counters().entries_evaluated), n.at("sampling_rate") * 400 * 900);
+  EXPECT_DOUBLE_EQ(static_cast<double>(metered.total().entries), n.at("sampling_rate") * 400 * 900);
 }
 
 }  // namespace

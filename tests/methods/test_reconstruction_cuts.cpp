@@ -56,7 +56,7 @@ TEST(ImageBlocks, ReceiversOfOtherSurfacesTellNothing) {
 TEST(ProbeResponses, LikenessIsTheCosineOfWhatLightsGive) {
   std::vector<Rgb> entries;
   for (const float v : {1.0f, 3.0f, 2.0f, 6.0f, 3.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f}) entries.emplace_back(v);
-  const DenseMatrix m(5, 2, std::move(entries), std::vector<std::uint8_t>(10, 0));  // whatever is seen
+  const DenseMatrix m(5, 2, std::move(entries), std::vector<float>(10, 0));  // whatever is seen
   const LightTree tree(m, 1);
   ProbeResponses responses(tree);
   const std::vector<Index> rows{4, 0, 1, 2, 3};

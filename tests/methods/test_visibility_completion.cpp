@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "matrix/entry_reader.h"
+#include "matrix/metered_matrix.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
 #include "methods/common/slices/slices.h"
@@ -19,7 +20,7 @@ constexpr std::size_t kSide = 32, kRows = kSide * kSide, kColumns = 130;
 
 // A square of 32×32 receivers, and for each column an edge of a shadow, at a random place and angle.
 matrix::DenseMatrix shadow_matrix() {
-  std::vector<std::uint8_t> visible(kRows * kColumns);
+  std::vector<float> visible(kRows * kColumns);
   for (std::size_t j = 0; j < kColumns; ++j) {
     Rng rng(1, Stage::test, 60, j);
     const float angle = 2 * kPi * rng.next_float(), offset = rng.next_float() - 0.5f;
@@ -45,7 +46,8 @@ struct Completed {
 
 template <typename Complete>
 Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
-  const auto reader = m.reader();
+  const matrix::MeteredMatrix metered(m);
+  const auto reader = metered.reader();
   Completion completion(*reader);
   const SlicePoints points(m.row_features(), m.rows());
   std::vector<matrix::Index> rows, columns;
@@ -59,7 +61,7 @@ Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
     for (std::size_t j = 0; j < m.columns(); ++j)
       wrong += completion.visible(i, j) != (m.at(i, j, matrix::Part::visibility).r > 0);
   const double all = static_cast<double>(m.rows() * m.columns());
-  EXPECT_EQ(completion.counts().sampled, m.counters().entries_evaluated.load());
+  EXPECT_EQ(completion.counts().sampled, metered.total().entries);
   return {static_cast<double>(completion.counts().sampled) / all, static_cast<double>(wrong) / all,
           completion.counts()};
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "matrix/metered_matrix.h"
 #include "matrix_fixture.h"
 
 namespace lumirank::transport::testing {
@@ -30,7 +31,7 @@ class SceneMatrixPairs : public ::testing::Test {
     settings.clamp = clamp;
     return SceneMatrix(*world_, ends_->receivers, ends_->lights, settings);
   }
-  static std::vector<Rgb> all(const SceneMatrix& matrix, Part part) {
+  static std::vector<Rgb> all(const matrix::LightingMatrix& matrix, Part part) {
     std::vector<Rgb> out(kRows * kColumns);
     for (Index i = 0; i < kRows; ++i) matrix.row(i, std::span(out).subspan(i * kColumns, kColumns), part);
     return out;
@@ -196,24 +197,56 @@ TEST_F(SceneMatrixPairs, VisibilityIsThatOfTheRayScene) {
   EXPECT_LE(differ, asked / 500);
 }
 
-TEST_F(SceneMatrixPairs, CountersAddUp) {
-  const SceneMatrix matrix = make();
-  const std::vector<Rgb> e = all(matrix, Part::unoccluded);
-  const auto& counters = matrix.counters();
-  EXPECT_EQ(counters.rays_shadow, 0u);
-  EXPECT_EQ(counters.entries_evaluated, kRows * kColumns);
+TEST_F(SceneMatrixPairs, CostsAddUp) {
+  const SceneMatrix scene = make();
+  const matrix::MeteredMatrix metered(scene);
+  const std::vector<Rgb> e = all(metered, Part::unoccluded);
+  const matrix::Cost cost = metered.total();
+  EXPECT_EQ(cost.rays, 0u);
+  EXPECT_EQ(cost.entries, kRows * kColumns);
   const auto black = static_cast<std::uint64_t>(std::count(e.begin(), e.end(), Rgb(0)));
   // What is culled is black; what a lobe alone makes black is found after its ray.
-  const std::uint64_t culled = counters.entries_culled;
-  EXPECT_LE(culled, black);
-  EXPECT_GT(culled, black / 2);
+  EXPECT_LE(cost.culled, black);
+  EXPECT_GT(cost.culled, black / 2);
   std::vector<Rgb> sums(kRows);
   std::vector<matrix::ScaledColumn> columns;
   for (Index j = 0; j < kColumns; ++j) columns.push_back({j, Rgb(1)});
-  matrix.accumulate(columns, sums, {});
-  EXPECT_EQ(counters.entries_evaluated, 2 * kRows * kColumns);
-  EXPECT_EQ(counters.entries_culled, 2 * culled);
-  EXPECT_EQ(counters.rays_shadow, kRows * kColumns - culled);
+  const matrix::Cost summed = metered.accumulate(columns, sums, {});
+  EXPECT_EQ(summed.entries, cost.entries);
+  EXPECT_EQ(summed.culled, cost.culled);
+  EXPECT_EQ(summed.rays, kRows * kColumns - cost.culled);
+  EXPECT_EQ(metered.total(), cost + summed);
+}
+
+// What a call lost is the loss of its own entries, however much was evaluated before it; nothing where other
+// parts of the picture give it back.
+TEST_F(SceneMatrixPairs, ClampedEnergyIsTheCallsOwn) {
+  const SceneMatrix scene = make(1e-3f);
+  SceneMatrixSettings settings;
+  settings.clamp = 1e-3f, settings.compensated = true;
+  const SceneMatrix compensated(*world_, ends_->receivers, ends_->lights, settings);
+  std::vector<Rgb> row(kColumns);
+  const matrix::Cost first = scene.row(3, row, Part::value);
+  all(scene, Part::value);
+  EXPECT_EQ(scene.row(3, row, Part::value), first);
+  EXPECT_EQ(first.lost, first.clamped);
+  const matrix::Cost given_back = compensated.row(3, row, Part::value);
+  EXPECT_EQ(given_back.clamped, first.clamped);
+  EXPECT_EQ(given_back.lost, 0);
+  double energy = 0;
+  for (const Rgb& v : row) energy += static_cast<double>(v.r) + v.g + v.b;
+  EXPECT_NEAR(first.energy, energy, 1e-12 * energy);
+}
+
+// What the matrix tells of all worlds is so: features of the right lengths, visibilities of 0 and 1.
+TEST_F(SceneMatrixPairs, TellsWhatItSays) {
+  VirtualLights lights = ends_->lights;
+  lights.half.assign(lights.size(), 1);
+  const SceneMatrix scene(*world_, ends_->receivers, lights, {});
+  constexpr matrix::Capabilities kByCalls{matrix::Ability::bounds, matrix::Ability::binary_visibility};
+  EXPECT_EQ(scene.matrix::LightingMatrix::capabilities().with(kByCalls), SceneMatrix::kCapabilities);
+  EXPECT_EQ(scene.capabilities(), SceneMatrix::kCapabilities);
+  for (const Rgb& v : all(scene, Part::visibility)) ASSERT_TRUE(v == Rgb(0) || v == Rgb(1));
 }
 
 TEST_F(SceneMatrixPairs, ClampedEntriesKeepTheBoundAndTheirColour) {
@@ -263,19 +296,20 @@ TEST_F(SceneMatrixPairs, ClampedFractionIsTheShareOfEnergyTakenAway) {
         kept += static_cast<double>(held[i * kColumns + j][c]) * columns.back().scale[c];
       }
   }
-  const SceneMatrix summed = make(limit), rowwise = make(limit);
+  const SceneMatrix scene = make(limit);
   std::vector<Rgb> sums(kRows);
-  summed.accumulate(columns, sums, {});
+  const matrix::Cost summed = scene.accumulate(columns, sums, {});
   EXPECT_GT(1 - kept / whole, 0.01);
   // Sums of at most 500 floats, and the clamping factors, are good to 1e-4 together.
-  EXPECT_NEAR(summed.clamped_fraction(), 1 - kept / whole, 1e-4);
+  EXPECT_NEAR(clamped_fraction(summed), 1 - kept / whole, 1e-4);
 
   double whole_rows = 0, kept_rows = 0;
   for (const Rgb& c : free) whole_rows += static_cast<double>(c.r) + c.g + c.b;
   for (const Rgb& c : held) kept_rows += static_cast<double>(c.r) + c.g + c.b;
+  const matrix::MeteredMatrix rowwise(scene);
   all(rowwise, Part::value);
-  EXPECT_NEAR(rowwise.clamped_fraction(), 1 - kept_rows / whole_rows, 1e-5);
-  EXPECT_EQ(make(0).clamped_fraction(), 0);
+  EXPECT_NEAR(clamped_fraction(rowwise.total()), 1 - kept_rows / whole_rows, 1e-5);
+  EXPECT_EQ(make(0).accumulate(columns, sums, {}).clamped, 0);
 }
 
 TEST_F(SceneMatrixPairs, SumsAreThoseOfTheColumnsInTheirOrder) {
@@ -308,21 +342,20 @@ TEST(SceneMatrixThreads, AnyNumberOfThreadsGivesTheSameBits) {
   std::vector<matrix::ScaledColumn> columns;
   for (Index j = 0; j < 5000; j += 100) columns.push_back({j, Rgb(1.5f)});
   std::vector<std::vector<Rgb>> sums, rows;
-  std::vector<double> fractions;
+  std::vector<matrix::Cost> costs;
   for (const int threads : {1, 2, 4}) {
     with_threads(threads, [&] {
       const SceneMatrix matrix(world, ends.receivers, ends.lights, {});
       sums.emplace_back(9000);
-      matrix.accumulate(columns, sums.back(), {});
+      costs.push_back(matrix.accumulate(columns, sums.back(), {}));
       rows.emplace_back(5000);
-      matrix.row(17, rows.back(), Part::value);
-      fractions.push_back(matrix.clamped_fraction());
+      costs.back() += matrix.row(17, rows.back(), Part::value);
     });
   }
   for (std::size_t k = 1; k < 3; ++k) {
     EXPECT_EQ(sums[k], sums[0]);
     EXPECT_EQ(rows[k], rows[0]);
-    EXPECT_EQ(fractions[k], fractions[0]);
+    EXPECT_EQ(costs[k], costs[0]);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "matrix/entry_reader.h"
+#include "matrix/metered_matrix.h"
 #include "matrix_fixture.h"
 #include "transport/lights/sphere_lights.h"
 
@@ -62,7 +63,7 @@ TEST_P(SceneReader, GivesTheMatrixOwnEntries) {
   Rng rng(5, Stage::test);
   for (const Part part : {Part::value, Part::unoccluded, Part::visibility}) {
     for (Index i = 0; i < kRows; ++i) matrix.row(i, std::span(whole).subspan(i * kColumns, kColumns), part);
-    const std::uint64_t before = matrix.counters().entries_evaluated;
+    const matrix::MeteredMatrix metered(matrix);
     std::size_t asked = 0, grazing = 0;
     const auto same = [&](Rgb got, Index i, Index j) {
       const Rgb expected = whole[i * kColumns + j];
@@ -71,7 +72,7 @@ TEST_P(SceneReader, GivesTheMatrixOwnEntries) {
       ++grazing;
     };
     {
-      const auto reader = matrix.reader();
+      const auto reader = metered.reader();
       for (const std::size_t count : {1, 300, 16, 0, 37}) {
         std::vector<Index> rows(count);
         for (Index& i : rows) i = static_cast<Index>(rng.next_below(kRows));
@@ -102,7 +103,7 @@ TEST_P(SceneReader, GivesTheMatrixOwnEntries) {
       for (std::size_t k = 0; k < out.size(); ++k) same(out[k], is[k], js[k]);
     }
     EXPECT_LE(grazing, asked / 10000);
-    EXPECT_EQ(matrix.counters().entries_evaluated - before, asked);
+    EXPECT_EQ(metered.total().entries, asked);
   }
 }
 

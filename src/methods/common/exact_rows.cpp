@@ -109,8 +109,7 @@ ErrorPart ErrorParts::total() const {
 }
 
 const ExactRow& ExactRows::read(const SampledRow& row, std::span<Rgb> values) {
-  const double clamped_before = matrix_->clamped_energy();
-  matrix_->row(row.row, values);
+  const matrix::Cost cost = matrix_->row(row.row, values);
   const auto half = matrix_->column_features().half;
   const auto weight = matrix_->row_features().weight;
   const RowSums s = parallel_sum(values.size(), 8192, RowSums{}, [&](std::size_t begin, std::size_t end) {
@@ -128,7 +127,7 @@ const ExactRow& ExactRows::read(const SampledRow& row, std::span<Rgb> values) {
   rows_.push_back({row, w * w * (weight.empty() ? 1.0 : static_cast<double>(weight[row.row])),
                    rgb(s.all.r, s.all.g, s.all.b),
                    rgb(std::abs(s.difference.r), std::abs(s.difference.g), std::abs(s.difference.b)),
-                   matrix_->clamped_energy() - clamped_before});
+                   cost.lost});
   return rows_.back();
 }
 

@@ -24,7 +24,7 @@ struct ExactRow {
   double share;         // of an image's light: weight² × the row's weight in the image
   Rgb sum;              // of all columns
   Rgb half_difference;  // |sum over half 1 − sum over half 2| of the columns, per channel
-  double clamped;       // r + g + b that clamping took away
+  double clamped;       // r + g + b that clamping took away for good
 };
 
 // A relative L1 error, and the half width of its 95 % interval: by the delete-a-group jackknife over 16

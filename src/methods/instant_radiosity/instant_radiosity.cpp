@@ -39,7 +39,7 @@ MethodInfo instant_radiosity_info() {
             return read_settings(name, kInstantRadiosityFields, settings).lights;
           },
           "",
-          true};
+          matrix::kCombination};
 }
 
 }  // namespace lumirank::methods

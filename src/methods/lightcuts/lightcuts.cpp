@@ -161,10 +161,12 @@ class Lightcuts final : public Method {
 
 MethodInfo lightcuts_info() {
   return method_info<Lightcuts>(
-      {"lightcuts", "For each receiver a cut through a tree of lights, refined by error bounds.",
+      {"lightcuts",
+       "For each receiver a cut through a tree of lights, refined by error bounds.",
        "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
        "illumination, SIGGRAPH 2005",
-       "error-bound or max-nodes"},
+       "error-bound or max-nodes",
+       {{matrix::Ability::bounds}}},
       kLightcutsFields);
 }
 

@@ -192,7 +192,8 @@ MethodInfo multidimensional_lightcuts_info() {
       {"multidimensional-lightcuts",
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
        "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
-       "error-bound or max-pairs"},
+       "error-bound or max-pairs",
+       {{matrix::Ability::bounds}}},
       kMultidimensionalFields);
 }
 

@@ -161,7 +161,7 @@ class PowerSampling final : public Method {
 
 MethodInfo power_sampling_info() {
   return method_info<PowerSampling>(
-      {"power-sampling", "Draws columns in proportion to their lights' power.", "", "", true},
+      {"power-sampling", "Draws columns in proportion to their lights' power.", "", "", matrix::kCombination},
       kPowerSamplingFields);
 }
 

@@ -34,7 +34,8 @@ MethodInfo row_column_info() {
   return method_info<RowColumnSampling>(
       {"row-column-sampling",
        "Reads a few rows, clusters the columns by them, and renders one representative of each cluster.",
-       "Hašan, Pellacini, Bala 2007, Matrix row-column sampling for the many-light problem", "", true},
+       "Hašan, Pellacini, Bala 2007, Matrix row-column sampling for the many-light problem", "",
+       matrix::kCombination},
       row_column_fields());
 }
 

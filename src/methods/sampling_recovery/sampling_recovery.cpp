@@ -91,8 +91,11 @@ class SamplingRecovery final : public Method {
 
 MethodInfo sampling_recovery_info() {
   return method_info<SamplingRecovery>(
-      {"sampling-recovery", "Samples few visibilities of every slice of receivers and recovers the others.",
-       "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering"},
+      {"sampling-recovery",
+       "Samples few visibilities of every slice of receivers and recovers the others.",
+       "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering",
+       "",
+       {{matrix::Ability::binary_visibility, matrix::Ability::bounds}}},
       recovery_fields());
 }
 

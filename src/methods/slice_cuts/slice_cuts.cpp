@@ -68,11 +68,15 @@ class SliceCuts final : public Method {
 
 }  // namespace
 
+// What its cuts sample of visibilities says which clusters to split; what it sums it traces, so visibilities
+// may lie between 0 and 1.
 MethodInfo slice_cuts_info() {
   return method_info<SliceCuts>(
       {"slice-cuts",
        "Cuts the light tree for every slice of receivers, and traces a visibility per pixel's surface.",
-       "The light clusters of Huo et al. 2015 (section 4), without their recovery"},
+       "The light clusters of Huo et al. 2015 (section 4), without their recovery",
+       "",
+       {{matrix::Ability::bounds}}},
       slice_cut_fields());
 }
 

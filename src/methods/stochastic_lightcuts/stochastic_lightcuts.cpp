@@ -187,7 +187,8 @@ MethodInfo stochastic_lightcuts_info() {
        "For each receiver a cut through a tree of lights, and a light drawn from each of its nodes.",
        "Yuksel: Stochastic Lightcuts, HPG 2019; Stochastic Lightcuts for Sampling Many Lights, IEEE TVCG "
        "2020",
-       "nodes or error-bound"},
+       "nodes or error-bound",
+       {{matrix::Ability::bounds}}},
       kStochasticFields);
 }
 

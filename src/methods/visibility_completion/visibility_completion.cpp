@@ -129,10 +129,12 @@ class VisibilityCompletion final : public Method {
 
 MethodInfo visibility_completion_info() {
   return method_info<VisibilityCompletion>(
-      {"visibility-completion", "Columns of slices as in lightslice, with few of their shadow rays.",
+      {"visibility-completion",
+       "Columns of slices as in lightslice, with few of their shadow rays.",
        "Wang, Holzschuch 2020, Adaptive matrix completion for fast visibility computations with many lights "
        "rendering",
-       "columns or spacing"},
+       "columns or spacing",
+       {{matrix::Ability::binary_visibility}}},
       fields());
 }
 

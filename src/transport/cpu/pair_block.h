@@ -24,24 +24,13 @@ struct PairContext {
   const geometry::RayScene* rays;
   std::uint64_t pair_seed;  // hashed once: with the two ids it decides cut-outs
   float clamp;              // X; infinite: off
+  bool compensated;         // what clamping takes is given back elsewhere
   bool has_cutouts;         // rays need keys
   bool has_spheres;         // surface lights are spherical
   SphereBackground spheres;
   bool has_smooth;  // rays need transmittances
   bool has_directional;
   bool has_two_sided;  // some surface shines through or is a fibre, see GroupStore::two_sided
-};
-
-// What a block cost, and the energy that clamping took. Added in a fixed order, so totals are deterministic.
-struct Tally {
-  std::uint64_t evaluated = 0, culled = 0, rays = 0;
-  double value = 0, removed = 0;  // Σ over visible entries of r + g + b, after clamping and taken away by it
-  Tally& operator+=(const Tally& o) {
-    evaluated += o.evaluated, culled += o.culled, rays += o.rays;
-    value += o.value, removed += o.removed;
-    return *this;
-  }
-  friend Tally operator+(Tally a, const Tally& b) { return a += b; }
 };
 
 // The pairs of a block in one of three shapes. Places count from 0 within the block, 16 to a group.
@@ -51,9 +40,9 @@ enum class BlockShape {
   list,    // listed slots on both sides
 };
 
-// Use: a shape, then one partner after another, each followed by trace() or skip_visibility(), after which E
-// and visibility can be read. Rays come before E: most pairs are hidden, and E of a glossy pair costs more
-// than its ray.
+// Use: a tile and then one partner after another, or a list; each followed by trace() or skip_visibility(),
+// after which E and visibility can be read. InternalError out of this order. Rays come before E: most pairs
+// are hidden, and E of a glossy pair costs more than its ray.
 class PairBlock {
  public:
   explicit PairBlock(const PairContext& context) : context_(context) {}
@@ -78,9 +67,9 @@ class PairBlock {
   std::size_t groups() const { return groups_; }
   // Only where lanes are visible.
   Lane3 e(std::size_t group) const { return {e_[3 * group], e_[3 * group + 1], e_[3 * group + 2]}; }
-  std::uint32_t visible(std::size_t group) const { return visible_[group]; }
-  std::size_t survivors() const { return survivors_; }
-  std::uint32_t first_slot() const { return first_slot_; }
+  std::uint32_t visible(std::size_t group) const { return lanes_.visible[group]; }
+  std::size_t survivors() const { return survivors_.count; }
+  std::uint32_t first_slot() const { return tile_.first_slot; }
   // Σ r + g + b of visible entries, and what clamping took away from them; in the order of places.
   double visible_energy() const;
   double removed_energy() const;
@@ -89,7 +78,7 @@ class PairBlock {
   template <typename Use>
   void scalars(Rgb weights, Use&& use) const {
     for (std::size_t g = 0; g < groups_; ++g) {
-      const Lane sum = select(mask_from_bits(visible_[g]), dot(splat(weights), e(g)), Lane{});
+      const Lane sum = select(mask_from_bits(lanes_.visible[g]), dot(splat(weights), e(g)), Lane{});
       float lanes[kLanes];
       store(lanes, sum);
       use(g, lanes);
@@ -116,50 +105,86 @@ class PairBlock {
   void keep(std::size_t group, const PairResult& result);
   void collect_survivors();
   template <typename Store>
-  void collect(const Store& store, int field);
+  void collect(const Store& store, Lane3 Store::Group::*field);
   bool to_infinity(std::uint32_t column_slot) const;
   std::uint32_t row_slot(std::uint32_t place) const;
   std::uint32_t column_slot(std::uint32_t place) const;
-  void turn_ends(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const;
+  void orient_endpoints(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const;
   // The rays of survivors first … first + count - 1.
   void fill(geometry::ShadowPacket& packet, std::size_t first, int count) const;
   void note_transmittance(const geometry::ShadowPacket& packet, std::size_t first, int count);
   void shade();
-  void shade_through();  // with what smooth surfaces let pass
+  void apply_transmittance();  // with what smooth surfaces let pass
 
-  const PairContext& context_;
-  BlockShape shape_ = BlockShape::column;
-  std::size_t tile_ = 0, groups_ = 0, survivors_ = 0;
-  std::uint32_t first_slot_ = 0, fixed_slot_ = 0;
-  std::span<const std::uint32_t> row_list_, column_list_;
-  // The partner of a tile.
-  RowGroup fixed_row_;
-  ColumnGroup fixed_column_;
-  std::array<const SpotShape*, 16> fixed_spots_;
-  std::uint16_t fixed_kind_ = 0;
-  std::array<std::uint32_t, 16> fixed_items_, fixed_keys_;  // spherical lights only
-  bool values_wanted_ = true;
-  float bound_ = kInfinity;  // of the pairs at hand, beside X
-  ScatterArena tile_arena_, partner_arena_;
-  std::vector<ScatterGroup> tile_scatter_;  // by group; only runs that need it
-  std::vector<const SpotShape*> tile_spots_;
-  std::vector<Lane> e_, excess_, sums_;
-  std::vector<std::uint16_t> alive_, visible_, clamped_;
-  std::vector<std::uint32_t> places_;
-  // Of a tile's survivors, in the order of places_: where their rays start (column) or end (row), and the
-  // key there. After the last there are 15 copies of it.
-  std::vector<float> end_x_, end_y_, end_z_;
-  std::vector<std::uint32_t> end_key_;
-  std::vector<std::uint16_t> packet_bits_;
+  // A tile of receivers or of lights.
+  struct Tile {
+    std::size_t number = 0;
+    std::uint32_t first_slot = 0;  // lists: 0
+    ScatterArena arena;
+    std::vector<ScatterGroup> scatter;  // by group; only runs that need it
+    std::vector<const SpotShape*> spots;
+  };
+  // The one light or receiver that a tile meets.
+  struct Partner {
+    std::uint32_t slot = 0;
+    std::uint16_t kind = 0;
+    RowGroup row;
+    ColumnGroup column;
+    std::array<const SpotShape*, 16> spots;
+    std::array<std::uint32_t, 16> items, keys;  // spherical lights only
+    ScatterArena arena;                         // of a list: what both ends of a group scatter
+  };
+  struct List {
+    std::span<const std::uint32_t> rows, columns;  // slots
+  };
+  // Bits of 16 lanes, by group.
+  struct Lanes {
+    std::vector<std::uint16_t> alive;    // E may be other than 0
+    std::vector<std::uint16_t> visible;  // of these, unblocked
+    std::vector<std::uint16_t> clamped;
+  };
   struct Attenuation {
     std::uint32_t place;
     Rgb through;
   };
-  std::vector<Attenuation> attenuations_;
+  // The pairs that are alive, one after the other, and their rays.
+  struct Survivors {
+    std::size_t count = 0;
+    std::vector<std::uint32_t> places;
+    // Of a tile: where the rays start (column) or end (row), and the key there. After the last there are 15
+    // copies of it.
+    std::vector<float> end_x, end_y, end_z;
+    std::vector<std::uint32_t> end_key;
+    std::vector<std::uint16_t> packet_bits;  // what is unblocked, 16 survivors to a packet
+    std::vector<Attenuation> attenuations;
+  };
+  // What may be asked of the block, see above.
+  enum class Stage : std::uint8_t { empty, tile, pairs, evaluated };
+  void require(Stage least, const char* call) const;
+
+  const PairContext& context_;
+  BlockShape shape_ = BlockShape::column;
+  Stage stage_ = Stage::empty;
+  std::size_t groups_ = 0;
+  bool values_wanted_ = true;
+  float bound_ = kInfinity;  // of the pairs at hand, beside X
+  Tile tile_;
+  Partner partner_;
+  List list_;
+  Lanes lanes_;
+  Survivors survivors_;
+  std::vector<Lane> e_, excess_, sums_;
 };
 
-// Finishes an evaluated block: rays where they are needed, and the cost. `pairs`: without padding.
-Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs);
+// Finishes an evaluated block: rays where they are needed, and the cost, all but what of it is lost. `pairs`:
+// without padding.
+matrix::Cost finish(PairBlock& block, matrix::Part part, std::size_t pairs);
+
+// The cost of a whole call.
+inline matrix::Cost with_loss(const PairContext& context, matrix::Cost cost) {
+  cost.lost = context.compensated ? 0 : cost.clamped;
+  return cost;
+}
 
 // Copies what was asked for to out(items[place]), leaving out the places of kNoItem.
 template <typename Out>

@@ -29,7 +29,7 @@ class PairList {
   }
 
   template <typename Out>
-  Tally evaluate(PairBlock& block, matrix::Part part, Out&& out) {
+  matrix::Cost evaluate(PairBlock& block, matrix::Part part, Out&& out) {
     for (const Class& one : classes_) {
       std::uint32_t next = one.first, last = next;
       while (next != kNoItem) {
@@ -43,9 +43,9 @@ class PairList {
       }
     }
     block.set_list(rows_, columns_, used_);
-    const Tally tally = finish(block, part, pairs_.size());
+    const matrix::Cost cost = finish(block, part, pairs_.size());
     copy_out(block, part, numbers_, out);
-    return tally;
+    return cost;
   }
 
  private:

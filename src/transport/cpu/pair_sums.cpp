@@ -15,14 +15,14 @@ double energy(const Lane3& e, int lane) {
 double PairBlock::visible_energy() const {
   double sum = 0;
   for (std::size_t g = 0; g < groups_; ++g)
-    for (std::uint32_t b = visible_[g]; b != 0; b &= b - 1) sum += energy(e(g), __builtin_ctz(b));
+    for (std::uint32_t b = lanes_.visible[g]; b != 0; b &= b - 1) sum += energy(e(g), __builtin_ctz(b));
   return sum;
 }
 
 double PairBlock::removed_energy() const {
   double sum = 0;
   for (std::size_t g = 0; g < groups_; ++g)
-    for (std::uint32_t b = clamped_[g] & visible_[g]; b != 0; b &= b - 1) {
+    for (std::uint32_t b = lanes_.clamped[g] & lanes_.visible[g]; b != 0; b &= b - 1) {
       const int k = __builtin_ctz(b);
       sum += static_cast<double>(excess_[g][k]) * energy(e(g), k);
     }
@@ -31,7 +31,7 @@ double PairBlock::removed_energy() const {
 
 void PairBlock::load_sums(std::span<const Rgb> sums) {
   sums_.assign(std::max(sums_.size(), 3 * groups_), Lane{});
-  const std::uint32_t* items = context_.rows->plan.item.data() + first_slot_;
+  const std::uint32_t* items = context_.rows->plan.item.data() + tile_.first_slot;
   for (std::size_t place = 0; place < 16 * groups_; ++place) {
     if (items[place] == kNoItem) continue;
     const Rgb sum = sums[items[place]];
@@ -44,11 +44,11 @@ double PairBlock::add_to_sums(Rgb scale) {
   const Lane3 s = splat(scale);
   double removed = 0;
   for (std::size_t g = 0; g < groups_; ++g) {
-    if (visible_[g] == 0) continue;
-    const LaneMask lit = mask_from_bits(visible_[g]);
+    if (lanes_.visible[g] == 0) continue;
+    const LaneMask lit = mask_from_bits(lanes_.visible[g]);
     const Lane3 added = select(lit, s * e(g), Lane3{zero, zero, zero});
     sums_[3 * g] += added.x, sums_[3 * g + 1] += added.y, sums_[3 * g + 2] += added.z;
-    for (std::uint32_t b = clamped_[g] & visible_[g]; b != 0; b &= b - 1) {
+    for (std::uint32_t b = lanes_.clamped[g] & lanes_.visible[g]; b != 0; b &= b - 1) {
       const int k = __builtin_ctz(b);
       removed += static_cast<double>(excess_[g][k]) * energy(added, k);
     }
@@ -57,7 +57,7 @@ double PairBlock::add_to_sums(Rgb scale) {
 }
 
 double PairBlock::store_sums(std::span<Rgb> sums) const {
-  const std::uint32_t* items = context_.rows->plan.item.data() + first_slot_;
+  const std::uint32_t* items = context_.rows->plan.item.data() + tile_.first_slot;
   double added = 0;
   for (std::size_t place = 0; place < 16 * groups_; ++place) {
     if (items[place] == kNoItem) continue;
@@ -75,10 +75,10 @@ void PairBlock::add_shares(Rgb scale, std::span<const float> shares, std::span<c
                            std::span<float> sums) const {
   const Lane3 s = splat(scale);
   for (std::size_t g = 0; g < groups_; ++g) {
-    if (visible_[g] == 0) continue;
+    if (lanes_.visible[g] == 0) continue;
     float share[kLanes];
     for (std::size_t k = 0; k < kLanes; ++k) share[k] = shares[of[16 * g + k]];
-    const Lane3 added = select(mask_from_bits(visible_[g]), s * load(share) * e(g), Lane3{});
+    const Lane3 added = select(mask_from_bits(lanes_.visible[g]), s * load(share) * e(g), Lane3{});
     float* const to = &sums[48 * g];
     store(to, load(to) + added.x);
     store(to + 16, load(to + 16) + added.y);
@@ -86,21 +86,21 @@ void PairBlock::add_shares(Rgb scale, std::span<const float> shares, std::span<c
   }
 }
 
-Tally finish(PairBlock& block, matrix::Part part, std::size_t pairs) {
-  Tally tally;
-  tally.evaluated = pairs;
-  tally.culled = pairs - block.survivors();
+matrix::Cost finish(PairBlock& block, matrix::Part part, std::size_t pairs) {
+  matrix::Cost cost;
+  cost.entries = pairs;
+  cost.culled = pairs - block.survivors();
   if (part == matrix::Part::unoccluded) {
     block.skip_visibility();
-    return tally;
+    return cost;
   }
   block.trace(part == matrix::Part::value);
-  tally.rays = block.survivors();
+  cost.rays = block.survivors();
   if (part == matrix::Part::value) {
-    tally.value = block.visible_energy();
-    tally.removed = block.removed_energy();
+    cost.energy = block.visible_energy();
+    cost.clamped = block.removed_energy();
   }
-  return tally;
+  return cost;
 }
 
 }  // namespace lumirank::transport

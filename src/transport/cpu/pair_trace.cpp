@@ -7,27 +7,16 @@
 #include "world/world.h"
 
 namespace lumirank::transport {
-namespace {
-
-// Field `field` of a slot, in all lanes.
-template <typename Store>
-Lane3 repeat(const Store& from, std::uint32_t slot, int field) {
-  return splat(read3(from.at(slot) + field));
-}
-
-void set(Lane3& v, int lane, Vec3f value) { v.x[lane] = value.x, v.y[lane] = value.y, v.z[lane] = value.z; }
-
-}  // namespace
 
 std::uint32_t PairBlock::row_slot(std::uint32_t place) const {
-  return shape_ == BlockShape::column ? first_slot_ + place
-         : shape_ == BlockShape::row  ? fixed_slot_
-                                      : row_list_[place];
+  return shape_ == BlockShape::column ? tile_.first_slot + place
+         : shape_ == BlockShape::row  ? partner_.slot
+                                      : list_.rows[place];
 }
 std::uint32_t PairBlock::column_slot(std::uint32_t place) const {
-  return shape_ == BlockShape::row      ? first_slot_ + place
-         : shape_ == BlockShape::column ? fixed_slot_
-                                        : column_list_[place];
+  return shape_ == BlockShape::row      ? tile_.first_slot + place
+         : shape_ == BlockShape::column ? partner_.slot
+                                        : list_.columns[place];
 }
 
 bool PairBlock::to_infinity(std::uint32_t slot) const {
@@ -35,42 +24,44 @@ bool PairBlock::to_infinity(std::uint32_t slot) const {
 }
 
 // Where a surface shines through, the side from which a ray starts depends on its direction.
-void PairBlock::turn_ends(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const {
+void PairBlock::orient_endpoints(const std::uint32_t* places, int count, Lane3& origin, Lane3& target) const {
   const auto &row_turns = context_.rows->two_sided, &column_turns = context_.columns->two_sided;
   for (int k = 0; k < count; ++k) {
     const std::uint32_t row = row_slot(places[k]), column = column_slot(places[k]);
     const bool turn_row = !row_turns.empty() && row_turns[row];
     const bool turn_column = !column_turns.empty() && column_turns[column];
     if (!turn_row && !turn_column) continue;
-    const float *r = context_.rows->at(row), *c = context_.columns->at(column);
-    const Vec3f p = read3(r + kPositionField), y = read3(c + kPositionField);
+    const Vec3f p = context_.rows->get(row, &RowGroup::p), y = context_.columns->get(column, &ColumnGroup::p);
     const Vec3f w = to_infinity(column) ? Vec3f{target.x[k], target.y[k], target.z[k]} : y - p;
-    if (turn_row) set(origin, k, world::World::offset_origin(p, read3(r + kGeometricNormalField), w));
-    if (turn_column) set(target, k, world::World::offset_origin(y, read3(c + kGeometricNormalField), -w));
+    if (turn_row)
+      set_lane(origin, k, world::World::offset_origin(p, context_.rows->get(row, &RowGroup::ng), w));
+    if (turn_column)
+      set_lane(target, k,
+               world::World::offset_origin(y, context_.columns->get(column, &ColumnGroup::ng), -w));
   }
 }
 
 void PairBlock::fill(geometry::ShadowPacket& packet, std::size_t first, int count) const {
-  const std::uint32_t* places = &places_[first];
+  const std::uint32_t* places = &survivors_.places[first];
   Lane3 origin, target;
   if (shape_ == BlockShape::column) {
-    origin = {load(&end_x_[first]), load(&end_y_[first]), load(&end_z_[first])};
-    target = repeat(*context_.columns, fixed_slot_, kTargetField);
+    origin = {load(&survivors_.end_x[first]), load(&survivors_.end_y[first]), load(&survivors_.end_z[first])};
+    target = splat(context_.columns->get(partner_.slot, &ColumnGroup::target));
   } else if (shape_ == BlockShape::row) {
-    origin = repeat(*context_.rows, fixed_slot_, kOriginField);
-    target = {load(&end_x_[first]), load(&end_y_[first]), load(&end_z_[first])};
+    origin = splat(context_.rows->get(partner_.slot, &RowGroup::origin));
+    target = {load(&survivors_.end_x[first]), load(&survivors_.end_y[first]), load(&survivors_.end_z[first])};
   } else {
     for (int k = 0; k < 16; ++k) {
       const std::uint32_t place = places[k < count ? k : 0];
-      set(origin, k, read3(context_.rows->at(row_list_[place]) + kOriginField));
-      set(target, k, read3(context_.columns->at(column_list_[place]) + kTargetField));
+      set_lane(origin, k, context_.rows->get(list_.rows[place], &RowGroup::origin));
+      set_lane(target, k, context_.columns->get(list_.columns[place], &ColumnGroup::target));
     }
   }
-  if (context_.has_two_sided) turn_ends(places, count, origin, target);
+  if (context_.has_two_sided) orient_endpoints(places, count, origin, target);
   LaneMask far{};
   if (context_.has_directional) {
     if (shape_ == BlockShape::column) {
-      far = to_infinity(fixed_slot_) ? ~far : far;
+      far = to_infinity(partner_.slot) ? ~far : far;
     } else {
       for (int k = 0; k < count; ++k) far[k] = to_infinity(column_slot(places[k])) ? -1 : 0;
     }
@@ -86,15 +77,15 @@ void PairBlock::fill(geometry::ShadowPacket& packet, std::size_t first, int coun
   // ids.
   packet.seed = context_.pair_seed;
   if (shape_ == BlockShape::column) {
-    std::copy_n(&end_key_[first], 16, packet.from);
-    std::fill_n(packet.to, 16, context_.columns->key[fixed_slot_]);
+    std::copy_n(&survivors_.end_key[first], 16, packet.from);
+    std::fill_n(packet.to, 16, context_.columns->key[partner_.slot]);
   } else if (shape_ == BlockShape::row) {
-    std::fill_n(packet.from, 16, context_.rows->key[fixed_slot_]);
-    std::copy_n(&end_key_[first], 16, packet.to);
+    std::fill_n(packet.from, 16, context_.rows->key[partner_.slot]);
+    std::copy_n(&survivors_.end_key[first], 16, packet.to);
   } else {
     for (int k = 0; k < count; ++k) {
-      packet.from[k] = context_.rows->key[row_list_[places[k]]];
-      packet.to[k] = context_.columns->key[column_list_[places[k]]];
+      packet.from[k] = context_.rows->key[list_.rows[places[k]]];
+      packet.to[k] = context_.columns->key[list_.columns[places[k]]];
     }
   }
 }
@@ -104,61 +95,65 @@ void PairBlock::note_transmittance(const geometry::ShadowPacket& packet, std::si
   context_.rays->transmittance16(packet, through);
   for (int k = 0; k < count; ++k)
     if (through[k] != Rgb(1))
-      attenuations_.push_back({places_[first + static_cast<std::size_t>(k)], through[k]});
+      survivors_.attenuations.push_back({survivors_.places[first + static_cast<std::size_t>(k)], through[k]});
 }
 
-void PairBlock::shade_through() {
+void PairBlock::apply_transmittance() {
   shade();
-  for (const Attenuation& a : attenuations_)
+  for (const Attenuation& a : survivors_.attenuations)
     for (std::uint32_t c = 0; c < 3; ++c)
       e_[3 * (a.place / 16) + c][a.place % 16] *= a.through[static_cast<int>(c)];
 }
 
 void PairBlock::trace(bool values) {
+  require(Stage::pairs, "trace");
+  stage_ = Stage::evaluated;
   values_wanted_ = values;
-  attenuations_.clear();
+  survivors_.attenuations.clear();
   geometry::ShadowPacket packet;
-  const std::size_t packets = (survivors_ + 15) / 16;
+  const std::size_t packets = (survivors_.count + 15) / 16;
   for (std::size_t p = 0; p < packets; ++p) {
-    const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
+    const int count = static_cast<int>(std::min<std::size_t>(16, survivors_.count - 16 * p));
     fill(packet, 16 * p, count);
-    packet_bits_[p] = context_.rays->visible16(packet);
-    if (context_.has_smooth && values && packet_bits_[p] != 0) {
+    survivors_.packet_bits[p] = context_.rays->visible16(packet);
+    if (context_.has_smooth && values && survivors_.packet_bits[p] != 0) {
       // What is hidden need not be attenuated.
       for (int k = 0; k < count; ++k)
-        if (!(packet_bits_[p] >> k & 1)) packet.valid[k] = 0;
+        if (!(survivors_.packet_bits[p] >> k & 1)) packet.valid[k] = 0;
       note_transmittance(packet, 16 * p, count);
     }
   }
-  packet_bits_[packets] = 0;
+  survivors_.packet_bits[packets] = 0;
   std::size_t at = 0;  // bit of the next survivor
   for (std::size_t g = 0; g < groups_; ++g) {
-    const std::uint32_t alive_bits = alive_[g];
+    const std::uint32_t alive_bits = lanes_.alive[g];
     if (alive_bits == 0) {
-      visible_[g] = 0;
+      lanes_.visible[g] = 0;
       continue;
     }
-    const std::uint32_t two = packet_bits_[at / 16] | static_cast<std::uint32_t>(packet_bits_[at / 16 + 1])
-                                                          << 16;
-    visible_[g] = static_cast<std::uint16_t>(deposit_bits(two >> (at % 16), alive_bits));
+    const std::uint32_t two = survivors_.packet_bits[at / 16] |
+                              static_cast<std::uint32_t>(survivors_.packet_bits[at / 16 + 1]) << 16;
+    lanes_.visible[g] = static_cast<std::uint16_t>(deposit_bits(two >> (at % 16), alive_bits));
     at += static_cast<std::size_t>(__builtin_popcount(alive_bits));
   }
-  shade_through();
+  apply_transmittance();
 }
 
 void PairBlock::skip_visibility() {
+  require(Stage::pairs, "skip_visibility");
+  stage_ = Stage::evaluated;
   values_wanted_ = true;
-  attenuations_.clear();
-  std::copy_n(alive_.begin(), groups_, visible_.begin());
+  survivors_.attenuations.clear();
+  std::copy_n(lanes_.alive.begin(), groups_, lanes_.visible.begin());
   if (context_.has_smooth) {
     geometry::ShadowPacket packet;
-    for (std::size_t p = 0; 16 * p < survivors_; ++p) {
-      const int count = static_cast<int>(std::min<std::size_t>(16, survivors_ - 16 * p));
+    for (std::size_t p = 0; 16 * p < survivors_.count; ++p) {
+      const int count = static_cast<int>(std::min<std::size_t>(16, survivors_.count - 16 * p));
       fill(packet, 16 * p, count);
       note_transmittance(packet, 16 * p, count);
     }
   }
-  shade_through();
+  apply_transmittance();
 }
 
 }  // namespace lumirank::transport

@@ -9,6 +9,7 @@
 
 namespace lumirank::transport {
 
+using matrix::Cost;
 using matrix::Index;
 using matrix::Part;
 
@@ -53,7 +54,7 @@ std::size_t items_in_tile(const TilePlan& plan, std::size_t tile) {
 
 // What a_j·G·(π f_x)(π f_y) of a column may be because it stands for `scale` times its area. Without clamping
 // nothing is bounded, so that who switches it off gets an unbiased picture.
-float most_shown(const matrix::ScaledColumn& s, float clamp) {
+float max_contribution(const matrix::ScaledColumn& s, float clamp) {
   if (!(s.most_shown > 0) || clamp == kInfinity) return kInfinity;
   return s.most_shown / std::max(max_component(s.scale), 1e-30f);
 }
@@ -91,6 +92,7 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   context.rays = &world.rays();
   context.pair_seed = mix64(settings.seed);
   context.clamp = settings.clamp > 0 ? settings.clamp : kInfinity;
+  context.compensated = settings.compensated;
   context.has_cutouts = has_cutouts(world.rays());
   context.has_smooth = world.rays().has_smooth();
   context.has_directional =
@@ -134,15 +136,6 @@ SceneMatrix::Impl::Lease::~Lease() {
   impl_.spare_blocks.push_back(std::move(block_));
 }
 
-void SceneMatrix::Impl::account(matrix::Counters& counters, const Tally& tally) const {
-  counters.entries_evaluated += tally.evaluated;
-  counters.entries_culled += tally.culled;
-  counters.rays_shadow += tally.rays;
-  const std::lock_guard lock(mutex);
-  energy += tally.value;
-  energy_removed += tally.removed;
-}
-
 SceneMatrix::SceneMatrix(const world::World& world, const Receivers& receivers, const VirtualLights& lights,
                          const SceneMatrixSettings& settings)
     : impl_(std::make_unique<Impl>(world, receivers, lights, settings)) {}
@@ -152,39 +145,39 @@ SceneMatrix::~SceneMatrix() = default;
 std::size_t SceneMatrix::rows() const { return impl_->receivers.size(); }
 std::size_t SceneMatrix::columns() const { return impl_->lights.size(); }
 
-void SceneMatrix::row(Index i, std::span<Rgb> out, Part part) const {
+Cost SceneMatrix::row(Index i, std::span<Rgb> out, Part part) const {
   require(i < rows() && out.size() == columns(),
           "row() needs a row of the matrix and room for all its columns");
   const TilePlan& plan = impl_->columns.plan;
-  const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
+  const Cost all = parallel_sum(plan.tiles(), 1, Cost{}, [&](std::size_t tile, std::size_t) {
     Impl::Lease block(*impl_);
     block->set_column_tile(tile);
     block->set_row(impl_->rows.plan.slot[i]);
-    const Tally cost = finish(*block, part, items_in_tile(plan, tile));
+    const Cost cost = finish(*block, part, items_in_tile(plan, tile));
     const std::uint32_t* items = plan.item.data() + block->first_slot();
     copy_out(*block, part, {items, 16 * block->groups()}, [&](std::uint32_t to) -> Rgb& { return out[to]; });
     return cost;
   });
-  impl_->account(counters(), tally);
+  return with_loss(impl_->context, all);
 }
 
-void SceneMatrix::column(Index j, std::span<Rgb> out, Part part) const {
+Cost SceneMatrix::column(Index j, std::span<Rgb> out, Part part) const {
   require(j < columns() && out.size() == rows(),
           "column() needs a column of the matrix and room for all its rows");
   const TilePlan& plan = impl_->rows.plan;
-  const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
+  const Cost all = parallel_sum(plan.tiles(), 1, Cost{}, [&](std::size_t tile, std::size_t) {
     Impl::Lease block(*impl_);
     block->set_row_tile(tile);
     block->set_column(impl_->columns.plan.slot[j]);
-    const Tally cost = finish(*block, part, items_in_tile(plan, tile));
+    const Cost cost = finish(*block, part, items_in_tile(plan, tile));
     const std::uint32_t* items = plan.item.data() + block->first_slot();
     copy_out(*block, part, {items, 16 * block->groups()}, [&](std::uint32_t to) -> Rgb& { return out[to]; });
     return cost;
   });
-  impl_->account(counters(), tally);
+  return with_loss(impl_->context, all);
 }
 
-void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::span<Rgb> sums,
+Cost SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::span<Rgb> sums,
                              const Sinks& sinks) const {
   require(sums.size() == rows(), "accumulate() needs one sum per row");
   for (const matrix::ScaledColumn& s : scaled)
@@ -192,8 +185,8 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
   const TilePlan& plan = impl_->rows.plan;
   std::mutex progress;
   std::size_t done = 0;
-  const Tally tally = parallel_sum(plan.tiles(), 1, Tally{}, [&](std::size_t tile, std::size_t) {
-    Tally cost;
+  const Cost all = parallel_sum(plan.tiles(), 1, Cost{}, [&](std::size_t tile, std::size_t) {
+    Cost cost;
     {
       Impl::Lease block(*impl_);
       block->set_row_tile(tile);
@@ -201,15 +194,16 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
       const std::size_t items = items_in_tile(plan, tile);
       for (const matrix::ScaledColumn& s : scaled) {
         if (sinks.cancelled()) throw Cancelled();
-        block->set_column(impl_->columns.plan.slot[s.column],
-                          impl_->settings.compensated ? kInfinity : most_shown(s, impl_->context.clamp));
+        block->set_column(
+            impl_->columns.plan.slot[s.column],
+            impl_->settings.compensated ? kInfinity : max_contribution(s, impl_->context.clamp));
         block->trace();
-        cost.evaluated += items;
+        cost.entries += items;
         cost.culled += items - block->survivors();
         cost.rays += block->survivors();
-        cost.removed += block->add_to_sums(s.scale);
+        cost.clamped += block->add_to_sums(s.scale);
       }
-      cost.value = block->store_sums(sums);
+      cost.energy = block->store_sums(sums);
     }
     if (sinks.progress) {
       const std::lock_guard lock(progress);
@@ -218,7 +212,7 @@ void SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
     }
     return cost;
   });
-  impl_->account(counters(), tally);
+  return with_loss(impl_->context, all);
 }
 
 matrix::RowFeatures SceneMatrix::row_features() const {
@@ -228,17 +222,6 @@ matrix::RowFeatures SceneMatrix::row_features() const {
 matrix::ColumnFeatures SceneMatrix::column_features() const {
   return {impl_->lights.position, impl_->lights.normal, impl_->column_power,  impl_->column_group,
           impl_->column_indirect, impl_->lights.half,   impl_->column_emitted};
-}
-
-double SceneMatrix::clamped_energy() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->settings.compensated ? 0 : impl_->energy_removed;
-}
-
-double SceneMatrix::clamped_fraction() const {
-  const std::lock_guard lock(impl_->mutex);
-  const double whole = impl_->energy + impl_->energy_removed;
-  return whole > 0 ? impl_->energy_removed / whole : 0;
 }
 
 std::size_t SceneMatrix::memory_bytes() const {

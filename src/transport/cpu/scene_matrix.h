@@ -6,25 +6,11 @@
 #include "matrix/entry_reader.h"
 #include "matrix/lighting_matrix.h"
 #include "transport/lights/virtual_lights.h"
-#include "transport/pairs/sphere_rules.h"
+#include "transport/pairs/scene_matrix_settings.h"
 #include "transport/rows/receivers.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
-
-struct SceneMatrixSettings {
-  std::uint64_t seed = 1;
-  float clamp = 1;  // X of the conventions; 0: off. Spherical lights need none and have none
-  // What clamping takes is given back elsewhere: nothing is lost by it, and nothing else may be bounded.
-  bool compensated = false;
-  int max_depth =
-      -1;  // Mitsuba's count; receiver depth + light depth + the connecting segment may not exceed it
-  bool group_by_emitter = false;  // clusters may not cross emitters (for --aov light:NAME)
-  // Lobes of receivers with a roughness below this get 0 from direct columns: their direct light is traced
-  // (render/traced_direct.h). Above 1: all lobes of all receivers.
-  float traced_direct_below = 0;
-  SphereRules spheres;  // where lights are spherical
-};
 
 // Holds references: world, receivers and lights must outlive it.
 class SceneMatrix final : public matrix::LightingMatrix {
@@ -33,26 +19,26 @@ class SceneMatrix final : public matrix::LightingMatrix {
               const SceneMatrixSettings& settings);
   ~SceneMatrix() override;
 
+  // Of every world: cut-outs are decided by a hash of the pair, and what thin glass lets pass is part of E,
+  // so that V is 0 or 1.
+  static constexpr matrix::Capabilities kCapabilities = matrix::Capabilities::all();
+
   std::size_t rows() const override;
   std::size_t columns() const override;
-  void row(matrix::Index i, std::span<Rgb> out, matrix::Part part) const override;
-  void column(matrix::Index j, std::span<Rgb> out, matrix::Part part) const override;
-  void block(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns, std::span<Rgb> out,
-             matrix::Part part) const override;
-  void entries(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns,
-               std::span<Rgb> out, matrix::Part part) const override;
-  void accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
-                  const Sinks& sinks) const override;
+  matrix::Cost row(matrix::Index i, std::span<Rgb> out, matrix::Part part) const override;
+  matrix::Cost column(matrix::Index j, std::span<Rgb> out, matrix::Part part) const override;
+  matrix::Cost block(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns,
+                     std::span<Rgb> out, matrix::Part part) const override;
+  matrix::Cost entries(std::span<const matrix::Index> rows, std::span<const matrix::Index> columns,
+                       std::span<Rgb> out, matrix::Part part) const override;
+  matrix::Cost accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
+                          const Sinks& sinks) const override;
   std::unique_ptr<matrix::EntryReader> reader() const override;
+  matrix::Capabilities capabilities() const override { return kCapabilities; }
   matrix::ColumnSet column_set(matrix::Index j) const override;
   std::unique_ptr<matrix::RowBounds> row_bounds() const override;
   matrix::RowFeatures row_features() const override;
   matrix::ColumnFeatures column_features() const override;
-
-  // Energy that clamping removed, over the entries evaluated so far: Σ(unclamped − clamped) / Σ unclamped,
-  // receivers weighted equally.
-  double clamped_fraction() const;
-  double clamped_energy() const override;
 
   // Of the matrix itself, without the receivers and lights that it is made of.
   std::size_t memory_bytes() const;

@@ -73,13 +73,13 @@ ColumnSet SceneMatrix::column_set(Index j) const {
     // Near a disc the cosine does not count.
     const bool disc = sphere && impl_->settings.spheres.indicator == SphereRules::Indicator::disc;
     const bool oriented =
-        peak.one_sided && (disc || max_component(peak.alone) <= 4 * max_component(peak.slanted));
+        peak.one_sided && (disc || max_component(peak.max_f) <= 4 * max_component(peak.max_f_cos));
     if (oriented) set.emission = Emission::oriented, set.cone = {lights.ng[j], 1};
-    set.intensity *= oriented || disc ? peak.alone : peak.slanted;
+    set.intensity *= oriented || disc ? peak.max_f : peak.max_f_cos;
   }
   if (sphere) {
     set.spherical = true;
-    set.radius = set.least_radius = lights.radius[j];
+    set.radius = set.min_radius = lights.radius[j];
     const SphereRules& rules = impl_->settings.spheres;
     if (rules.strategies == SphereRules::Strategies::all) {
       if (rules.samples == SphereRules::Samples::cone) {

@@ -44,12 +44,8 @@ struct SceneMatrix::Impl {
     std::unique_ptr<PairBlock> block_;
   };
 
-  // Adds what a call cost to the counters and to the energies behind clamped_fraction().
-  void account(matrix::Counters& counters, const Tally& tally) const;
-
   mutable std::mutex mutex;
   mutable std::vector<std::unique_ptr<PairBlock>> spare_blocks;
-  mutable double energy = 0, energy_removed = 0;
 };
 
 }  // namespace lumirank::transport

@@ -6,6 +6,7 @@
 
 namespace lumirank::transport {
 
+using matrix::Cost;
 using matrix::Index;
 using matrix::Part;
 
@@ -15,21 +16,21 @@ constexpr std::size_t kPiece = 4096;  // pairs per task
 
 }  // namespace
 
-void SceneMatrix::entries(std::span<const Index> row_ids, std::span<const Index> column_ids,
+Cost SceneMatrix::entries(std::span<const Index> row_ids, std::span<const Index> column_ids,
                           std::span<Rgb> out, Part part) const {
   if (row_ids.size() != column_ids.size() || out.size() != row_ids.size())
     throw InternalError("transport::SceneMatrix::entries: rows, columns and out differ in length");
   const auto &rows = impl_->rows.plan.slot, &columns = impl_->columns.plan.slot;
-  const Tally tally = parallel_sum(row_ids.size(), kPiece, Tally{}, [&](std::size_t begin, std::size_t end) {
+  const Cost all = parallel_sum(row_ids.size(), kPiece, Cost{}, [&](std::size_t begin, std::size_t end) {
     PairList list(impl_->context);
     for (std::size_t k = begin; k < end; ++k) list.add(rows[row_ids[k]], columns[column_ids[k]]);
     Impl::Lease block(*impl_);
     return list.evaluate(*block, part, [&](std::uint32_t k) -> Rgb& { return out[begin + k]; });
   });
-  impl_->account(counters(), tally);
+  return with_loss(impl_->context, all);
 }
 
-void SceneMatrix::block(std::span<const Index> row_ids, std::span<const Index> column_ids, std::span<Rgb> out,
+Cost SceneMatrix::block(std::span<const Index> row_ids, std::span<const Index> column_ids, std::span<Rgb> out,
                         Part part) const {
   if (out.size() != row_ids.size() * column_ids.size())
     throw InternalError("transport::SceneMatrix::block: out is not rows × columns");
@@ -37,7 +38,7 @@ void SceneMatrix::block(std::span<const Index> row_ids, std::span<const Index> c
   // Along the longer side, so that rays of a packet share an end.
   const bool by_column = row_ids.size() >= column_ids.size();
   const std::size_t across = by_column ? row_ids.size() : column_ids.size();
-  const Tally tally = parallel_sum(out.size(), kPiece, Tally{}, [&](std::size_t begin, std::size_t end) {
+  const Cost all = parallel_sum(out.size(), kPiece, Cost{}, [&](std::size_t begin, std::size_t end) {
     const auto place = [&](std::size_t k) {
       const std::size_t line = k / across, along = k % across;
       return by_column ? std::pair(along, line) : std::pair(line, along);
@@ -51,7 +52,7 @@ void SceneMatrix::block(std::span<const Index> row_ids, std::span<const Index> c
       return out[a * column_ids.size() + b];
     });
   });
-  impl_->account(counters(), tally);
+  return with_loss(impl_->context, all);
 }
 
 }  // namespace lumirank::transport

@@ -1,7 +1,6 @@
 // Entries of a SceneMatrix for one thread: a slice's receivers are copied together once, so that each column
 // then meets them as it meets a tile of neighbours.
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -12,6 +11,7 @@
 
 namespace lumirank::transport {
 
+using matrix::Cost;
 using matrix::Index;
 using matrix::Part;
 
@@ -19,11 +19,8 @@ namespace {
 
 class SceneReader final : public matrix::EntryReader {
  public:
-  using Account = std::function<void(const Tally&)>;
-
-  SceneReader(const PairContext& context, Account account)
+  explicit SceneReader(const PairContext& context)
       : context_(context),
-        account_(std::move(account)),
         slice_context_(context),
         column_block_(slice_context_),
         slice_list_block_(slice_context_),
@@ -32,7 +29,6 @@ class SceneReader final : public matrix::EntryReader {
         list_(context_) {
     slice_context_.rows = &slice_;
   }
-  ~SceneReader() override { account_(tally_); }
 
   void set_rows(std::span<const Index> rows) override {
     const RowStore& all = *context_.rows;
@@ -65,34 +61,37 @@ class SceneReader final : public matrix::EntryReader {
     if (rows_ > 0) column_block_.set_row_tile(0);
   }
 
-  void column(Index j, std::span<Rgb> out, Part part) override {
+  Cost column(Index j, std::span<Rgb> out, Part part) override {
     if (j >= context_.columns->plan.slot.size() || out.size() != rows_)
       throw InternalError(
           "transport::SceneReader::column needs a column of the matrix and room for its rows");
-    if (rows_ == 0) return;
+    if (rows_ == 0) return {};
     column_block_.set_column(context_.columns->plan.slot[j]);
-    tally_ += finish(column_block_, part, rows_);
+    const Cost cost = finish(column_block_, part, rows_);
     copy_out(column_block_, part, places_, [&](std::uint32_t to) -> Rgb& { return out[to]; });
+    return with_loss(context_, cost);
   }
 
-  void unoccluded_scalars(Index j, Rgb weights, std::span<float> out) override {
-    evaluate(j, out.size());
+  Cost unoccluded_scalars(Index j, Rgb weights, std::span<float> out) override {
+    const Cost cost = evaluate(j, out.size());
     if (in_order_) {
       column_block_.scalars(weights, [&](std::size_t group, const float* lanes) {
         std::copy_n(lanes, std::min<std::size_t>(16, out.size() - 16 * group), &out[16 * group]);
       });
-      return;
+      return cost;
     }
     column_block_.scalars(weights, [&](std::size_t group, const float* lanes) {
       const std::uint32_t* const to = &places_[16 * group];
       for (std::size_t k = 0; k < 16; ++k)
         if (to[k] != kNoItem) out[to[k]] = lanes[k];
     });
+    return cost;
   }
 
-  void add_unoccluded(std::span<const matrix::ScaledColumn> columns, std::span<const float> shares,
+  Cost add_unoccluded(std::span<const matrix::ScaledColumn> columns, std::span<const float> shares,
                       std::span<const std::uint32_t> of, std::span<Rgb> sums) override {
-    if (columns.empty() || rows_ == 0) return;
+    Cost cost;
+    if (columns.empty() || rows_ == 0) return cost;
     if (shares.size() % columns.size() != 0 || of.size() != rows_ || sums.size() != rows_)
       throw InternalError("add_unoccluded: as many shares for every column, and one of them for every row");
     const std::size_t each = shares.size() / columns.size();
@@ -103,33 +102,34 @@ class SceneReader final : public matrix::EntryReader {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const auto share = shares.subspan(k * each, each);
       if (std::ranges::all_of(share, [](float s) { return s == 0; })) continue;
-      evaluate(columns[k].column, rows_);
+      cost += evaluate(columns[k].column, rows_);
       column_block_.add_shares(columns[k].scale, share, share_of_, sums_);
     }
     for (std::size_t slot = 0; slot < places_.size(); ++slot) {
       const float* const sum = &sums_[48 * (slot / 16) + slot % 16];
       if (places_[slot] != kNoItem) sums[places_[slot]] += Rgb(sum[0], sum[16], sum[32]);
     }
+    return cost;
   }
 
-  void entries_at(std::span<const std::uint32_t> places, std::span<const Index> columns, std::span<Rgb> out,
+  Cost entries_at(std::span<const std::uint32_t> places, std::span<const Index> columns, std::span<Rgb> out,
                   Part part) override {
-    list_entries(slice_list_, slice_list_block_, slice_.plan.slot, {places, columns, out}, part);
+    return list_entries(slice_list_, slice_list_block_, slice_.plan.slot, {places, columns, out}, part);
   }
-  void entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+  Cost entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                Part part) override {
-    list_entries(list_, list_block_, context_.rows->plan.slot, {rows, columns, out}, part);
+    return list_entries(list_, list_block_, context_.rows->plan.slot, {rows, columns, out}, part);
   }
 
  private:
   // E of a column, into its block.
-  void evaluate(Index j, std::size_t rows) {
+  Cost evaluate(Index j, std::size_t rows) {
     if (j >= context_.columns->plan.slot.size() || rows != rows_)
       throw InternalError(
           "transport::SceneReader::column needs a column of the matrix and room for its rows");
-    if (rows_ == 0) return;
+    if (rows_ == 0) return {};
     column_block_.set_column(context_.columns->plan.slot[j]);
-    tally_ += finish(column_block_, Part::unoccluded, rows_);
+    return finish(column_block_, Part::unoccluded, rows_);
   }
 
   static constexpr std::size_t kPiece = 4096;  // pairs whose buffers stay in a core's own cache
@@ -140,8 +140,9 @@ class SceneReader final : public matrix::EntryReader {
     std::span<Rgb> out;
   };
   // row_slots: of what `rows` counts.
-  void list_entries(PairList& list, PairBlock& block, std::span<const std::uint32_t> row_slots,
+  Cost list_entries(PairList& list, PairBlock& block, std::span<const std::uint32_t> row_slots,
                     const Asked& asked, Part part) {
+    Cost cost;
     if (asked.rows.size() != asked.columns.size() || asked.out.size() != asked.rows.size())
       throw InternalError("transport::SceneReader: rows, columns and out of a list differ in length");
     const std::vector<std::uint32_t>& column_slots = context_.columns->plan.slot;
@@ -150,8 +151,9 @@ class SceneReader final : public matrix::EntryReader {
       const std::size_t end = std::min(asked.rows.size(), begin + kPiece);
       for (std::size_t k = begin; k < end; ++k)
         list.add(row_slots[asked.rows[k]], column_slots[asked.columns[k]]);
-      tally_ += list.evaluate(block, part, [&](std::uint32_t k) -> Rgb& { return asked.out[begin + k]; });
+      cost += list.evaluate(block, part, [&](std::uint32_t k) -> Rgb& { return asked.out[begin + k]; });
     }
+    return with_loss(context_, cost);
   }
 
   void copy_rows(const RowStore& all) {
@@ -180,12 +182,10 @@ class SceneReader final : public matrix::EntryReader {
   }
 
   const PairContext& context_;
-  Account account_;
   RowStore slice_;
   PairContext slice_context_;
   PairBlock column_block_, slice_list_block_, list_block_;
   PairList slice_list_, list_;
-  Tally tally_;
   std::size_t rows_ = 0;
   bool in_order_ = true;  // rows lie as they were given
   std::vector<std::uint32_t> order_, places_, share_of_;
@@ -195,8 +195,7 @@ class SceneReader final : public matrix::EntryReader {
 }  // namespace
 
 std::unique_ptr<matrix::EntryReader> SceneMatrix::reader() const {
-  return std::make_unique<SceneReader>(impl_->context,
-                                       [this](const Tally& tally) { impl_->account(counters(), tally); });
+  return std::make_unique<SceneReader>(impl_->context);
 }
 
 }  // namespace lumirank::transport

@@ -8,10 +8,10 @@
 
 namespace lumirank::transport {
 
-// At least f_y towards any receiver, for light from `incoming`: alone, and times the cosine with the
+// At least f_y towards any receiver, for light from `incoming`, and at least f_y times the cosine with the
 // geometric normal (of a fibre: the sine).
 struct LightPeak {
-  Rgb alone, slanted;
+  Rgb max_f, max_f_cos;
   bool one_sided;  // nothing comes out behind the geometric normal
 };
 // By index into lights.closures.

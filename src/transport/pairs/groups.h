@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/lanes.h"
-#include "transport/cpu/scene_matrix.h"
 #include "transport/lights/virtual_lights.h"
 #include "transport/pairs/scatter_forms.h"
+#include "transport/pairs/scene_matrix_settings.h"
 #include "transport/pairs/tile_plan.h"
 #include "transport/rows/receivers.h"
 
@@ -32,14 +32,6 @@ struct ColumnGroup {
   Lane radius, hidden;  // of spherical lights, as in VirtualLights; their power is divided by πr²
 };
 
-// Where fields that are read one by one begin, in floats.
-inline constexpr int kPositionField = 0, kGeometricNormalField = 6 * 16, kOriginField = 9 * 16,
-                     kTargetField = 9 * 16;
-static_assert(offsetof(RowGroup, ng) == kGeometricNormalField * sizeof(float) &&
-              offsetof(ColumnGroup, ng) == kGeometricNormalField * sizeof(float) &&
-              offsetof(RowGroup, origin) == kOriginField * sizeof(float) &&
-              offsetof(ColumnGroup, target) == kTargetField * sizeof(float));
-
 // Classes of receivers; from kRowScatter on, one for each form of scattering.
 inline constexpr std::uint16_t kRowLambertian = 0, kRowScatter = 1;
 
@@ -57,9 +49,17 @@ enum ColumnKind : std::uint16_t {
 constexpr bool scatters(ColumnKind kind) { return kind == kColumnScatter || kind == kColumnScatterSphere; }
 constexpr bool is_sphere(ColumnKind kind) { return kind == kColumnSphere || kind == kColumnScatterSphere; }
 
-template <typename Group>
+inline Vec3f lane_of(const Lane3& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
+inline void set_lane(Lane3& v, int lane, Vec3f value) {
+  v.x[lane] = value.x, v.y[lane] = value.y, v.z[lane] = value.z;
+}
+
+// Groups consist of lanes alone, so that a slot can be copied field by field.
+template <typename G>
 struct GroupStore {
+  using Group = G;
   static constexpr std::size_t kFields = sizeof(Group) / sizeof(Lane);
+  static_assert(kFields * sizeof(Lane) == sizeof(Group));
 
   TilePlan plan;
   std::vector<Group> groups;
@@ -68,15 +68,14 @@ struct GroupStore {
 
   std::vector<std::uint32_t> key;  // slot: what random numbers belong to; empty where none are needed
 
-  // The first field of a slot; field k of the same slot is 16·k floats on.
-  const float* at(std::uint32_t slot) const {
-    return reinterpret_cast<const float*>(groups.data() + (slot >> 4)) + (slot & 15);
+  // One field of one slot.
+  Vec3f get(std::uint32_t slot, Lane3 Group::*field) const {
+    return lane_of(groups[slot / 16].*field, static_cast<int>(slot % 16));
   }
-  float* at(std::uint32_t slot) { return const_cast<float*>(static_cast<const GroupStore*>(this)->at(slot)); }
 
   // 16 copies of one slot.
   void splat(std::uint32_t slot, Group& out) const {
-    const float* from = at(slot);
+    const float* from = first_field(slot);
     float* to = reinterpret_cast<float*>(&out);
     for (std::size_t k = 0; k < kFields; ++k) store(to + 16 * k, lumirank::splat(from[16 * k]));
   }
@@ -87,7 +86,7 @@ struct GroupStore {
     if (same) return splat(slots[0], out);
     float* to = reinterpret_cast<float*>(&out);
     for (int lane = 0; lane < 16; ++lane) {
-      const float* from = at(slots[lane]);
+      const float* from = first_field(slots[lane]);
       for (std::size_t k = 0; k < kFields; ++k) to[16 * k + lane] = from[16 * k];
     }
   }
@@ -95,6 +94,12 @@ struct GroupStore {
     return groups.size() * sizeof(Group) + two_sided.size() +
            (key.size() + plan.item.size() + plan.slot.size() + plan.first_run.size()) * 4 +
            plan.kind.size() * 2 + plan.runs.size() * sizeof(TilePlan::Run);
+  }
+
+ private:
+  // For what is done to all fields alike: field k of the same slot is 16·k floats on.
+  const float* first_field(std::uint32_t slot) const {
+    return reinterpret_cast<const float*>(groups.data() + slot / 16) + slot % 16;
   }
 };
 
@@ -105,8 +110,5 @@ using ColumnStore = GroupStore<ColumnGroup>;
 RowStore make_rows(const Receivers& receivers, const ScatterForms& forms, const SceneMatrixSettings& settings,
                    bool with_keys);
 ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms, bool with_keys);
-
-inline Vec3f read3(const float* p) { return {p[0], p[16], p[32]}; }
-inline void write3(float* p, Vec3f v) { p[0] = v.x, p[16] = v.y, p[32] = v.z; }
 
 }  // namespace lumirank::transport

@@ -64,9 +64,9 @@ float towards(float cosine, float cos_spread, float sin_spread) {
 float sine_of(float cosine) { return std::sqrt(std::max(0.0f, 1 - cosine * cosine)); }
 
 // Solid angle of a sphere over π times its radius squared, where it is largest; from inside, a hemisphere's.
-float sphere_geometry(float distance2, float radius, float least_radius, float beyond) {
-  distance2 = std::max(distance2, square(beyond * least_radius));
-  if (distance2 <= radius * radius) return 2 / std::max(distance2, least_radius * least_radius);
+float sphere_geometry(float distance2, float radius, float min_radius, float beyond) {
+  distance2 = std::max(distance2, square(beyond * min_radius));
+  if (distance2 <= radius * radius) return 2 / std::max(distance2, min_radius * min_radius);
   return 2 / (distance2 * (1 + std::sqrt(1 - radius * radius / distance2)));
 }
 
@@ -83,7 +83,7 @@ scatter::ClosureBound SceneRowBounds::closure_bound(Index i) const {
 
 void SceneRowBounds::set_rows(std::span<const Index> rows) {
   box_ = {};
-  matt_ = most_ = most_direct_ = Rgb(0);
+  matt_ = most_ = max_direct_ = Rgb(0);
   closures_.clear();
   behind_ = sharp_ = false;
   std::size_t closures = 0;
@@ -118,7 +118,7 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
     if (many_) {
       const scatter::ClosureBound bound = closure_bound(i);
       most_ = greater(most_, bound.anywhere(Slant::cosine));
-      most_direct_ = greater(most_direct_, bound.anywhere(Slant::cosine, rules_.traced_direct_below));
+      max_direct_ = greater(max_direct_, bound.anywhere(Slant::cosine, rules_.traced_direct_below));
     } else {
       closures_.push_back(closure_bound(i));
     }
@@ -129,7 +129,7 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
 // f times the cosine for light from a cone of directions that make at most this cosine with a normal.
 Rgb SceneRowBounds::scattered(const DirectionCone& cone, float cosine, bool direct) const {
   Rgb most = cosine > 0 ? matt_ * cosine : Rgb(0);
-  if (many_) return cosine > 0 || behind_ ? greater(most, direct ? most_direct_ : most_) : most;
+  if (many_) return cosine > 0 || behind_ ? greater(most, direct ? max_direct_ : most_) : most;
   for (const scatter::ClosureBound& closure : closures_)
     most = greater(most, closure.within(cone, Slant::cosine, direct ? rules_.traced_direct_below : 0));
   return most;
@@ -166,7 +166,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     if (!set.spherical) {
       parts.near = d.distance2 > 0 ? 1 / d.distance2 : kInfinity;
     } else {
-      parts.near = sphere_geometry(d.distance2, set.radius, set.least_radius, rules_.spheres.beyond);
+      parts.near = sphere_geometry(d.distance2, set.radius, set.min_radius, rules_.spheres.beyond);
       parts.far = std::min(parts.near, parts.far);
       const bool near = d.distance2 < square(kDiscReach * set.radius) * 1.00001f;
       if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) slanted = false;

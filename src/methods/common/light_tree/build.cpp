@@ -75,7 +75,7 @@ struct LightTree::Builder {
     inner.begin = begin, inner.end = end, inner.left_size = left_size, inner.parent = parent;
     inner.emission = static_cast<std::uint32_t>(set.emission) & 3u;
     inner.spherical = set.spherical, inner.direct = set.direct;
-    if (set.spherical) tree.radii_[node] = {set.radius, set.least_radius};
+    if (set.spherical) tree.radii_[node] = {set.radius, set.min_radius};
     const Node left = tree.left(node), right = tree.right(node);
     inner.emitted = tree.emitted(left) + tree.emitted(right);
     const double u = unit_double(hash_ids(seed, Stage::representatives, node));
