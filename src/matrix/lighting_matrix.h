@@ -57,7 +57,7 @@ struct ScaledColumn {
   Rgb scale{1};
   // If > 0, a matrix that knows how large a part of the surroundings a column stands for keeps its scaled
   // entries from showing more than this share of what fills the whole hemisphere; others ignore it.
-  float most_shown = 0;
+  float max_contribution = 0;
 };
 
 // Required: sizes and entries. Optional: features, bounds, and what capabilities() tells of them. A call's

@@ -268,7 +268,7 @@ TEST_F(SceneMatrixPairs, ClampedEntriesKeepTheBoundAndTheirColour) {
 // A column that stands for `scale` times its area is one with a clamp that much lower; without clamping the
 // bound is off.
 TEST_F(SceneMatrixPairs, RepresentativesAreBoundedAsTheAreaTheyStandFor) {
-  const float clamp = 0.03f, scale = 64, most_shown = 0.5f;
+  const float clamp = 0.03f, scale = 64, max_contribution = 0.5f;
   const auto sums_of = [&](const SceneMatrix& matrix, float bound) {
     std::vector<Rgb> sums(kRows);
     std::vector<matrix::ScaledColumn> columns;
@@ -276,10 +276,10 @@ TEST_F(SceneMatrixPairs, RepresentativesAreBoundedAsTheAreaTheyStandFor) {
     matrix.accumulate(columns, sums, {});
     return sums;
   };
-  EXPECT_EQ(sums_of(make(clamp), most_shown), sums_of(make(most_shown / scale), 0));
-  EXPECT_NE(sums_of(make(clamp), most_shown), sums_of(make(clamp), 0));
+  EXPECT_EQ(sums_of(make(clamp), max_contribution), sums_of(make(max_contribution / scale), 0));
+  EXPECT_NE(sums_of(make(clamp), max_contribution), sums_of(make(clamp), 0));
   EXPECT_EQ(sums_of(make(clamp), 10 * scale), sums_of(make(clamp), 0));
-  EXPECT_EQ(sums_of(make(0), most_shown), sums_of(make(0), 0));
+  EXPECT_EQ(sums_of(make(0), max_contribution), sums_of(make(0), 0));
 }
 
 TEST_F(SceneMatrixPairs, ClampedFractionIsTheShareOfEnergyTakenAway) {

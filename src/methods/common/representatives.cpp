@@ -104,7 +104,7 @@ void add_zero_columns(std::span<const matrix::Index> zero, std::span<const float
                       const RepresentativeSettings& settings, Representatives& representatives) {
   auto drawn = draw_columns(
       zero, power, {std::min(count, zero.size()), true, settings.seed, Stage::zero_columns, settings.round});
-  for (matrix::ScaledColumn& c : drawn) c.most_shown = settings.max_contribution;
+  for (matrix::ScaledColumn& c : drawn) c.max_contribution = settings.max_contribution;
   representatives.columns.insert(representatives.columns.end(), drawn.begin(), drawn.end());
   representatives.energy.resize(representatives.columns.size(), 0.0);
   representatives.zero_columns += drawn.size();

@@ -55,8 +55,8 @@ std::size_t items_in_tile(const TilePlan& plan, std::size_t tile) {
 // What a_j·G·(π f_x)(π f_y) of a column may be because it stands for `scale` times its area. Without clamping
 // nothing is bounded, so that who switches it off gets an unbiased picture.
 float max_contribution(const matrix::ScaledColumn& s, float clamp) {
-  if (!(s.most_shown > 0) || clamp == kInfinity) return kInfinity;
-  return s.most_shown / std::max(max_component(s.scale), 1e-30f);
+  if (!(s.max_contribution > 0) || clamp == kInfinity) return kInfinity;
+  return s.max_contribution / std::max(max_component(s.scale), 1e-30f);
 }
 
 void require(bool holds, const char* what) {
