@@ -14,6 +14,7 @@ constexpr const char* kAbilityTexts[kAbilities] = {
     "the receivers' places",
     "the receivers' normals",
     "the receivers' weights in the picture",
+    "the receivers' ids",
     "the lights' places",
     "the lights' normals",
     "the lights' powers",
@@ -21,6 +22,7 @@ constexpr const char* kAbilityTexts[kAbilities] = {
     "which lights are indirect",
     "which half of the random lights each belongs to",
     "the lights' colors",
+    "the lights' ids",
 };
 
 }  // namespace

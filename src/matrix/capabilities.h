@@ -18,6 +18,7 @@ enum class Ability : std::uint8_t {
   row_position,
   row_normal,
   row_weight,
+  row_id,
   // ColumnFeatures
   column_position,
   column_normal,
@@ -26,8 +27,9 @@ enum class Ability : std::uint8_t {
   column_indirect,
   column_half,
   column_emitted,
+  column_id,
 };
-inline constexpr int kAbilities = 13;
+inline constexpr int kAbilities = 15;
 
 // A set of abilities.
 class Capabilities {

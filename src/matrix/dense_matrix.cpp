@@ -28,6 +28,8 @@ DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
       indirect(std::move(other.indirect)),
       half(std::move(other.half)),
       emitted(std::move(other.emitted)),
+      row_id(std::move(other.row_id)),
+      column_id(std::move(other.column_id)),
       rows_(other.rows_),
       columns_(other.columns_),
       unoccluded_(std::move(other.unoccluded_)),
@@ -139,10 +141,12 @@ class GreatestEntries final : public RowBounds {
 
 std::unique_ptr<RowBounds> DenseMatrix::row_bounds() const { return std::make_unique<GreatestEntries>(); }
 
-RowFeatures DenseMatrix::row_features() const { return {pixel, row_position, row_normal, row_weight}; }
+RowFeatures DenseMatrix::row_features() const {
+  return {pixel, row_position, row_normal, row_weight, row_id};
+}
 
 ColumnFeatures DenseMatrix::column_features() const {
-  return {column_position, column_normal, power, group, indirect, half, emitted};
+  return {column_position, column_normal, power, group, indirect, half, emitted, column_id};
 }
 
 std::vector<Rgb> DenseMatrix::exact_sums() const {

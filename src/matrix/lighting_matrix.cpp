@@ -43,11 +43,12 @@ Capabilities LightingMatrix::capabilities() const {
   const RowFeatures r = row_features();
   note(r.pixel, rows(), Ability::row_pixel), note(r.position, rows(), Ability::row_position);
   note(r.normal, rows(), Ability::row_normal), note(r.weight, rows(), Ability::row_weight);
+  note(r.id, rows(), Ability::row_id);
   const ColumnFeatures c = column_features();
   note(c.position, columns(), Ability::column_position), note(c.normal, columns(), Ability::column_normal);
   note(c.power, columns(), Ability::column_power), note(c.group, columns(), Ability::column_group);
   note(c.indirect, columns(), Ability::column_indirect), note(c.half, columns(), Ability::column_half);
-  note(c.emitted, columns(), Ability::column_emitted);
+  note(c.emitted, columns(), Ability::column_emitted), note(c.id, columns(), Ability::column_id);
   return told;
 }
 

@@ -31,6 +31,9 @@ struct RowFeatures {
   std::span<const Vec3f> position;
   std::span<const Vec3f> normal;
   std::span<const float> weight;  // ≥ 0; what the row's sum is multiplied with in the image
+  // Who a row is, whatever its index: unique, and the same in every matrix that has it. Random choices that
+  // are keyed by it survive another order, and other rows beside it.
+  std::span<const std::uint64_t> id{};
 };
 
 // Plain numbers about columns. Arrays of length columns(); may be empty if unknown.
@@ -46,7 +49,13 @@ struct ColumnFeatures {
   std::span<const std::uint8_t> half;
   std::span<const Rgb>
       emitted;  // what `power` is a scalar of: entries of like columns are in this proportion
+  std::span<const std::uint64_t> id{};  // as of rows
 };
+
+// The key of a row's or a column's random numbers: its id, or its index where ids are unknown.
+inline std::uint64_t id_of(std::span<const std::uint64_t> ids, std::size_t index) {
+  return ids.empty() ? index : ids[index];
+}
 
 // Which part of an entry.
 enum class Part { value, unoccluded, visibility };

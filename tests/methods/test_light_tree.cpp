@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -63,13 +64,14 @@ class MixedLights final : public matrix::LightingMatrix {
   ColumnSet column_set(Index j) const override { return sets[j]; }
   matrix::ColumnFeatures column_features() const override {
     matrix::ColumnFeatures features;
-    features.group = group, features.emitted = emitted;
+    features.group = group, features.emitted = emitted, features.id = id;
     return features;
   }
 
   std::vector<ColumnSet> sets;
   std::vector<std::uint16_t> group;
   std::vector<Rgb> emitted;
+  std::vector<std::uint64_t> id;  // unknown unless set
 };
 
 void visit(const LightTree& tree, Node node, std::vector<Node>& all) {
@@ -220,6 +222,36 @@ TEST(LightTree, RepresentativesAreDrawnByPower) {
       const double h = 2.0 / (9 * degrees), z = 3.1;
       EXPECT_LT(chi2, degrees * std::pow(1 - h + z * std::sqrt(h), 3)) << degrees;
     }
+}
+
+// Lights left out and the others in disorder: who stood for a tree and is still there stands for it again.
+TEST(LightTree, RepresentativesSurviveAnotherOrderAndFewerLights) {
+  std::size_t kept = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    MixedLights all(200, seed);
+    for (std::size_t j = 0; j < all.columns(); ++j) all.id.push_back(hash_ids(seed, Stage::test, j));
+    MixedLights some = all;
+    some.sets.clear(), some.group.clear(), some.emitted.clear(), some.id.clear();
+    std::map<std::uint64_t, Index> there;
+    for (std::size_t k = 0; k < all.columns(); ++k) {
+      const std::size_t j = (k * 77 + 13) % all.columns();  // 77 and 200 have no common divisor
+      if (j % 3 == 0) continue;
+      there[all.id[j]] = static_cast<Index>(some.sets.size());
+      some.sets.push_back(all.sets[j]), some.group.push_back(all.group[j]);
+      some.emitted.push_back(all.emitted[j]), some.id.push_back(all.id[j]);
+    }
+    const LightTree whole(all, seed), part(some, seed);
+    std::map<Index, Index> chosen;  // of each column of the part, by its root
+    for (const Node root : part.roots())
+      for (const Index j : part.columns(root)) chosen[j] = part.representative(root);
+    for (const Node root : whole.roots()) {
+      const auto found = there.find(all.id[whole.representative(root)]);
+      if (found == there.end()) continue;
+      EXPECT_EQ(chosen.at(found->second), found->second);
+      ++kept;
+    }
+  }
+  EXPECT_GT(kept, 50u);
 }
 
 // So that a finer cut keeps what a coarser one had.

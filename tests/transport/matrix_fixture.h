@@ -73,6 +73,7 @@ inline void add_receiver(Receivers& receivers, Vec3f p, Vec3f n, Vec3f wo, Rgb a
   receivers.sample.push_back(static_cast<std::uint32_t>(receivers.film.size()));
   receivers.film.push_back({static_cast<float>(receivers.film.size()) + 0.5f, 0.5f});
   receivers.depth.push_back(1);
+  receivers.id.push_back(receivers.id.size());
   receivers.closure.push_back(Receivers::kLambertian);
   receivers.albedo.push_back(albedo);
 }
@@ -86,6 +87,7 @@ inline void set_closure(Receivers& receivers, const scatter::Closure& closure) {
 }
 
 inline void add_light(VirtualLights& lights, LightKind kind, Vec3f p, Vec3f n, Rgb power) {
+  lights.id.push_back(lights.id.size());
   lights.kind.push_back(kind);
   lights.position.push_back(p);
   lights.normal.push_back(n);

@@ -1,6 +1,8 @@
 #include "methods/common/representatives.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -72,16 +74,14 @@ Representatives choose_representatives(const linalg::Partition& clusters, const 
         s += static_cast<double>(weights[j]);
         energy += static_cast<double>(sketch.norm(j));
       }
-      Rng rng(settings.seed, Stage::representatives, settings.round, k);
-      const double target = rng.next_double() * s;
-      double running = 0;
+      const std::uint64_t key = hash_ids(settings.seed, Stage::representatives, settings.round);
+      double first = std::numeric_limits<double>::infinity();
       std::uint32_t chosen = members.back();
       for (std::uint32_t j : members) {
-        running += static_cast<double>(weights[j]);
-        if (running > target) {
-          chosen = j;
-          break;
-        }
+        if (!(weights[j] > 0)) continue;
+        const double u = unit_double(mix64(key ^ mix64(matrix::id_of(settings.ids, j))));
+        const double arrival = -std::log1p(-u) / static_cast<double>(weights[j]);
+        if (arrival < first) first = arrival, chosen = j;
       }
       r.energy[k] = energy;
       const auto scalar = static_cast<float>(s / static_cast<double>(weights[chosen]));

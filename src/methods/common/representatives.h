@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "linalg/column_sketch.h"
@@ -21,8 +22,9 @@ struct Representatives {
 struct RepresentativeSettings {
   ColorMode color = ColorMode::averaged;
   std::uint64_t seed = 1;
-  std::uint64_t round = 0;     // rounds are independent of each other
-  float max_contribution = 0;  // see matrix::ScaledColumn
+  std::uint64_t round = 0;               // rounds are independent of each other
+  float max_contribution = 0;            // see matrix::ScaledColumn
+  std::span<const std::uint64_t> ids{};  // of the columns; may be unknown
 };
 
 // How likely a column is to represent its cluster: q_j = (1 − share)·‖ρ_j‖/Σ‖ρ‖ + share·power_j/Σ power, both
@@ -32,7 +34,8 @@ struct RepresentativeSettings {
 std::vector<float> selection_weights(std::span<const matrix::Index> lit, const linalg::ColumnSketch& sketch,
                                      std::span<const float> power, double share);
 
-// One member of each cluster, with probability q_j/s, s = Σq over the cluster. scalar: scaled by s/q_j,
+// One member of each cluster, with probability q_j/s, s = Σq over the cluster: the first to arrive where each
+// does at the rate q_j, which hangs on who the members are and not on their order. scalar: scaled by s/q_j,
 // unbiased. averaged: channel c is scaled by (s/q_j)·g_c with g_c = (Σ‖ρᶜ‖/‖ρᶜ_j‖) / (Σ‖ρ‖/‖ρ_j‖), the
 // paper's Σ‖ρᶜ‖/‖ρᶜ_j‖ where q is ‖ρ‖. g_c is at most 4, and 1 where the representative has (next to) none of
 // that channel.

@@ -116,9 +116,10 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
       if (settings.draw == RecoverySettings::Draw::likely)
         for (std::size_t i = 0; i < rows; ++i) drawn_[i] = probability[i] > 0.5f ? 1 : 0;
       else
-        draw_visibility(probability,
-                        static_cast<std::uint32_t>(mix64(key ^ entries.slot(columns_[c].slot).column)),
-                        drawn_);
+        draw_visibility(
+            probability,
+            static_cast<std::uint32_t>(mix64(key ^ entries.bits(entries.slot(columns_[c].slot).column))),
+            drawn_);
     }
     const float* const reach = &e[c * rows];
     Entry* const out = &state[c * rows];

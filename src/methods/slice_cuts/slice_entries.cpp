@@ -123,8 +123,7 @@ void SliceEntries::values_at(std::span<const std::uint32_t> rows, std::span<cons
   requested_places_.clear();
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::uint32_t begin = rows_.begin(rows[k]), count = rows_.end(rows[k]) - begin;
-    const auto draw =
-        static_cast<std::uint32_t>(mix64(key_ ^ mix64((std::uint64_t{columns[k]} << 32) | rows[k])) >> 32);
+    const auto draw = static_cast<std::uint32_t>(mix64(bits(columns[k]) ^ rows[k]) >> 32);
     requested_places_.push_back(begin + draw % count);
   }
   answers_.resize(rows.size());

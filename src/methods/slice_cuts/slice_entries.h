@@ -36,7 +36,10 @@ class SliceEntries {
   };
 
   explicit SliceEntries(const matrix::LightingMatrix& matrix)
-      : features_(matrix.row_features()), matrix_(matrix), reader_(matrix.reader()) {}
+      : features_(matrix.row_features()),
+        ids_(matrix.column_features().id),
+        matrix_(matrix),
+        reader_(matrix.reader()) {}
 
   // Forgets all columns.
   void start(std::span<const matrix::Index> slice, std::uint64_t key);
@@ -83,6 +86,8 @@ class SliceEntries {
   void values_at(std::span<const std::uint32_t> rows, std::span<const matrix::Index> columns,
                  std::vector<float>& out);
   std::size_t sampled() const { return sampled_; }  // entries, since start()
+  // Random bits of a column in this slice.
+  std::uint64_t bits(matrix::Index column) const { return mix64(key_ ^ mix64(matrix::id_of(ids_, column))); }
 
  private:
   static constexpr std::size_t kLayers = 4;
@@ -93,6 +98,7 @@ class SliceEntries {
   }
 
   matrix::RowFeatures features_;
+  std::span<const std::uint64_t> ids_;  // of columns
   const matrix::LightingMatrix& matrix_;
   std::unique_ptr<matrix::EntryReader> reader_;  // of all receivers
   std::vector<std::unique_ptr<matrix::EntryReader>> layers_;
@@ -107,7 +113,6 @@ class SliceEntries {
   std::vector<Slot> slots_;
   std::vector<Rgb> answers_;
   std::vector<float> scalars_;
-  std::uint64_t bits(matrix::Index column) const { return mix64(key_ ^ mix64(column)); }
   std::uint16_t layer(matrix::Index column) const {
     return static_cast<std::uint16_t>((bits(column) >> 32) % layer_count_);
   }

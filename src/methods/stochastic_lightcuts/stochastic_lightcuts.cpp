@@ -48,9 +48,10 @@ constexpr std::size_t kRowsTogether = 16;
 
 struct WalkWorkspace {
   WalkWorkspace(const matrix::LightingMatrix& matrix, const LightTree& tree)
-      : reader(matrix.reader()), bounds(matrix.row_bounds()), walk(tree) {}
+      : reader(matrix.reader()), bounds(matrix.row_bounds()), row_ids(matrix.row_features().id), walk(tree) {}
   std::unique_ptr<matrix::EntryReader> reader;
   std::unique_ptr<matrix::RowBounds> bounds;
+  std::span<const std::uint64_t> row_ids;
   LightWalk walk;
   std::vector<DrawnColumn> drawn;
   std::vector<std::size_t> ends;  // of each row's columns in `drawn`
@@ -129,7 +130,7 @@ class StochasticLightcuts final : public Method {
     const Timer timer;
     w.drawn.clear(), w.ends.clear(), w.rows.clear(), w.columns.clear();
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      Rng rng(seed, Stage::method, rows[r], stream);
+      Rng rng(seed, Stage::method, matrix::id_of(w.row_ids, rows[r]), stream);
       w.bounds->set_rows(rows.subspan(r, 1));
       w.walk.begin(*w.bounds);
       w.walk.refine(nodes, w.limits[r]);

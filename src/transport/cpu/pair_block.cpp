@@ -116,11 +116,14 @@ struct PairBlockKernels {
     Listed listed;
     listed.gather<column_kind>(b, g);
     ScatterGroup row_scatter, column_scatter;
-    std::uint32_t rows[16], columns[16], keys[16];
+    std::uint32_t rows[16], columns[16], row_keys[16], column_keys[16];
     for (std::size_t k = 0; k < 16; ++k) {
       rows[k] = context.rows->plan.item[b.list_.rows[16 * g + k]];
       columns[k] = context.columns->plan.item[b.list_.columns[16 * g + k]];
-      if constexpr (is_sphere(column_kind)) keys[k] = context.rows->key[b.list_.rows[16 * g + k]];
+      if constexpr (is_sphere(column_kind)) {
+        row_keys[k] = context.rows->key[b.list_.rows[16 * g + k]];
+        column_keys[k] = context.columns->key[b.list_.columns[16 * g + k]];
+      }
     }
     b.partner_.arena.clear();
     if constexpr (row_kind == kRowScatter) {
@@ -132,7 +135,8 @@ struct PairBlockKernels {
       listed.extras.column = &column_scatter;
     }
     if constexpr (is_sphere(column_kind)) {
-      listed.extras.row_items = rows, listed.extras.column_items = columns, listed.extras.row_keys = keys;
+      listed.extras.row_items = rows, listed.extras.column_items = columns;
+      listed.extras.row_keys = row_keys, listed.extras.column_keys = column_keys;
       listed.extras.wanted = b.lanes_.visible[g];
     }
     b.keep(g, evaluate<row_kind, column_kind>(listed.rows, listed.columns, listed.extras));
@@ -214,6 +218,7 @@ void PairBlock::name_column_pairs(PairExtras& extras, std::size_t group) const {
   extras.row_items = &context_.rows->plan.item[tile_.first_slot + 16 * group];
   extras.row_keys = &context_.rows->key[tile_.first_slot + 16 * group];
   extras.column_items = partner_.items.data();
+  extras.column_keys = partner_.keys.data();
   extras.wanted = lanes_.visible[group];
 }
 
@@ -221,6 +226,7 @@ void PairBlock::name_row_pairs(PairExtras& extras, std::size_t group) const {
   extras.row_items = partner_.items.data();
   extras.row_keys = partner_.keys.data();
   extras.column_items = &context_.columns->plan.item[tile_.first_slot + 16 * group];
+  extras.column_keys = &context_.columns->key[tile_.first_slot + 16 * group];
   extras.wanted = lanes_.visible[group];
 }
 
@@ -266,6 +272,7 @@ void PairBlock::set_column(std::uint32_t column_slot, float bound) {
   context_.columns->splat(column_slot, partner_.column);
   if (partner_.kind == kColumnSpot) partner_.spots.fill(spot_of(context_.columns->plan.item[column_slot]));
   partner_.items.fill(context_.columns->plan.item[column_slot]);
+  if (context_.has_spheres) partner_.keys.fill(context_.columns->key[column_slot]);
   for (const TilePlan::Run& run : context_.rows->plan.tile(tile_.number)) {
     PairExtras extras = this->extras(run.kind, partner_.kind);
     extras.spots = partner_.spots.data();

@@ -74,7 +74,7 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
       row_forms(receivers_.closures),
       column_forms(lights_.closures),
       rows(make_rows(receivers_, row_forms, settings_, has_cutouts(world.rays()) || lights_.spherical())),
-      columns(make_columns(lights_, column_forms, has_cutouts(world.rays()))) {
+      columns(make_columns(lights_, column_forms, has_cutouts(world.rays()) || lights_.spherical())) {
   context.rows = &rows;
   context.columns = &columns;
   context.has_spheres = lights.spherical();
@@ -216,12 +216,13 @@ Cost SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
 }
 
 matrix::RowFeatures SceneMatrix::row_features() const {
-  return {impl_->row_pixel, impl_->receivers.position, impl_->receivers.normal, impl_->row_weight};
+  return {impl_->row_pixel, impl_->receivers.position, impl_->receivers.normal, impl_->row_weight,
+          impl_->receivers.id};
 }
 
 matrix::ColumnFeatures SceneMatrix::column_features() const {
-  return {impl_->lights.position, impl_->lights.normal, impl_->column_power,  impl_->column_group,
-          impl_->column_indirect, impl_->lights.half,   impl_->column_emitted};
+  return {impl_->lights.position, impl_->lights.normal, impl_->column_power,   impl_->column_group,
+          impl_->column_indirect, impl_->lights.half,   impl_->column_emitted, impl_->lights.id};
 }
 
 std::size_t SceneMatrix::memory_bytes() const {

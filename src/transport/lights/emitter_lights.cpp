@@ -18,6 +18,7 @@ constexpr std::size_t kDiscSamples = 16;
 struct SampleNumbers {
   float u1;
   Vec2f u2;
+  std::uint64_t id;  // of the light
 };
 
 // No light leaves farther from the axis than where the table ends; rounding must not cut the edge off.
@@ -42,6 +43,7 @@ class SampleMaker {
     light_ = {};
     light_.emitter = static_cast<std::uint16_t>(emitter_);
     light_.half = half_;
+    light_.id = u_.id;
     std::visit([&](const auto& kind) { fill(kind, batch); },
                world_.emitters()[static_cast<std::size_t>(emitter_)].kind);
     if (!(max_component(light_.power) > 0)) return false;
@@ -129,6 +131,7 @@ class HalvedNumbers {
     Rng rng(seed_, Stage::emitter_samples, id_, k);
     return (static_cast<double>(place.index) + rng.next_double()) / static_cast<double>(place.size);
   }
+  std::uint64_t light_id(std::size_t k) const { return hash_ids(id_, Stage::emitter_samples, k); }
   Vec2f point(std::size_t k) const {
     const PlaceInHalf place(k, n_);
     return sequences_[place.half](place.index);
@@ -165,7 +168,7 @@ void every_emitter(const world::World& world, const EmitterChoice& choice, std::
     const HalvedNumbers numbers(seed, static_cast<std::uint64_t>(emitter), n);
     for (std::size_t i = 0; i < n; ++i) {
       const SampleNumbers u{std::min(static_cast<float>(numbers.stratified(i)), 0x1.fffffep-1f),
-                            numbers.point(i)};
+                            numbers.point(i), numbers.light_id(i)};
       SampleMaker(world, emitter, u, 1 / static_cast<double>(n),
                   n == 1 ? kNoHalf : PlaceInHalf(i, n).feature())
           .make(batch);
@@ -181,7 +184,7 @@ void some_emitters(const world::World& world, const EmitterChoice& choice, std::
   for (std::size_t i = 0; i < count; ++i) {
     const auto drawn = choice.draw(numbers.stratified(i));
     const double share = 1 / (drawn.probability * static_cast<double>(count));
-    SampleMaker(world, drawn.emitter, {drawn.remapped, numbers.point(i)}, share,
+    SampleMaker(world, drawn.emitter, {drawn.remapped, numbers.point(i), numbers.light_id(i)}, share,
                 PlaceInHalf(i, count).feature())
         .make(batch);
   }

@@ -60,7 +60,7 @@ void resize(VirtualLights& lights, std::size_t n) {
   lights.kind.resize(n), lights.position.resize(n), lights.normal.resize(n), lights.ng.resize(n);
   lights.power.resize(n), lights.area.resize(n), lights.emitter.resize(n), lights.depth.resize(n);
   lights.closure.resize(n), lights.albedo.resize(n), lights.incoming.resize(n), lights.half.resize(n);
-  lights.path.resize(n);
+  lights.path.resize(n), lights.id.resize(n);
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ VirtualLights lay_out(std::span<LightBatch> batches) {
       out.power[j] = light.power, out.area[j] = light.area, out.emitter[j] = light.emitter,
       out.depth[j] = light.depth, out.half[j] = light.half;
       out.albedo[j] = light.albedo, out.incoming[j] = light.incoming;
-      out.path[j] = light.path;
+      out.path[j] = light.path, out.id[j] = light.id;
       out.closure[j] = light.closure;
       if (light.kind == LightKind::spot) {
         out.closure[j] += first_spot[batch];

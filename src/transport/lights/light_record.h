@@ -13,6 +13,7 @@ namespace lumirank::transport {
 struct LightRecord {
   Vec3f position, normal, ng, incoming;
   Rgb power, albedo;
+  std::uint64_t id = 0;
   float area = 0;
   std::uint32_t path = VirtualLights::kNoPath;
   std::uint32_t closure = VirtualLights::kLambertian;

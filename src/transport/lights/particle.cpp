@@ -50,7 +50,7 @@ EmissionGuide::Start ParticleTracer::trace(std::size_t path, LightBatch& batch, 
   const auto start =
       settings_.guide->draw(u, place.index, place.key(settings_.seed ^ settings_.first_id), settings_.stage);
   const std::size_t before = batch.lights.size();
-  follow(start, rng, batch, tally);
+  follow(start, hash_ids(settings_.first_id + path, settings_.stage), rng, batch, tally);
   for (std::size_t k = before; k < batch.lights.size(); ++k) {
     batch.lights[k].half = place.feature();
     batch.lights[k].path = static_cast<std::uint32_t>(path);
@@ -68,7 +68,7 @@ struct ParticleTracer::Visit {
   std::vector<Branch> pending;
 };
 
-void ParticleTracer::follow(const EmissionGuide::Start& from, Rng& rng, LightBatch& batch,
+void ParticleTracer::follow(const EmissionGuide::Start& from, std::uint64_t id, Rng& rng, LightBatch& batch,
                             PathTally* tally) const {
   const auto start = choice_.draw(from.emitter);
   const auto emission = world_.sample_emission(start.emitter, start.remapped, {from.rest[0], from.rest[1]},
@@ -84,7 +84,7 @@ void ParticleTracer::follow(const EmissionGuide::Start& from, Rng& rng, LightBat
           world_.emitters()[static_cast<std::size_t>(start.emitter)].kind))
     ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
   Visit visit{start.emitter, rng, batch, tally, true, {}};
-  visit.pending.push_back({ray, flux, level, 1});
+  visit.pending.push_back({ray, flux, level, 1, id});
   while (!visit.pending.empty()) {
     const Branch branch = visit.pending.back();
     visit.pending.pop_back();
@@ -107,6 +107,7 @@ void ParticleTracer::step(const Branch& branch, Visit& visit) const {
     LightRecord light = surface_light(hit->point.position, shining, incoming);
     light.power = branch.flux * incident_correction(closure, incoming);
     light.emitter = static_cast<std::uint16_t>(visit.emitter);
+    light.id = branch.id;
     light.depth = static_cast<std::uint16_t>(branch.depth);
     if (visit.tally) visit.tally->scattered_flux += mean(branch.flux * scatter::albedo(shining, incoming));
     copies = leave(light, shining, visit);
@@ -116,6 +117,7 @@ void ParticleTracer::step(const Branch& branch, Visit& visit) const {
   for (int copy = 0; copy < copies; ++copy) {
     Branch next = branch;
     next.flux *= part, next.level *= part;
+    next.id = mix64(branch.id + 1 + static_cast<std::uint64_t>(copy));
     if (scatter_on(*hit, closure, incoming, next, visit.rng)) visit.pending.push_back(next);
   }
 }

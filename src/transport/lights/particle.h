@@ -49,9 +49,11 @@ class ParticleTracer {
     Rgb flux;
     float level;  // of flux: less is paid in the chance to survive
     int depth;    // of the next vertex
+    std::uint64_t id;
   };
   struct Visit;
-  void follow(const EmissionGuide::Start& start, Rng& rng, LightBatch& batch, PathTally* tally) const;
+  void follow(const EmissionGuide::Start& start, std::uint64_t id, Rng& rng, LightBatch& batch,
+              PathTally* tally) const;
   // One vertex of a branch: leaves its light, and pushes what goes on.
   void step(const Branch& branch, Visit& visit) const;
   int leave(LightRecord& light, const scatter::Closure& shining, Visit& visit) const;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "transport/lights/emitter_lights.h"
 #include "transport/lights/light_areas.h"
 #include "transport/lights/light_plan.h"
@@ -76,11 +77,16 @@ scatter::Closure VirtualLights::closure_at(std::size_t j) const {
   return c;
 }
 
+std::uint32_t VirtualLights::key(std::size_t j) const {
+  return static_cast<std::uint32_t>(mix64(id[j]) >> 32);
+}
+
 std::size_t VirtualLights::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(kind) + bytes(position) + bytes(normal) + bytes(ng) + bytes(power) + bytes(area) +
-         bytes(radius) + bytes(hidden) + bytes(emitter) + bytes(depth) + bytes(half) + bytes(path) +
-         bytes(closure) + bytes(albedo) + bytes(incoming) + bytes(spots) + closures.memory_bytes();
+         bytes(radius) + bytes(hidden) + bytes(emitter) + bytes(depth) + bytes(half) + bytes(id) +
+         bytes(path) + bytes(closure) + bytes(albedo) + bytes(incoming) + bytes(spots) +
+         closures.memory_bytes();
 }
 
 }  // namespace lumirank::transport

@@ -77,6 +77,9 @@ struct VirtualLights {
   std::vector<float> radius, hidden;
   std::vector<std::uint16_t> emitter;  // first emitter of the path
   std::vector<std::uint16_t> depth;    // path segments from the emitter to here (0: on the emitter)
+  // Who it is, by what made it: an emitter's sample by its number, a particle's light by its path and the
+  // vertices and splits up to it. The same wherever it stands among others, and whatever others there are.
+  std::vector<std::uint64_t> id;
   // Surface lights: the particle that left them (lights of one are not independent of each other); else
   // kNoPath.
   std::vector<std::uint32_t> path;
@@ -95,6 +98,8 @@ struct VirtualLights {
   std::size_t paths = 0;         // particles emitted: powers are divided by it
   std::size_t direct_count = 0;  // columns that stand for emitters
 
+  // Whose random numbers a light uses: its id in 32 bits.
+  std::uint32_t key(std::size_t j) const;
   std::size_t size() const { return kind.size(); }
   bool spherical() const { return !radius.empty(); }
   std::size_t memory_bytes() const;

@@ -171,7 +171,7 @@ ColumnStore make_columns(const VirtualLights& lights, const ScatterForms& forms,
   parallel_for(count, kGroupPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
       const std::uint32_t slot = store.plan.slot[j];
-      if (with_keys) store.key[slot] = static_cast<std::uint32_t>(j);
+      if (with_keys) store.key[slot] = lights.key(j);
       const Sides sides = kinds[j] < kColumnScatter
                               ? Sides::front
                               : forms[static_cast<std::uint16_t>(kinds[j] - kColumnScatter)].sides;

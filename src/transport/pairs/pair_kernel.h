@@ -20,7 +20,7 @@ struct PairExtras {
   float clamp = kInfinity;                                            // X
   const SphereBackground* spheres = nullptr;                          // where lights are spherical
   const std::uint32_t *row_items = nullptr, *column_items = nullptr;  // 16 each; spherical lights only
-  const std::uint32_t* row_keys = nullptr;
+  const std::uint32_t *row_keys = nullptr, *column_keys = nullptr;    // of random numbers
   std::uint32_t wanted = 0xffff;  // lanes that will be read; others may be left out
   Sides row_sides = Sides::front, column_sides = Sides::front;
 };

@@ -117,7 +117,8 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
       samples.receiver = row_widths[k] > 1 ? (both ? 3 : 1) : 0;
       samples.light = column_widths[k] > 1 ? (both ? 3 : 1) : 0;
     }
-    Rgb v = sphere_integral(ends, samples, mix64(extras.spheres->seed ^ extras.row_keys[k]) ^ j);
+    Rgb v = sphere_integral(ends, samples,
+                            mix64(extras.spheres->seed ^ extras.row_keys[k]) ^ extras.column_keys[k]);
     // What the groups hold of matt ends comes in below.
     if constexpr (!scattering_row) v = without(v, {r.f.x[k], r.f.y[k], r.f.z[k]});
     if constexpr (!scattering_column) v = without(v, lights.albedo[j] * kInvPi);

@@ -39,6 +39,7 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
   v.normal = closure.frame.n * side;
   v.ng = closure.ng * side;
   v.weight = s.weight;
+  v.id = s.id;
   v.sample = sample;
   v.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
   v.closure = Receivers::kLambertian;
@@ -53,12 +54,19 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
 void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closure, const Segment& s,
                              Rng& rng) {
   scatter::DeltaContinuation next[scatter::kMaxLobes + 1];
-  int count = scatter::delta_continuations(closure, -s.ray.direction, next);
+  const int all = scatter::delta_continuations(closure, -s.ray.direction, next);
   const auto out_of_depth = [&](const scatter::DeltaContinuation& c) {
     return is_black(c.weight) ||
            (c.kind != LobeKind::delta_pass && settings_.max_depth >= 0 && s.depth + 1 > settings_.max_depth);
   };
-  count = static_cast<int>(std::remove_if(next, next + count, out_of_depth) - next);
+  // Which of all continuations each is: part of its id, whether or not the others are followed.
+  std::uint64_t numbers[scatter::kMaxLobes + 1];
+  int count = 0;
+  for (int k = 0; k < all; ++k) {
+    if (out_of_depth(next[k])) continue;
+    numbers[count] = static_cast<std::uint64_t>(k);
+    next[count++] = next[k];
+  }
   if (count == 0) return;
 
   int splits = s.splits;
@@ -70,6 +78,7 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
     while (drawn + 1 < count && u >= max_component(next[drawn].weight))
       u -= max_component(next[drawn++].weight);
     next[0] = next[drawn];
+    numbers[0] = numbers[drawn];
     next[0].weight *= total / max_component(next[0].weight);
     count = 1;
   } else if (count > 1) {
@@ -80,15 +89,16 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
     if (!roulette(weight, s.vertices + 1, rng)) continue;
     const int depth = s.depth + (next[k].kind == LobeKind::delta_pass ? 0 : 1);
     const Vec3f origin = world::World::offset_origin(hit.point.position, hit.point.ng, next[k].wi);
-    pending_.push_back({{origin, next[k].wi}, weight, depth, splits, s.vertices + 1});
+    pending_.push_back(
+        {{origin, next[k].wi}, weight, depth, splits, s.vertices + 1, mix64(s.id + 1 + numbers[k])});
   }
 }
 
-Rgb EyeChain::follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, std::vector<EyeVertex>& out,
-                     scatter::ClosurePool& pool, FirstHit* first) {
+Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
+                     std::vector<EyeVertex>& out, scatter::ClosurePool& pool, FirstHit* first) {
   Rgb emission{0};
   pending_.clear();
-  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0});
+  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0, id});
   for (bool from_eye = true; !pending_.empty(); from_eye = false) {
     const Segment s = pending_.back();
     pending_.pop_back();

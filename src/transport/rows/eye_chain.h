@@ -15,6 +15,7 @@ namespace lumirank::transport {
 struct EyeVertex {
   Vec3f position, normal, ng, wo;
   Rgb weight, albedo;
+  std::uint64_t id = 0;
   std::uint32_t sample = 0, closure = 0;
   std::uint16_t depth = 0;
 };
@@ -37,9 +38,10 @@ class EyeChain {
   EyeChain(const world::World& world, const ChainSettings& settings) : world_(world), settings_(settings) {}
 
   // Appends the receivers of `sample` to `out`, their closures to `pool`; returns the emission that is seen.
-  // `first`: what the AOVs want to know, or nullptr (the albedo of glossy surfaces is not cheap).
-  Rgb follow(const geometry::Ray& eye, std::uint32_t sample, Rng& rng, std::vector<EyeVertex>& out,
-             scatter::ClosurePool& pool, FirstHit* first);
+  // `id`: of the sample, by which and by their chains receivers have theirs. `first`: what the AOVs want to
+  // know, or nullptr (the albedo of glossy surfaces is not cheap).
+  Rgb follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
+             std::vector<EyeVertex>& out, scatter::ClosurePool& pool, FirstHit* first);
 
  private:
   struct Segment {
@@ -48,6 +50,7 @@ class EyeChain {
     int depth;     // segments up to and including this one
     int splits;    // vertices so far at which more than one continuation was followed
     int vertices;  // surfaces met so far, straight passes included
+    std::uint64_t id;
   };
   void add_receiver(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
                     std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool& pool) const;

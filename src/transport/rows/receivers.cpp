@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include "base/error.h"
@@ -40,6 +39,11 @@ struct Piece {
   std::vector<EyeVertex> vertices;
   scatter::ClosurePool pool;
 };
+
+// Of the k-th sample of a pixel of the whole film.
+std::uint64_t sample_id(int x, int y, std::uint64_t k) {
+  return hash_ids(static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x), Stage::receivers, k);
+}
 
 // pixel + u, kept below pixel + 1 whatever the rounding.
 float within(int pixel, float u) {
@@ -131,8 +135,9 @@ class ReceiverTracer {
       result_.film[sample] = on_film;
       FirstHit first;
       result_.emission[sample] =
-          chain.follow(camera_.ray(on_film, place.lens), static_cast<std::uint32_t>(sample), rng,
-                       piece.vertices, piece.pool, settings_.first_hits ? &first : nullptr);
+          chain.follow(camera_.ray(on_film, place.lens), sample_id(x, y, static_cast<std::uint64_t>(k)),
+                       static_cast<std::uint32_t>(sample), rng, piece.vertices, piece.pool,
+                       settings_.first_hits ? &first : nullptr);
       if (!settings_.first_hits) continue;
       result_.first_albedo[sample] = first.albedo;
       result_.first_normal[sample] = first.normal;
@@ -158,14 +163,15 @@ class ReceiverTracer {
     result_.position.resize(count), result_.normal.resize(count), result_.ng.resize(count),
         result_.wo.resize(count);
     result_.weight.resize(count), result_.albedo.resize(count);
-    result_.sample.resize(count), result_.closure.resize(count), result_.depth.resize(count);
+    result_.id.resize(count), result_.sample.resize(count), result_.closure.resize(count),
+        result_.depth.resize(count);
     parallel_for(pieces_.size(), 1, [&](std::size_t p, std::size_t) {
       std::size_t i = first[p];
       for (const EyeVertex& v : pieces_[p].vertices) {
         result_.position[i] = v.position, result_.normal[i] = v.normal, result_.ng[i] = v.ng,
         result_.wo[i] = v.wo;
         result_.weight[i] = v.weight, result_.albedo[i] = v.albedo;
-        result_.sample[i] = v.sample, result_.depth[i] = v.depth;
+        result_.id[i] = v.id, result_.sample[i] = v.sample, result_.depth[i] = v.depth;
         result_.closure[i] = v.closure == Receivers::kLambertian ? v.closure : first_closure[p] + v.closure;
         ++i;
       }
@@ -203,21 +209,11 @@ scatter::Closure Receivers::closure_at(std::size_t i) const {
   return c;
 }
 
-std::uint32_t Receivers::key(std::size_t i) const {
-  // A sample's place on the film is its own; the receiver's place tells apart those of one sample.
-  const auto both = [](float a, float b) {
-    return static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(a)) << 32 |
-           std::bit_cast<std::uint32_t>(b);
-  };
-  const Vec2f f = film[sample[i]];
-  const Vec3f p = position[i];
-  return static_cast<std::uint32_t>(mix64(mix64(mix64(both(f.x, f.y)) ^ both(p.x, p.y)) ^ both(p.z, 0)) >>
-                                    32);
-}
+std::uint32_t Receivers::key(std::size_t i) const { return static_cast<std::uint32_t>(mix64(id[i]) >> 32); }
 
 std::size_t Receivers::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return bytes(position) + bytes(normal) + bytes(ng) + bytes(wo) + bytes(weight) + bytes(sample) +
+  return bytes(position) + bytes(normal) + bytes(ng) + bytes(wo) + bytes(weight) + bytes(id) + bytes(sample) +
          bytes(depth) + bytes(closure) + bytes(albedo) + closures.memory_bytes() + bytes(film) +
          bytes(emission) + bytes(first_albedo) + bytes(first_normal) + bytes(first_position) +
          bytes(first_distance);
@@ -228,8 +224,11 @@ Receivers white_receivers(const Receivers& seen) {
   out.film = seen.film;
   out.emission.assign(seen.samples(), Rgb(0));
   out.width = seen.width, out.height = seen.height;
+  const auto pixels = static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height);
+  const std::size_t spp = pixels > 0 ? seen.samples() / pixels : 1;
   for (std::size_t k = 0; k < seen.samples(); ++k) {
     if (!std::isfinite(seen.first_distance[k])) continue;
+    out.id.push_back(sample_id(static_cast<int>(seen.film[k].x), static_cast<int>(seen.film[k].y), k % spp));
     out.position.push_back(seen.first_position[k]);
     out.normal.push_back(seen.first_normal[k]), out.ng.push_back(seen.first_ng[k]);
     // Light is received from above the surface, at whatever angle it is looked at: even where a shading
@@ -261,7 +260,7 @@ Receivers broad_receivers(Receivers all, float limit) {
     out.normal.push_back(all.normal[i]), out.ng.push_back(all.ng[i]);
     out.wo.push_back(all.wo[i]);
     out.weight.push_back(all.weight[i]), out.albedo.push_back(albedo);
-    out.sample.push_back(all.sample[i]), out.depth.push_back(all.depth[i]);
+    out.id.push_back(all.id[i]), out.sample.push_back(all.sample[i]), out.depth.push_back(all.depth[i]);
     out.closure.push_back(closure);
   }
   out.closures.shrink();

@@ -33,8 +33,11 @@ struct Receivers {
   // Shading and geometric, in the hemisphere of wo where they agree. On a fibre ng is zero
   // (Closure::is_fibre()).
   std::vector<Vec3f> normal, ng;
-  std::vector<Vec3f> wo;               // unit, back along the eye path
-  std::vector<Rgb> weight;             // throughput of the specular chain
+  std::vector<Vec3f> wo;    // unit, back along the eye path
+  std::vector<Rgb> weight;  // throughput of the specular chain
+  // Who it is, by its pixel, number of sample and chain: the same in every window of the film that shows it,
+  // and whatever other receivers there are.
+  std::vector<std::uint64_t> id;
   std::vector<std::uint32_t> sample;   // film sample that it belongs to
   std::vector<std::uint16_t> depth;    // path segments from the eye to here (1: seen directly)
   std::vector<std::uint32_t> closure;  // index into closures (not lambertian), or kLambertian
@@ -56,7 +59,7 @@ struct Receivers {
   std::vector<float> first_distance;
   int width = 0, height = 0;  // of the cropped film
 
-  // Whose random numbers a receiver uses: the same in every window of the film that shows it.
+  // Whose random numbers a receiver uses: its id in 32 bits.
   std::uint32_t key(std::size_t i) const;
 
   std::size_t size() const { return position.size(); }

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/error.h"
@@ -78,9 +80,18 @@ struct LightTree::Builder {
     if (set.spherical) tree.radii_[node] = {set.radius, set.min_radius};
     const Node left = tree.left(node), right = tree.right(node);
     inner.emitted = tree.emitted(left) + tree.emitted(right);
-    const double u = unit_double(hash_ids(seed, Stage::representatives, node));
-    const auto first = static_cast<double>(tree.power(left)), second = static_cast<double>(tree.power(right));
-    inner.representative = tree.representative(u * (first + second) < first ? left : right);
+    const Index first = tree.representative(left), second = tree.representative(right);
+    inner.representative = arrival(first) <= arrival(second) ? first : second;
+  }
+
+  // An exponential variate at the rate of the column's power: of any set of columns each is the first to
+  // arrive with a probability in proportion to its power, and the first of all is the first of its own part.
+  // Who it is hangs on the columns' ids alone, not on their order or on how the tree divides them.
+  double arrival(Index j) const {
+    const double power = static_cast<double>(tree.power_of(j));
+    const double u =
+        unit_double(hash_ids(seed, Stage::representatives, matrix::id_of(tree.features_.id, j), 1));
+    return power > 0 ? -std::log1p(-u) / power : std::numeric_limits<double>::infinity();
   }
 };
 
