@@ -25,8 +25,6 @@ namespace {
 
 using namespace lumirank;
 using bench::setting;
-using transport::Lane;
-using transport::Lane3;
 using transport::LightKind;
 
 // All that blocks, as one flat Embree scene.
@@ -88,18 +86,17 @@ BareResult trace_tile(const BareScene& bare, const BareReceivers& r, const BareL
   // The survivors' origins, packed: looked up lane by lane they would cost a tenth of the loop.
   alignas(64) float x[BareReceivers::kTile + 16], y[BareReceivers::kTile + 16], z[BareReceivers::kTile + 16];
   std::size_t count = 0;
-  const Lane3 light_p = transport::splat(light.position), light_n = transport::splat(light.normal),
-              target = transport::splat(light.target);
+  const Lane3 light_p = splat(light.position), light_n = splat(light.normal), target = splat(light.target);
   for (std::size_t i = begin; i < end; i += 16) {
-    const Lane3 n{transport::load(&r.nx[i]), transport::load(&r.ny[i]), transport::load(&r.nz[i])};
-    const Lane3 p{transport::load(&r.px[i]), transport::load(&r.py[i]), transport::load(&r.pz[i])};
+    const Lane3 n{load(&r.nx[i]), load(&r.ny[i]), load(&r.nz[i])};
+    const Lane3 p{load(&r.px[i]), load(&r.py[i]), load(&r.pz[i])};
     const Lane3 w = light.far ? target : light_p - p;
     auto keep = dot(n, w) > Lane{};
     if (light.one_sided) keep &= dot(light_n, w) < Lane{};
-    const std::uint32_t alive = transport::bits(keep);
-    transport::append_lanes(alive, transport::load(&r.ox[i]), x + count);
-    transport::append_lanes(alive, transport::load(&r.oy[i]), y + count);
-    transport::append_lanes(alive, transport::load(&r.oz[i]), z + count);
+    const std::uint32_t alive = bits(keep);
+    append_lanes(alive, load(&r.ox[i]), x + count);
+    append_lanes(alive, load(&r.oy[i]), y + count);
+    append_lanes(alive, load(&r.oz[i]), z + count);
     count += static_cast<std::size_t>(__builtin_popcount(alive));
   }
   BareResult result;
@@ -108,20 +105,20 @@ BareResult trace_tile(const BareScene& bare, const BareReceivers& r, const BareL
   RTCRay16 rays;
   alignas(64) int valid[16];
   for (std::size_t at = 0; at < count; at += 16) {
-    const Lane3 o{transport::load(x + at), transport::load(y + at), transport::load(z + at)};
+    const Lane3 o{load(x + at), load(y + at), load(z + at)};
     const Lane3 d = light.far ? target : target - o;
-    transport::store(rays.org_x, o.x), transport::store(rays.org_y, o.y), transport::store(rays.org_z, o.z);
-    transport::store(rays.dir_x, d.x), transport::store(rays.dir_y, d.y), transport::store(rays.dir_z, d.z);
-    transport::store(rays.tnear, transport::splat(1e-4f));
-    transport::store(rays.tfar, transport::splat(light.far ? kInfinity : 1 - 1e-4f));
-    transport::store(rays.time, Lane{});
+    store(rays.org_x, o.x), store(rays.org_y, o.y), store(rays.org_z, o.z);
+    store(rays.dir_x, d.x), store(rays.dir_y, d.y), store(rays.dir_z, d.z);
+    store(rays.tnear, splat(1e-4f));
+    store(rays.tfar, splat(light.far ? kInfinity : 1 - 1e-4f));
+    store(rays.time, Lane{});
     std::fill_n(rays.mask, 16, 0xffffffffu), std::fill_n(rays.id, 16, 0u), std::fill_n(rays.flags, 16, 0u);
-    const transport::LaneMask inside = transport::kLaneNumbers < static_cast<int>(count - at);
+    const LaneMask inside = kLaneNumbers < static_cast<int>(count - at);
     std::memcpy(valid, &inside, sizeof inside);
     geometry::embree::Context context;
     geometry::embree::initialise(context);
     geometry::embree::occluded16(valid, bare.scene.get(), context, rays, true);
-    const std::uint32_t open = transport::bits(inside & (transport::load(rays.tfar) >= Lane{}));
+    const std::uint32_t open = bits(inside & (load(rays.tfar) >= Lane{}));
     result.visible += static_cast<std::uint64_t>(__builtin_popcount(open));
   }
   return result;

@@ -37,8 +37,8 @@ struct ColumnSet {
   // All of them stand for emitters: rows may take part of such light from elsewhere, where it is not in the
   // entries.
   bool direct = false;
-  Bounds3f box;                        // positions; not used if directional
-  Cone cone;                           // oriented: normals; directional: directions towards the light
+  Bounds3f box;                      // positions; not used if directional
+  Cone cone;                         // oriented: normals; directional: directions towards the light
   float radius = 0, min_radius = 0;  // of the largest and the smallest sphere
   // Sum over the columns of the greatest radiant intensity that each has in any direction, before the cosine
   // (directional: irradiance).

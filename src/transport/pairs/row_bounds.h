@@ -43,7 +43,7 @@ class SceneRowBounds final : public matrix::RowBounds {
   Rgb matt_;  // greatest albedo/π
   std::vector<scatter::ClosureBound> closures_;
   bool many_ = false, behind_ = false;  // more closures; some answer light from behind
-  Rgb most_, max_direct_;              // of many closures, f times the cosine
+  Rgb most_, max_direct_;               // of many closures, f times the cosine
   bool sharp_ = false;                  // of spherical lights, integrals may follow a lobe
 };
 
