@@ -1,18 +1,20 @@
 # The library as others use it: one shared library of all rooms, the public headers, and what finds them.
 include(CMakePackageConfigHelpers)
 
-# Rooms that define what public headers declare are taken whole; of the others what these use.
-file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/library.cpp "// The rooms are all that there is.\n")
-add_library(lumirank_library SHARED ${CMAKE_CURRENT_BINARY_DIR}/library.cpp)
+# Of all objects, so that everything that a public header declares is there; linked for what lies outside of the rooms.
+add_library(lumirank_library SHARED)
+foreach(room IN LISTS LUMIRANK_ROOMS)
+  target_sources(lumirank_library PRIVATE $<TARGET_OBJECTS:lumirank_${room}>)
+endforeach()
+set_target_properties(lumirank_library PROPERTIES LINKER_LANGUAGE CXX)
 add_library(lumirank::lumirank ALIAS lumirank_library)
-target_link_libraries(lumirank_library PRIVATE lumirank_api lumirank_settings lumirank_pipeline lumirank_base)
+target_link_libraries(lumirank_library PRIVATE lumirank_api)
 target_include_directories(lumirank_library INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(lumirank_library INTERFACE cxx_std_20)
-# Nothing of the static libraries within is shown either.
-target_link_options(lumirank_library PRIVATE -Wl,--exclude-libs,libdraco.a:libmeshoptimizer.a -Wl,--no-undefined)
+# Nothing of static libraries within is shown either.
+target_link_options(lumirank_library PRIVATE -Wl,--exclude-libs,ALL -Wl,--no-undefined)
 set_target_properties(lumirank_library PROPERTIES
-  LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,lumirank_api,lumirank_settings,lumirank_pipeline,lumirank_base"
   OUTPUT_NAME lumirank EXPORT_NAME lumirank VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 

@@ -44,8 +44,10 @@ void add_compare(CLI::App& app, Action& action) {
   add_count(*command, "--seeds", options->settings.seeds, 1, 1000, "runs per setting, with different seeds");
   command->add_flag("--singular-values", options->settings.singular_values,
                     "the singular values of a small matrix (2007, Figure 3)");
-  add_choice(*command, "--equal", [options](const std::string& what) { options->settings.equal = what; }, {"time", "rays", "error"},
-             "compare at equal time, rays or error: the runs nearest to the first method's are marked");
+  add_choice(
+      *command, "--equal", [options](const std::string& what) { options->settings.equal = what; },
+      {"time", "rays", "error"},
+      "compare at equal time, rays or error: the runs nearest to the first method's are marked");
   command->footer(
       "Examples:\n"
       "  lumirank compare room.xml -o out --times 1,2,4,8\n"

@@ -60,8 +60,9 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
   command.add_option("--preview", outputs.preview, "PNG file that is rewritten while the estimate improves");
   add_number(command, "--exposure", outputs.display.exposure, {-100, 100, false, "stops"},
              "stops, for PNG (default 0)");
-  add_choice(command, "--tonemap", [&outputs](const std::string& name) { outputs.display.tonemap = tone_map(name); }, {"none", "reinhard", "agx"},
-             "for PNG: none, reinhard or agx (default none)");
+  add_choice(
+      command, "--tonemap", [&outputs](const std::string& name) { outputs.display.tonemap = tone_map(name); },
+      {"none", "reinhard", "agx"}, "for PNG: none, reinhard or agx (default none)");
   command.add_option_function<std::string>(
       "--illuminance-range", [&outputs](const std::string& text) { read_range(text, outputs.display); },
       "LOW:HIGH, lux: the scale of the false colours of --aov illuminance (default: 0 to a round number)");

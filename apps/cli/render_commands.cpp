@@ -54,8 +54,9 @@ void add_reference(CLI::App& app, Action& action) {
   add_number(*command, "--time", options->how.time, {0, 1e7, true, "seconds"}, "seconds");
   add_number(*command, "--error", options->how.error, {0, 10, true},
              "stop when the stated relative L1 error is below");
-  add_choice(*command, "--paths", [options](const std::string& name) { options->how.paths = reference_paths(name); }, {"all", "columns", "rest"},
-             "all, columns (those that the matrix carries) or rest");
+  add_choice(
+      *command, "--paths", [options](const std::string& name) { options->how.paths = reference_paths(name); },
+      {"all", "columns", "rest"}, "all, columns (those that the matrix carries) or rest");
   command->footer(
       "Examples:\n"
       "  lumirank reference room.xml -o truth.exr --spp 1024\n"

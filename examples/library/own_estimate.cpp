@@ -1,5 +1,5 @@
-// An estimator of one's own on the lighting matrix: columns drawn in proportion to their power, each scaled by
-// one over the expected number of its draws. Its mean is what all columns add up to.
+// An estimator of one's own on the lighting matrix: columns drawn in proportion to their power, each scaled
+// by one over the expected number of its draws. Its mean is what all columns add up to.
 //   own_estimate PICTURE
 #include <cmath>
 #include <cstdio>
@@ -12,7 +12,8 @@ namespace {
 
 double sum_of(const std::vector<lumirank::Rgb>& sums) {
   double sum = 0;
-  for (const auto& s : sums) sum += static_cast<double>(s.r) + static_cast<double>(s.g) + static_cast<double>(s.b);
+  for (const auto& s : sums)
+    sum += static_cast<double>(s.r) + static_cast<double>(s.g) + static_cast<double>(s.b);
   return sum;
 }
 

@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
     const auto whole = lumirank::develop(prepared, estimate), same = relighting.picture({});
     double difference = 0, light = 0;
     for (std::size_t k = 0; k < same.planes[0].rgb.size(); ++k) {
-      difference += std::abs(static_cast<double>(same.planes[0].rgb[k]) - static_cast<double>(whole.planes[0].rgb[k]));
+      difference +=
+          std::abs(static_cast<double>(same.planes[0].rgb[k]) - static_cast<double>(whole.planes[0].rgb[k]));
       light += static_cast<double>(whole.planes[0].rgb[k]);
     }
     std::printf("unchanged lights differ by %.2g of the light\n", difference / light);

@@ -13,7 +13,8 @@ inline lumirank::Mesh quad(lumirank::Vec3f center, lumirank::Vec3f u, lumirank::
 inline lumirank::SceneBuilder room() {
   lumirank::SceneBuilder builder;
   const int wall = builder.add_material({.base_color = {0.7f, 0.7f, 0.65f}});
-  const int metal = builder.add_material({.base_color = {0.9f, 0.7f, 0.3f}, .roughness = 0.4f, .metallic = 1});
+  const int metal =
+      builder.add_material({.base_color = {0.9f, 0.7f, 0.3f}, .roughness = 0.4f, .metallic = 1});
   builder.add_mesh(quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}), wall, {}, "floor");
   builder.add_mesh(quad({0, 3, 0}, {2, 0, 0}, {0, 0, 2}), wall, {}, "ceiling");
   builder.add_mesh(quad({0, 1.5f, -2}, {2, 0, 0}, {0, 1.5f, 0}), wall, {}, "back");

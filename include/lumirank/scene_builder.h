@@ -32,12 +32,12 @@ struct Mesh {
 // The principled BSDF (Burley 2012, 2015), as in Mitsuba 3.
 struct Material {
   Rgb base_color{0.5f};
-  float roughness = 1;              // 0 … 1
-  float metallic = 0;               // 0 … 1
-  float transmission = 0;           // 0 … 1: of light that is not reflected, what goes through
+  float roughness = 1;     // 0 … 1
+  float metallic = 0;      // 0 … 1
+  float transmission = 0;  // 0 … 1: of light that is not reflected, what goes through
   float index_of_refraction = 1.5f;
-  float clearcoat = 0;              // 0 … 1
-  bool two_sided = true;            // alike from behind; not with transmission
+  float clearcoat = 0;    // 0 … 1
+  bool two_sided = true;  // alike from behind; not with transmission
 };
 
 struct PerspectiveCamera {
@@ -64,7 +64,8 @@ class LUMIRANK_API SceneBuilder {
   void add_directional_light(Vec3f direction, Rgb irradiance, const std::string& name = {});
   // The same radiance from all around; at most one environment.
   void set_environment(Rgb radiance, const std::string& name = {});
-  // The same from a picture (latitude-longitude, +y up: .exr, .hdr), whose radiance is multiplied with `scale`.
+  // The same from a picture (latitude-longitude, +y up: .exr, .hdr), whose radiance is multiplied with
+  // `scale`.
   void set_environment(const std::string& image_file, float scale = 1, const std::string& name = {});
   void set_camera(const PerspectiveCamera& camera);
 

@@ -28,8 +28,7 @@ std::shared_ptr<const world::World> build_world(const Scene& scene, const Sinks&
   options.strict = scene.impl().options.strict;
   std::shared_ptr<const world::World> world;
   pipeline::within_memory("the scene is too large for this machine", [&] {
-    world = std::make_shared<world::World>(
-        world::World::build(scene.impl().desc, options, warnings, sinks));
+    world = std::make_shared<world::World>(world::World::build(scene.impl().desc, options, warnings, sinks));
   });
   report_warnings(sinks, warnings);
   if (keep) *keep = std::move(warnings);

@@ -26,8 +26,8 @@ double pixels_of(const pipeline::View& view) {
 }
 
 double memory_of(const pipeline::View& view, const RenderSettings& settings, std::size_t lights) {
-  return pipeline::memory_of_picture(pixels_of(view) * settings.view.spp_or_default(), static_cast<double>(lights),
-                                     !settings.layers.empty());
+  return pipeline::memory_of_picture(pixels_of(view) * settings.view.spp_or_default(),
+                                     static_cast<double>(lights), !settings.layers.empty());
 }
 
 void within_memory_and_threads(const RenderSettings& settings, const std::function<void()>& work) {
@@ -59,7 +59,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     pipeline::require_memory(memory, pipeline::kSmallerPicture);
     task.world = api::build_world(scene, sinks);
     task.build_seconds = task.timer.seconds();
-    if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty()) sinks.warn(text);
+    if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty())
+      sinks.warn(text);
     pipeline::require_memory(memory, pipeline::kSmallerPicture);  // the scene has taken its part
     if (sinks.cancelled()) throw Cancelled();
     pipeline::check_lights(*task.world, settings, pipeline::make_recipe(settings, task.view));

@@ -6,8 +6,8 @@
 
 #include "api/build_world.h"
 #include "pipeline/memory.h"
-#include "scenedesc/schema/files.h"
 #include "scenedesc/readers.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank {
 namespace {

@@ -149,7 +149,8 @@ void SceneBuilder::set_environment(Rgb radiance, const std::string& name) {
 
 void SceneBuilder::set_environment(const std::string& image_file, float scale, const std::string& name) {
   require_no_environment(impl_->desc);
-  if (!(scale >= 0 && std::isfinite(scale))) throw InputError("the environment's scale is not a number from 0 on");
+  if (!(scale >= 0 && std::isfinite(scale)))
+    throw InputError("the environment's scale is not a number from 0 on");
   scenedesc::SceneDesc lit;
   scenedesc::replace_environment(lit, image_file);
   for (auto& emitter : lit.emitters) {

@@ -84,7 +84,8 @@ Prepared prepare(const Scene& scene, const RenderSettings& settings, const Sinks
   return Prepared(std::move(impl));
 }
 
-Estimate estimate_sums(const Prepared& prepared, const MethodSettings& method, const EstimateOptions& options) {
+Estimate estimate_sums(const Prepared& prepared, const MethodSettings& method,
+                       const EstimateOptions& options) {
   const Prepared::Impl& impl = require_prepared(prepared);
   RenderSettings settings = impl.settings;
   settings.method = method;
@@ -132,9 +133,10 @@ Picture develop(const Prepared& prepared, const Estimate& estimate, const std::v
   pipeline::check_lights(*p.world, wanted, p.recipe);
   Picture picture;
   with_threads(impl.settings.threads, [&] {
-    picture = pipeline::to_picture(pipeline::develop(
-        p.view, p.receivers(),
-        pipeline::sample_values(p.receivers(), p.traced, estimate.sums, pipeline::wanted_parts(p.recipe.only))));
+    picture = pipeline::to_picture(
+        pipeline::develop(p.view, p.receivers(),
+                          pipeline::sample_values(p.receivers(), p.traced, estimate.sums,
+                                                  pipeline::wanted_parts(p.recipe.only))));
     if (!pipeline::add_layers(picture, p, p.traced, to_inner(estimate), layers, sinks)) throw Cancelled();
   });
   return picture;

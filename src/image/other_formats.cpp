@@ -38,8 +38,8 @@ OtherImagesModule load_other_images_module() {
     const char* why = dlerror();
     return {nullptr, why ? why : "it lacks its function"};
   }
-  return {nullptr,
-          std::string(kOtherImagesModule) + " lies neither beside the program or the library nor in their lib/lumirank"};
+  return {nullptr, std::string(kOtherImagesModule) +
+                       " lies neither beside the program or the library nor in their lib/lumirank"};
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace lumirank::linalg {
 
-std::array<float, 4> solve_regularized4(const std::array<float, 10>& upper,
-                                        const std::array<float, 4>& right, float ridge) {
+std::array<float, 4> solve_regularized4(const std::array<float, 10>& upper, const std::array<float, 4>& right,
+                                        float ridge) {
   Eigen::Matrix4f square;
   std::size_t at = 0;
   for (int a = 0; a < 4; ++a)

@@ -100,8 +100,8 @@ Columns trace_columns(const world::World& world, const Recipe& recipe, const tra
     columns.carried.diffuse_only = ls.diffuse_only;
   }
   if (recipe.lights.type == LightType::sphere)
-    columns.radius_scale = transport::make_spherical(
-        *lights, world, {static_cast<float>(recipe.lights.radius_scale)}, sinks);
+    columns.radius_scale =
+        transport::make_spherical(*lights, world, {static_cast<float>(recipe.lights.radius_scale)}, sinks);
   if (sinks.cancelled()) throw Cancelled();
   columns.lights = std::move(lights);
   return columns;
@@ -154,9 +154,9 @@ bool same_rows(const Prepared& before, const View& view, const Recipe& r) {
 bool same_columns(const Prepared& before, const Recipe& r, std::size_t count) {
   const VirtualLightSettings &a = before.recipe.lights, &b = r.lights;
   return before.columns.asked == count && before.recipe.light_seed == r.light_seed && a.type == b.type &&
-         a.clamp == b.clamp && a.radius_scale == b.radius_scale && before.recipe.compensated == r.compensated &&
-         before.recipe.near_radii == r.near_radii && before.recipe.only == r.only &&
-         before.recipe.traced_below == r.traced_below;
+         a.clamp == b.clamp && a.radius_scale == b.radius_scale &&
+         before.recipe.compensated == r.compensated && before.recipe.near_radii == r.near_radii &&
+         before.recipe.only == r.only && before.recipe.traced_below == r.traced_below;
 }
 
 }  // namespace
@@ -192,7 +192,8 @@ SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe&
   timer = {};
   traced.near = trace_near(*world, *rows, columns, recipe, sinks);
   if (!traced.near.empty()) seconds["traced_near"] = timer.seconds();
-  return join(world, view, recipe, std::move(rows), std::move(columns), std::move(traced), std::move(seconds));
+  return join(world, view, recipe, std::move(rows), std::move(columns), std::move(traced),
+              std::move(seconds));
 }
 
 }  // namespace lumirank::pipeline

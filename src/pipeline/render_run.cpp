@@ -118,12 +118,11 @@ class RenderRun {
     costs.passed = clock_();
     plan_ = plan_time(wishes, costs);
     if (!plan_.shortage.empty()) sinks_.warn(plan_.shortage);
-    sinks_.say("plan: " + std::to_string(plan_.spp) + " receivers per pixel, " +
-               std::to_string(plan_.lights) + " virtual lights; " +
-               run_number("%.2g s for traced direct light, ", plan_.direct_seconds) +
-               run_number("%.2g s", plan_.rest_seconds) +
-               " at first for the light that columns cannot carry; " +
-               run_number("%.3g columns", plan_.columns) + " of the pilot's fit the rest");
+    sinks_.say(
+        "plan: " + std::to_string(plan_.spp) + " receivers per pixel, " + std::to_string(plan_.lights) +
+        " virtual lights; " + run_number("%.2g s for traced direct light, ", plan_.direct_seconds) +
+        run_number("%.2g s", plan_.rest_seconds) + " at first for the light that columns cannot carry; " +
+        run_number("%.3g columns", plan_.columns) + " of the pilot's fit the rest");
   }
 
   void plan() {
@@ -156,8 +155,7 @@ class RenderRun {
   }
 
   void make_survey() {
-    survey_ =
-        survey(*task_.world, recipe_, aim_at(*task_.world, view_, recipe_.light_seed, sinks_));
+    survey_ = survey(*task_.world, recipe_, aim_at(*task_.world, view_, recipe_.light_seed, sinks_));
   }
 
   // ------------------------------------------------------------ rows, columns, matrix

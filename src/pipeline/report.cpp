@@ -36,7 +36,8 @@ std::string Report::json() const {
     json["sampling_rate"] = cost->sampling_rate;
   }
   if (sizes) {
-    if (cost) json["rays.per_pixel"] = static_cast<double>(cost->shadow_rays) / static_cast<double>(sizes->pixels);
+    if (cost)
+      json["rays.per_pixel"] = static_cast<double>(cost->shadow_rays) / static_cast<double>(sizes->pixels);
     json["virtual_lights"] = sizes->lights;
     json["virtual_lights.asked"] = sizes->lights_asked;
     json["virtual_lights.direct"] = sizes->direct_lights;
@@ -66,8 +67,8 @@ std::size_t peak_memory_bytes() {
 }
 
 Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
-                   const methods::MethodInfo& method, const methods::Estimate& estimate, const matrix::Cost& spent,
-                   const methods::TimedChoices::Lists& choices) {
+                   const methods::MethodInfo& method, const methods::Estimate& estimate,
+                   const matrix::Cost& spent, const methods::TimedChoices::Lists& choices) {
   Report report;
   report.method = method.name;
   report.version = program_version();
@@ -89,13 +90,13 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
   report.cost = cost;
 
   const auto& lights = prepared.lights();
-  report.sizes = Report::Sizes{static_cast<std::uint64_t>(prepared.view.width) *
-                                   static_cast<std::uint64_t>(prepared.view.height),
-                               prepared.receivers().size(),
-                               lights.size(),
-                               prepared.columns.asked,
-                               lights.direct_count,
-                               lights.paths};
+  report.sizes = Report::Sizes{
+      static_cast<std::uint64_t>(prepared.view.width) * static_cast<std::uint64_t>(prepared.view.height),
+      prepared.receivers().size(),
+      lights.size(),
+      prepared.columns.asked,
+      lights.direct_count,
+      lights.paths};
   if (prepared.columns.radius_scale > 0)
     numbers["virtual_lights.radius_scale"] = prepared.columns.radius_scale;
   numbers["clamp.removed_fraction"] = matrix::clamped_fraction(spent);

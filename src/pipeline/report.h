@@ -10,8 +10,8 @@ namespace lumirank::pipeline {
 // What every report says of a prepared matrix and what a method did with it. `choices`: of the clock; empty
 // without a budget. `cost`: of the method.
 Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
-                   const methods::MethodInfo& method, const methods::Estimate& estimate, const matrix::Cost& cost,
-                   const methods::TimedChoices::Lists& choices);
+                   const methods::MethodInfo& method, const methods::Estimate& estimate,
+                   const matrix::Cost& cost, const methods::TimedChoices::Lists& choices);
 
 // Resident-set peak of this process, in bytes (0 where the system does not tell).
 std::size_t peak_memory_bytes();

@@ -29,9 +29,9 @@ class RestTracing {
   // Without a budget all at once, after the method. False if it was interrupted.
   bool trace_all(const View& view, const Sinks& sinks);
 
-  int paths() const { return paths_; }        // traced, per pixel
+  int paths() const { return paths_; }  // traced, per pixel
   double seconds() const { return seconds_; }
-  void add_to(image::Image& image) const;     // nothing if none were traced
+  void add_to(image::Image& image) const;  // nothing if none were traced
 
   static constexpr int kMaxPaths = 4096;  // beyond which more is not seen
 

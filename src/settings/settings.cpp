@@ -195,7 +195,8 @@ Row size_row() {
             s.view.width = w, s.view.height = h;
           },
           [](const RenderSettings& s) {
-            return s.view.width > 0 ? std::to_string(s.view.width) + "x" + std::to_string(s.view.height) : std::string{};
+            return s.view.width > 0 ? std::to_string(s.view.width) + "x" + std::to_string(s.view.height)
+                                    : std::string{};
           }};
 }
 
@@ -205,8 +206,7 @@ Row crop_row() {
             if (text.empty()) return void(s.view.crop.fill(0));
             const auto parts = split_settings(text, ',');
             if (parts.size() != 4) throw InputError("'" + text + "' is not a crop", "write it as X,Y,W,H");
-            for (std::size_t i = 0; i < 4; ++i)
-              s.view.crop[i] = parse_number<int>("crop", parts[i]);
+            for (std::size_t i = 0; i < 4; ++i) s.view.crop[i] = parse_number<int>("crop", parts[i]);
             if (s.view.crop[0] < 0 || s.view.crop[1] < 0 || s.view.crop[2] < 1 || s.view.crop[3] < 1)
               throw InputError("the crop " + text + " is negative or empty");
             if (*std::max_element(s.view.crop.begin(), s.view.crop.end()) > 65536)
@@ -244,7 +244,8 @@ Row aov_row() {
                     "'" + name + "' is not an AOV",
                     "choose from direct, indirect, emission, illuminance, albedo, normal, depth, position, "
                     "samples, light:NAME");
-              if (std::find(s.layers.begin(), s.layers.end(), name) == s.layers.end()) s.layers.push_back(name);
+              if (std::find(s.layers.begin(), s.layers.end(), name) == s.layers.end())
+                s.layers.push_back(name);
             }
           },
           [](const RenderSettings& s) {
@@ -263,9 +264,9 @@ const std::vector<Row>& table() {
         {"lights", "", "100000", "1 … 50000000", "lights",
          "virtual lights to generate, all kinds together; costs memory (about 400 B each) and time in rows"},
         At<&S::lights, &VirtualLightSettings::count>{}, 1, 5e7));
-    t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"}, At<&S::lights, &VirtualLightSettings::type>{}));
-    t.push_back(
-        number({"radius-scale", "", "0", "0 … 1000", "",
+    t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"},
+                       At<&S::lights, &VirtualLightSettings::type>{}));
+    t.push_back(number({"radius-scale", "", "0", "0 … 1000", "",
                         "spherical lights: radius over the distance to the 10th nearest light; 0: by the "
                         "number of lights"},
                        At<&S::lights, &VirtualLightSettings::radius_scale>{}, 0, 1000));
@@ -284,54 +285,53 @@ const std::vector<Row>& table() {
     t.push_back(size_row());
     t.push_back(
         number({"spp", "", "4", "1 … 4096", "receivers per pixel", "film samples per pixel (4 = 2×2)"},
-                    At<&S::view, &ViewSettings::spp>{}, 1, 4096));
+               At<&S::view, &ViewSettings::spp>{}, 1, 4096));
     t.push_back(
         number({"max-depth", "", "0", "-1 … 1000000", "bounces",
-                     "longest path, 1: emission only, 2: direct light; 0: as the scene says; -1: unlimited"},
-                    At<&S::view, &ViewSettings::max_depth>{}, -1, 1e6));
-    t.push_back(number(
-        {"clamp", "", "0.03", "0 … 1e9", "", "bound on a_j·G·(π f_x)(π f_y) of one entry; 0: off"}, At<&S::lights, &VirtualLightSettings::clamp>{},
-        0, 1e9));
-    t.push_back(choice({"only", "", "all", "", "", "leave out the other part"}, At<&S::view, &ViewSettings::only>{}));
-    t.push_back(number({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"},
-                                      Top<&S::seed>{}, 0, 9223372036854775808.0));
-    t.push_back(number(
-        {"method-seed", "", "0", "0 … 2^63", "",
-         "other random choices of the method on the same lights and receivers; 0: as --seed"},
-        At<&S::method, &MethodSettings::seed>{}, 0, 9223372036854775808.0));
+                "longest path, 1: emission only, 2: direct light; 0: as the scene says; -1: unlimited"},
+               At<&S::view, &ViewSettings::max_depth>{}, -1, 1e6));
     t.push_back(
-        number({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
-                    Top<&S::threads>{}, 0, 1024));
+        number({"clamp", "", "0.03", "0 … 1e9", "", "bound on a_j·G·(π f_x)(π f_y) of one entry; 0: off"},
+               At<&S::lights, &VirtualLightSettings::clamp>{}, 0, 1e9));
+    t.push_back(
+        choice({"only", "", "all", "", "", "leave out the other part"}, At<&S::view, &ViewSettings::only>{}));
+    t.push_back(number({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"}, Top<&S::seed>{}, 0,
+                       9223372036854775808.0));
+    t.push_back(number({"method-seed", "", "0", "0 … 2^63", "",
+                        "other random choices of the method on the same lights and receivers; 0: as --seed"},
+                       At<&S::method, &MethodSettings::seed>{}, 0, 9223372036854775808.0));
+    t.push_back(number({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
+                       Top<&S::threads>{}, 0, 1024));
     t.push_back(number(
         {"time", "", "0", "0 … 1e7", "s", "time budget for seconds.total, divided among the stages; 0: none"},
         Top<&S::time>{}, 0, 1e7));
     t.push_back(number({"error", "", "0", "0 … 10", "",
-                                "stop when the estimated relative error is below; 0: the method's default"},
-                               At<&S::method, &MethodSettings::target_error>{}, 0, 10));
+                        "stop when the estimated relative error is below; 0: the method's default"},
+                       At<&S::method, &MethodSettings::target_error>{}, 0, 10));
     t.push_back(choice({"direct", "", "auto", "", "",
                         "direct light at receivers: by columns, traced with multiple importance sampling, or "
                         "traced in sharp lobes (roughness below 0.15) and by columns in the others"},
                        At<&S::traced, &TracedLightSettings::direct>{}));
     t.push_back(number({"local-paths", "", "0", "0 … 1048576", "paths per receiver",
-                             "trace the light that virtual lights blur, in sharp lobes and from close by, "
-                             "instead of gathering it from columns (unbiased, noisy); 0: do not"},
-                            At<&S::traced, &TracedLightSettings::local_paths>{}, 0, 1 << 20));
+                        "trace the light that virtual lights blur, in sharp lobes and from close by, "
+                        "instead of gathering it from columns (unbiased, noisy); 0: do not"},
+                       At<&S::traced, &TracedLightSettings::local_paths>{}, 0, 1 << 20));
     t.push_back(number({"local-sharp", "", "0.3", "0 … 1", "roughness",
-                                "with local-paths: lobes sharper than this are traced"},
-                               At<&S::traced, &TracedLightSettings::local_sharp>{}, 0, 1));
+                        "with local-paths: lobes sharper than this are traced"},
+                       At<&S::traced, &TracedLightSettings::local_sharp>{}, 0, 1));
     t.push_back(number({"local-near", "", "4", "0 … 1000", "radii",
-                                "with local-paths, of spherical lights: places nearer than this are traced"},
-                               At<&S::traced, &TracedLightSettings::local_near>{}, 0, 1000));
+                        "with local-paths, of spherical lights: places nearer than this are traced"},
+                       At<&S::traced, &TracedLightSettings::local_near>{}, 0, 1000));
     t.push_back(choice({"rest", "", "auto", "", "",
                         "paths that columns cannot carry: leave out, add by path tracing (noisy), or add "
                         "where a pilot finds that they bring more than 0.5 % of the light"},
                        At<&S::traced, &TracedLightSettings::rest>{}));
     t.push_back(number({"compensate", "", "0", "0 … 1048576", "paths per pixel",
-                             "give back what clamping took from indirect light by path tracing (unbiased, "
-                             "noisy); 0: do not"},
-                            At<&S::traced, &TracedLightSettings::compensate>{}, 0, 1 << 20));
-    t.push_back(
-        text_field({"camera", "", "", "", "", "id of the scene's sensor; default: the first"}, At<&S::view, &ViewSettings::camera>{}));
+                        "give back what clamping took from indirect light by path tracing (unbiased, "
+                        "noisy); 0: do not"},
+                       At<&S::traced, &TracedLightSettings::compensate>{}, 0, 1 << 20));
+    t.push_back(text_field({"camera", "", "", "", "", "id of the scene's sensor; default: the first"},
+                           At<&S::view, &ViewSettings::camera>{}));
     t.push_back(crop_row());
     t.push_back(aov_row());
     return t;
@@ -445,12 +445,15 @@ void validate(const RenderSettings& settings) {
       throw InputError(std::string("'compensate' ") + what, remedy);
     };
     if (settings.time > 0) refuse("cannot keep to a time budget", "leave out 'time', or 'compensate'");
-    if (!(settings.lights.clamp > 0)) refuse("has nothing to give back without clamping", "set 'clamp' above 0");
+    if (!(settings.lights.clamp > 0))
+      refuse("has nothing to give back without clamping", "set 'clamp' above 0");
     if (settings.lights.type == LightType::sphere)
       refuse("is for point lights", "set 'light-type' to point or diffuse-point");
-    if (settings.view.only == LightPart::direct) refuse("is for indirect light", "leave out 'only', or 'compensate'");
+    if (settings.view.only == LightPart::direct)
+      refuse("is for indirect light", "leave out 'only', or 'compensate'");
   }
-  if (settings.method.name != "auto") methods::find_method(settings.method.name).make(settings.method.parameters);
+  if (settings.method.name != "auto")
+    methods::find_method(settings.method.name).make(settings.method.parameters);
 }
 
 }  // namespace lumirank

@@ -21,9 +21,9 @@
 #include "pages/html_text.h"
 #include "pages/page.h"
 #include "pathtrace/reference.h"
+#include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
 #include "pipeline/memory.h"
-#include "pipeline/develop.h"
 #include "pipeline/prepared.h"
 #include "pipeline/sound_pixels.h"
 #include "study/run_plan.h"
@@ -44,7 +44,8 @@ class Comparison {
         folder_(folder),
         sinks_(sinks),
         plan_(plan_runs(settings)),
-        world_(std::make_shared<world::World>(world::World::build(scene.desc, {scene.strict}, warnings_, sinks))),
+        world_(std::make_shared<world::World>(
+            world::World::build(scene.desc, {scene.strict}, warnings_, sinks))),
         view_(make_view(scene.desc, settings.base.view)) {
     const fs::path file = fs::absolute(scene.desc.source_file);
     results_.scene = (file.parent_path().filename() / file.filename()).string();
@@ -96,7 +97,8 @@ class Comparison {
     std::set<std::string> warned;
     for (const PlannedRun& run : plan_)
       if (const auto& info = methods::find_method(run.method); warned.insert(run.method).second)
-        if (const std::string text = error_not_aimed_at(info, settings_.base.method.target_error); !text.empty())
+        if (const std::string text = error_not_aimed_at(info, settings_.base.method.target_error);
+            !text.empty())
           sinks_.warn(text);
   }
 
@@ -110,7 +112,8 @@ class Comparison {
     prepared_ = pipeline::prepare(world_, view_, recipe, lights, prepared_, sinks_);
   }
   void prepare_as_asked() {
-    prepare(settings_.base.lights.count_or_default(), settings_.base.view.spp_or_default(), settings_.base.seed);
+    prepare(settings_.base.lights.count_or_default(), settings_.base.view.spp_or_default(),
+            settings_.base.seed);
   }
 
   image::Image image_of(std::span<const Rgb> sums) const {
@@ -160,8 +163,7 @@ class Comparison {
   void require_memory_of_runs() const {
     double most = 0;
     for (const PlannedRun& run : plan_) {
-      const double samples =
-          static_cast<double>(view_.width) * static_cast<double>(view_.height) * run.spp;
+      const double samples = static_cast<double>(view_.width) * static_cast<double>(view_.height) * run.spp;
       require_countable(samples);
       most = std::max(most, memory_of_picture(samples, static_cast<double>(run.lights), false));
     }
@@ -170,8 +172,7 @@ class Comparison {
 
   // What a reference at some receivers can have at most.
   void require_receivers() const {
-    const auto most = static_cast<std::size_t>(view_.width) *
-                      static_cast<std::size_t>(view_.height) *
+    const auto most = static_cast<std::size_t>(view_.width) * static_cast<std::size_t>(view_.height) *
                       static_cast<std::size_t>(settings_.base.view.spp_or_default());
     if (sampled_receivers() > most)
       throw InputError("'" + settings_.reference + "' asks for more receivers than the " +
@@ -200,9 +201,10 @@ class Comparison {
       reference_ = image_of(sums);
       results_.reference_kind = "all " + std::to_string(columns.size()) + " columns";
     } else if (settings_.reference == "path") {
-      const auto traced =
-          pathtrace::path_trace(*world_, view_, reference_options(settings_.base.view.only, settings_.base.seed, ReferencePaths::columns),
-                                {.time = settings_.reference_time}, sinks_);
+      const auto traced = pathtrace::path_trace(
+          *world_, view_,
+          reference_options(settings_.base.view.only, settings_.base.seed, ReferencePaths::columns),
+          {.time = settings_.reference_time}, sinks_);
       if (traced.interrupted) throw Cancelled();
       reference_ = traced.image;
       results_.reference_error = traced.error;

@@ -11,9 +11,9 @@ namespace lumirank::world {
 // What may be asked for instead of what the scene says; zeros and empty: as the scene says.
 struct ViewChoice {
   std::string camera;
-  int width = 0, height = 0;    // pixels
-  int crop[4] = {0, 0, 0, 0};   // x, y, width, height; width 0: none
-  int max_depth = 0;            // Mitsuba's count; -1: unlimited
+  int width = 0, height = 0;   // pixels
+  int crop[4] = {0, 0, 0, 0};  // x, y, width, height; width 0: none
+  int max_depth = 0;           // Mitsuba's count; -1: unlimited
 };
 
 struct View {

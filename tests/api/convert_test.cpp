@@ -109,7 +109,8 @@ Shape "bilinearmesh" "point3 P" [ -2 -2 3  2 -2 3  -2 2 3  2 2 3 ]
   EXPECT_NE(warnings[1].find("goniometric"), std::string::npos) << warnings[1];
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
-  settings.view.spp = 1, settings.method.name = "brute-force", settings.view.max_depth = 2, settings.lights.count = 500;
+  settings.view.spp = 1, settings.method.name = "brute-force", settings.view.max_depth = 2,
+  settings.lights.count = 500;
   const auto a = render(scene, settings).picture.planes[0].rgb;
   const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
   ASSERT_EQ(a.size(), b.size());

@@ -167,7 +167,8 @@ std::size_t ColumnClusters::zero_draws(std::size_t columns) const {
 
 Representatives ColumnClusters::choose(const linalg::Splitter& clusters, std::uint64_t round) const {
   const RepresentativeSettings choice{settings_.color, seed_, round,
-                                      static_cast<float>(settings_.max_contribution), matrix_.column_features().id};
+                                      static_cast<float>(settings_.max_contribution),
+                                      matrix_.column_features().id};
   Representatives chosen = choose_representatives(clusters.partition(), reduced_.sketch(), weights_, choice);
   add_zero_columns(zero_, matrix_.column_features().power, zero_draws(clusters.clusters()), choice, chosen);
   return chosen;
