@@ -50,7 +50,7 @@ TEST(StatedError, PartsAreThoseOfTheTrueError) {
   std::vector<scenedesc::Warning> warnings;
   const world::World world = world::World::build(scene.impl().desc, {}, warnings);
   const world::View view = pipeline::make_view(scene.impl().desc, settings.view);
-  const auto rows = pipeline::trace_rows(world, view, pipeline::make_recipe(settings, view), {});
+  const auto receivers = pipeline::trace_rows(world, view, pipeline::make_recipe(settings, view), {});
   // Not aimed at the receivers: learning where to aim takes longer than tracing.
   const auto lights_of = [&](std::uint64_t seed, std::size_t count) {
     transport::LightSettings ls;
@@ -60,7 +60,7 @@ TEST(StatedError, PartsAreThoseOfTheTrueError) {
   const auto matrix_of = [&](const transport::VirtualLights& lights, float clamp) {
     transport::SceneMatrixSettings ms;
     ms.clamp = clamp, ms.max_depth = view.max_depth;
-    return transport::SceneMatrix(world, *rows, lights, ms);
+    return transport::SceneMatrix(world, *receivers, lights, ms);
   };
   const auto sum = [](std::span<const Rgb> values) {
     double s = 0;
@@ -69,7 +69,7 @@ TEST(StatedError, PartsAreThoseOfTheTrueError) {
   };
   constexpr std::size_t kSeeds = 300;
   std::vector<std::vector<Rgb>> sums;
-  std::vector<Rgb> all_sums(rows->size());
+  std::vector<Rgb> all_sums(receivers->size());
   std::vector<double> stated;
   for (std::size_t seed = 0; seed < kSeeds; ++seed) {
     const transport::VirtualLights lights = lights_of(100 + seed, 1000);
