@@ -58,9 +58,9 @@ struct Estimate {
 
 struct EstimateOptions {
   double time = 0;  // seconds for the method; 0: no limit
-  Sinks sinks;
+  Sinks sinks = {};
   // Called with whole estimates while they improve; may be empty.
-  std::function<void(std::span<const Rgb> sums)> on_estimate;
+  std::function<void(std::span<const Rgb> sums)> on_estimate = {};
 };
 
 // Any method, as often as wanted, on one matrix ("auto": slice-cuts). Throws InputError for settings that the

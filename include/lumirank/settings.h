@@ -39,11 +39,11 @@ enum class ToneMap { none, reinhard, agx };
 
 // What is looked at, and how finely.
 struct ViewSettings {
-  std::string camera;         // id; "": the scene's first
-  int width = 0, height = 0;  // pixels; 0: as the scene says
-  std::array<int, 4> crop{};  // x, y, width, height in pixels; width 0: none
-  std::optional<int> spp;     // receivers per pixel; unset: 4, or what a time budget holds
-  int max_depth = 0;          // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
+  std::string camera = {};       // id; "": the scene's first
+  int width = 0, height = 0;     // pixels; 0: as the scene says
+  std::array<int, 4> crop = {};  // x, y, width, height in pixels; width 0: none
+  std::optional<int> spp = {};   // receivers per pixel; unset: 4, or what a time budget holds
+  int max_depth = 0;             // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
   LightPart only = LightPart::all;
 
   static constexpr int kDefaultSpp = 4;
@@ -52,7 +52,7 @@ struct ViewSettings {
 
 // The columns of the matrix.
 struct VirtualLightSettings {
-  std::optional<std::uint64_t> count;  // unset: 100,000, or what a time budget holds
+  std::optional<std::uint64_t> count = {};  // unset: 100,000, or what a time budget holds
   LightType type = LightType::point;
   double clamp = 0.03;      // X of docs/conventions.md; 0: off
   double radius_scale = 0;  // spheres: radius over the distance to the 10th nearest; 0: automatic
@@ -67,7 +67,7 @@ struct VirtualLightSettings {
 // How row sums are estimated.
 struct MethodSettings {
   std::string name = "auto";
-  std::map<std::string, std::string> parameters;  // by key; methods_text() lists them
+  std::map<std::string, std::string> parameters = {};  // by key; methods_text() lists them
   std::uint64_t seed = 0;   // other choices on the same lights and receivers; 0: the render's seed
   double target_error = 0;  // estimated relative error to stop at; 0: the method's default
 };
@@ -86,17 +86,17 @@ struct TracedLightSettings {
 };
 
 struct RenderSettings {
-  ViewSettings view;
-  VirtualLightSettings lights;
-  MethodSettings method;
-  TracedLightSettings traced;
-  std::vector<std::string> layers;  // further layers of the picture by name: see render_fields(), "aov"
+  ViewSettings view = {};
+  VirtualLightSettings lights = {};
+  MethodSettings method = {};
+  TracedLightSettings traced = {};
+  std::vector<std::string> layers = {};  // further layers of the picture by name: see render_fields(), "aov"
   std::uint64_t seed = 1;
   int threads = 0;  // 0: all
   double time = 0;  // seconds from the loaded scene on; 0: no limit
   // What the clock decided in an earlier run under `time`, from its report: repeated instead of timed anew,
   // so that the picture has the same bits. Empty: the clock decides.
-  std::map<std::string, std::vector<std::int64_t>> choices;
+  std::map<std::string, std::vector<std::int64_t>> choices = {};
 };
 
 struct ReferenceSettings {

@@ -126,6 +126,9 @@ Picture develop(const Prepared& prepared, const Estimate& estimate, const std::v
     if (pipeline::parts_light(layer) && estimate.combination.empty())
       throw InputError("the layer '" + layer + "' takes one combination of columns for all receivers",
                        "estimate with row-column-sampling");
+    if (pipeline::parts_light(layer) && !p.recipe.group_by_emitter)
+      throw InputError("columns of different emitters may have been clustered together",
+                       "name the layer '" + layer + "' to prepare() as well");
     if (!pipeline::parts_light(layer) && layer != "emission" && layer != "samples" && !p.recipe.first_hits)
       throw InputError("what the eye meets first was not kept", "name the layer to prepare() as well");
   }
@@ -163,8 +166,11 @@ std::vector<std::string> Relighting::lights() const {
 }
 
 Picture Relighting::picture(const std::map<std::string, Rgb>& factors) const {
+  const auto known_light = [&](const std::string& name) {
+    return std::any_of(by_light_.begin(), by_light_.end(), [&](const Plane& p) { return p.name == name; });
+  };
   for (const auto& [name, factor] : factors)
-    if (std::none_of(by_light_.begin(), by_light_.end(), [&](const Plane& p) { return p.name == name; })) {
+    if (!known_light(name)) {
       std::string known;
       for (const Plane& p : by_light_) known += (known.empty() ? "" : ", ") + p.name;
       throw InputError("there is no light '" + name + "'", "the lights are " + known);

@@ -61,9 +61,7 @@ class RenderRun {
     columns();
     if (timed()) {
       expect_same_matrix();
-      const auto earlier = choices_.earlier("rest_paths", RestTracing::kMaxPaths);
-      rest_->begin(view_, earlier ? static_cast<int>(*earlier) : 0,
-                   clock_() + share_of_rest(plan_.rest_seconds), clock_, sinks_);
+      early_rest();
     }
     sums();
     spend_what_is_left();
@@ -78,6 +76,14 @@ class RenderRun {
   // When the film has to begin: half as long again as the pilot found is kept for it.
   double film_begins() const { return kTimeAim * asked_.time - 1.5 * plan_.film_seconds; }
   double share_of_rest(double planned) const { return stage_seconds(planned, film_begins() - clock_()); }
+
+  // Before the method, which fills the budget: some of it must be there.
+  void early_rest() {
+    if (rest_->plan().paths == 0) return;
+    const auto earlier = choices_.earlier("rest_paths", RestTracing::kMaxPaths);
+    rest_->begin(view_, earlier ? static_cast<int>(*earlier) : 0,
+                 clock_() + share_of_rest(plan_.rest_seconds), clock_, sinks_);
+  }
 
   // ------------------------------------------------------------ the plan
 

@@ -108,7 +108,6 @@ TEST(Commands, WrongOptionsOfRender) {
       {{"--threads", "-1"}, "threads"},
       {{"--time", "-1"}, "time"},
       {{"--error", "x"}, "error"},
-      {{"--backend", "abacus"}, "cpu"},
       {{"--crop", "1,2,3"}, "X,Y,W,H"},
       {{"--crop", "8,0,8,8"}, "beyond the film of 12x10"},
       {{"--camera", "left"}, "there is no camera 'left'"},

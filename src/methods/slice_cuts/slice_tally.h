@@ -40,7 +40,7 @@ class StepTimer {
   }
 
  private:
-  const ThreadTimer timer_;
+  ThreadTimer timer_;
   double last_ = 0;
 };
 

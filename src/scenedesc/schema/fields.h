@@ -30,8 +30,13 @@ struct Field {
   const char* name;  // as Mitsuba has it, if it has it
   Member Desc::*member;
   Role role;
-  Range range = Range::any;
-  const char* detail = nullptr;
+  Range range;
+  const char* detail;
+
+  // Written out so that clang 14 deduces the types.
+  constexpr Field(const char* name_, Member Desc::*member_, Role role_, Range range_ = Range::any,
+                  const char* detail_ = nullptr)
+      : name(name_), member(member_), role(role_), range(range_), detail(detail_) {}
 };
 
 // Calls visit(field, desc's member) for all fields of `desc`, in order.
