@@ -22,15 +22,15 @@ void require_whole(const lumirank::image::LoadedImage& image) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace lumirank::film;
-  constexpr std::size_t kMostPixels = 1 << 16;
+  using namespace lumirank::image;
+  constexpr std::size_t kMaxPixels = 1 << 16;
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
     if (!bytes.starts_with("#?")) {
-      require_whole(decode_image(bytes, "fuzz", size % 2 == 0, kMostPixels));
+      require_whole(decode_image(bytes, "fuzz", size % 2 == 0, kMaxPixels));
       return 0;
     }
-    ImageBuilder builder("fuzz.hdr", size % 2 == 0, kMostPixels);
+    ImageBuilder builder("fuzz.hdr", size % 2 == 0, kMaxPixels);
     read_radiance(bytes, builder);
     require_whole(builder.take());
   } catch (const std::runtime_error&) {  // InputError is one, InternalError is not
