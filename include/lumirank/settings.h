@@ -62,6 +62,7 @@ struct VirtualLightSettings {
 
   static constexpr std::uint64_t kDefaultCount = 100000;
   std::uint64_t count_or_default() const { return count.value_or(kDefaultCount); }
+  friend bool operator==(const VirtualLightSettings&, const VirtualLightSettings&) = default;
 };
 
 // How row sums are estimated.

@@ -137,38 +137,42 @@ SharedPrepared join(const SharedWorld& world, const View& view, const Recipe& re
 
 namespace {
 
-bool same_window(const View& a, const View& b) {
+// What lights are aimed at and rows are traced for. Cameras of one world are told apart by their ids.
+bool same_view(const View& a, const View& b) {
   return a.sensor.id == b.sensor.id && a.sensor.film.width == b.sensor.film.width &&
          a.sensor.film.height == b.sensor.film.height && a.max_depth == b.max_depth && a.crop_x == b.crop_x &&
          a.crop_y == b.crop_y && a.width == b.width && a.height == b.height;
 }
 
-// Rows and the light that is traced for them; what is traced from close by belongs to columns as well.
-bool same_rows(const Prepared& before, const View& view, const Recipe& r) {
-  const Recipe& b = before.recipe;
-  return same_window(before.view, view) && b.seed == r.seed && b.spp == r.spp && b.only == r.only &&
-         b.traced_below == r.traced_below && b.sharp_below == r.sharp_below &&
-         b.local_paths == r.local_paths && b.first_hits == r.first_hits;
+// Rows and the light that is traced at them.
+bool same_rows(const Recipe& a, const Recipe& b) {
+  return a.seed == b.seed && a.spp == b.spp && a.only == b.only && a.traced_below == b.traced_below &&
+         a.sharp_below == b.sharp_below && a.local_paths == b.local_paths && a.first_hits == b.first_hits;
 }
 
-bool same_columns(const Prepared& before, const Recipe& r, std::size_t count) {
-  const VirtualLightSettings &a = before.recipe.lights, &b = r.lights;
-  return before.columns.asked == count && before.recipe.light_seed == r.light_seed && a.type == b.type &&
-         a.clamp == b.clamp && a.radius_scale == b.radius_scale &&
-         before.recipe.compensated == r.compensated && before.recipe.near_radii == r.near_radii &&
-         before.recipe.only == r.only && before.recipe.traced_below == r.traced_below;
+bool same_columns(const Recipe& a, const Recipe& b) {
+  return a.light_seed == b.light_seed && a.only == b.only && a.traced_below == b.traced_below &&
+         a.compensated == b.compensated && a.lights.type == b.lights.type &&
+         a.lights.radius_scale == b.lights.radius_scale &&
+         (!a.compensated || a.lights.clamp == b.lights.clamp);
 }
 
 }  // namespace
 
 SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe& recipe, std::size_t count,
                        const SharedPrepared& previous, const Sinks& sinks) {
-  std::map<std::string, double> seconds;
+  const bool same_place = previous && previous->world == world && same_view(previous->view, view);
+  const bool keeps_rows = same_place && same_rows(previous->recipe, recipe);
+  const bool keeps_columns =
+      same_place && previous->columns.asked == count && same_columns(previous->recipe, recipe);
+  if (keeps_rows && keeps_columns && previous->recipe == recipe) return previous;
+  std::map<std::string, double> seconds;  // of what is kept: what it took then
   SharedRows rows;
   TracedLight traced;
-  const bool keeps_rows = previous && previous->world == world && same_rows(*previous, view, recipe);
+  Columns columns;
+  if (previous && (keeps_rows || keeps_columns)) seconds = previous->seconds;
   if (keeps_rows) {
-    rows = previous->rows, traced = previous->traced, seconds = previous->seconds;
+    rows = previous->rows, traced = previous->traced;
   } else {
     Timer timer;
     const SharedRows all = trace_rows(*world, view, recipe, sinks);
@@ -184,14 +188,20 @@ SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe&
     rows = matrix_rows(all, recipe);
     if (rows != all) seconds["traced_indirect"] = timer.seconds();
   }
-  if (keeps_rows && same_columns(*previous, recipe, count)) return previous;
-  Timer timer;
-  Columns columns = trace_columns(
-      *world, recipe, *survey(*world, recipe, aim_at(*world, view, recipe.light_seed, sinks)), count, sinks);
-  seconds["lights"] = timer.seconds();
-  timer = {};
-  traced.near = trace_near(*world, *rows, columns, recipe, sinks);
-  if (!traced.near.empty()) seconds["traced_near"] = timer.seconds();
+  if (keeps_columns) {
+    columns = previous->columns;
+  } else {
+    const Timer timer;
+    columns =
+        trace_columns(*world, recipe, *survey(*world, recipe, aim_at(*world, view, recipe.light_seed, sinks)),
+                      count, sinks);
+    seconds["lights"] = timer.seconds();
+  }
+  if (!keeps_rows || !keeps_columns || previous->recipe.near_radii != recipe.near_radii) {
+    const Timer timer;
+    traced.near = trace_near(*world, *rows, columns, recipe, sinks);
+    if (!traced.near.empty()) seconds["traced_near"] = timer.seconds();
+  }
   return join(world, view, recipe, std::move(rows), std::move(columns), std::move(traced),
               std::move(seconds));
 }

@@ -54,7 +54,7 @@ struct Prepared {
 using SharedPrepared = std::shared_ptr<const Prepared>;
 
 // All stages one after the other, `count` virtual lights. What `previous` (may be empty) has made of the same
-// world in the same way is taken over: its rows with their traced light, and its columns, or the rows alone.
+// world in the same way is taken over: its rows with their traced light, its columns, or both.
 SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe& recipe, std::size_t count,
                        const SharedPrepared& previous, const Sinks& sinks);
 

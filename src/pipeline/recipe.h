@@ -40,6 +40,8 @@ struct Recipe {
   bool first_hits = false;        // what the eye's first hits know is kept, for layers
   bool group_by_emitter = false;  // clusters may not cross emitters, for layers by light
   bool compensated = false;       // what clamping takes is given back by tracing
+
+  friend bool operator==(const Recipe&, const Recipe&) = default;
 };
 Recipe make_recipe(const RenderSettings& settings, const View& view);
 

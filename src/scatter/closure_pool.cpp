@@ -100,4 +100,15 @@ void ClosurePool::shrink() {
   palettes_.shrink();
 }
 
+Closure lambertian(Rgb albedo, Vec3f normal, Vec3f ng) {
+  Closure c;
+  c.frame = Frame::from_normal(normal);
+  c.ng = ng;
+  Lobe lobe;
+  lobe.kind = LobeKind::diffuse;
+  lobe.color = albedo;
+  c.add(lobe);
+  return c;
+}
+
 }  // namespace lumirank::scatter

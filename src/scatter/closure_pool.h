@@ -15,6 +15,9 @@
 
 namespace lumirank::scatter {
 
+// The closure of a point that is not worth a place in a pool: one diffuse lobe.
+Closure lambertian(Rgb albedo, Vec3f normal, Vec3f ng);
+
 class ClosurePool {
  public:
   // Keeps the smooth lobes of `closure` (delta lobes are left out) and its tangent. `normal` is the normal

@@ -67,14 +67,7 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
 
 scatter::Closure VirtualLights::closure_at(std::size_t j) const {
   if (closure[j] != kLambertian) return closures.get(closure[j], normal[j], ng[j]);
-  scatter::Closure c;
-  c.frame = Frame::from_normal(normal[j]);
-  c.ng = ng[j];
-  scatter::Lobe lobe;
-  lobe.kind = scatter::LobeKind::diffuse;
-  lobe.color = albedo[j];
-  c.add(lobe);
-  return c;
+  return scatter::lambertian(albedo[j], normal[j], ng[j]);
 }
 
 std::uint32_t VirtualLights::key(std::size_t j) const {

@@ -199,14 +199,7 @@ Receivers trace_receivers(const world::World& world, const world::Camera& camera
 
 scatter::Closure Receivers::closure_at(std::size_t i) const {
   if (closure[i] != kLambertian) return closures.get(closure[i], normal[i], ng[i]);
-  scatter::Closure c;
-  c.frame = Frame::from_normal(normal[i]);
-  c.ng = ng[i];
-  scatter::Lobe lobe;
-  lobe.kind = scatter::LobeKind::diffuse;
-  lobe.color = albedo[i];
-  c.add(lobe);
-  return c;
+  return scatter::lambertian(albedo[i], normal[i], ng[i]);
 }
 
 std::uint32_t Receivers::key(std::size_t i) const { return static_cast<std::uint32_t>(mix64(id[i]) >> 32); }
