@@ -154,7 +154,7 @@ bool Closure::is_lambertian() const {
   int smooth = 0;
   for (int k = 0; k < count; ++k) {
     if (is_delta(lobes[k].kind)) continue;
-    if (lobes[k].kind != LobeKind::diffuse || lobes[k].coat || lobes[k].veil) return false;
+    if (lobes[k].kind != LobeKind::diffuse || lobes[k].coat || lobes[k].sheen_layer) return false;
     ++smooth;
   }
   return smooth == 1;

@@ -108,17 +108,17 @@ struct Coat {
 };
 
 // Sheen over a lobe (charlie_sheen.h), in 65535ths to be small; the share is rounded up.
-struct Veil {
+struct SheenLayer {
   std::uint16_t share = 0;  // the largest channel of the sheen's colour; 0: there is no sheen
   std::uint16_t roughness = 0;
-  Veil() = default;
-  Veil(float share_, float roughness_)
+  SheenLayer() = default;
+  SheenLayer(float share_, float roughness_)
       : share(static_cast<std::uint16_t>(std::min(65535.0f, std::ceil(share_ * 65535)))),
         roughness(static_cast<std::uint16_t>(roughness_ * 65535 + 0.5f)) {}
   float share_value() const { return static_cast<float>(share) / 65535; }
   float roughness_value() const { return static_cast<float>(roughness) / 65535; }
   explicit operator bool() const { return share > 0; }
-  friend bool operator==(const Veil&, const Veil&) = default;
+  friend bool operator==(const SheenLayer&, const SheenLayer&) = default;
 };
 
 // What a family keeps per material beyond numbers. Each family knows its own.
@@ -136,7 +136,7 @@ struct Lobe {
   Rgb conductor_eta{0}, conductor_k{0};  // conductor; schlick: conductor_eta is F0
   float extra = 0;                       // disney_diffuse: flatness
   Coat coat;                             // over this lobe, if any
-  Veil veil;                             // the same; between the lobe and the coat
+  SheenLayer sheen_layer;                // the same; between the lobe and the coat
   const LobeTable* table =
       nullptr;  // of measured kinds: what their material holds, which outlives the closure
 };

@@ -115,11 +115,12 @@ struct Base {
   Rgb returned{0};    // the part of it that the layer returns beyond R0 and that leaves in all directions
   float trapped = 0;  // of Coat
 };
-Base glossy_base(const Layer& layer, Rgb albedo, Rgb slanted, NormalDistribution distribution, float alpha) {
+Base glossy_base(const Layer& layer, Rgb albedo, Rgb oblique_albedo, NormalDistribution distribution,
+                 float alpha) {
   Rgb beyond = glossy_return(layer, distribution, alpha);
   for (int c = 0; c < 3; ++c)
     beyond[c] = std::max(0.0f, beyond[c] - layer.least * std::exp(-2 * layer.coat.depth[c]));
-  const float again = mean(slanted);  // the albedo of a further bounce
+  const float again = mean(oblique_albedo);  // the albedo of a further bounce
   // A layer rougher than what it covers has no sharp critical angle.
   const float sharp = alpha * alpha / (alpha * alpha + layer.alpha * layer.alpha);
   return {albedo, albedo * beyond * (kBeyond * again), kTrapped * mean(albedo) * again * again * sharp};
@@ -134,7 +135,7 @@ UnderCoat under_coat(LobeView view) {
 // transmitted is gone.
 Base base_of(const Layer& layer, const UnderCoat& lobe) {
   if (lobe.sort == UnderCoat::Sort::glossy)
-    return glossy_base(layer, lobe.albedo, lobe.slanted, lobe.distribution, lobe.alpha);
+    return glossy_base(layer, lobe.albedo, lobe.oblique_albedo, lobe.distribution, lobe.alpha);
   return lobe.sort == UnderCoat::Sort::diffuse ? Base{lobe.albedo, lobe.albedo * layer.diffuse_return}
                                                : Base{};
 }
@@ -216,12 +217,12 @@ void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint
     widen(layer, lobe);
     const UnderCoat nested_lobe = under_coat(view_from(lobe, true));
     Base base = base_of(layer, nested_lobe);
-    if (lobe.veil) {
-      const float left = veil_factor(lobe.veil, 2.0f / 3);
+    if (lobe.sheen_layer) {
+      const float left = sheen_layer_factor(lobe.sheen_layer, 2.0f / 3);
       base.albedo *= left, base.returned *= left, base.trapped *= left;
     }
     albedo += base.albedo, returned += base.returned;
-    if (lobe.kind == LobeKind::diffuse && !lobe.veil) {
+    if (lobe.kind == LobeKind::diffuse && !lobe.sheen_layer) {
       out.push(diffuse_under(layer, lobe.color), point, weight);
       continue;
     }

@@ -47,7 +47,8 @@ bool delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
 
 Rgb bare_value(LobeView view, Vec3f wo, Vec3f wi) {
   const Rgb value = family_of(view.lobe.kind).value(view, wo, wi);
-  return view.lobe.veil ? value * veil_factor(view.lobe.veil, std::min(wo.z, wi.z)) : value;
+  return view.lobe.sheen_layer ? value * sheen_layer_factor(view.lobe.sheen_layer, std::min(wo.z, wi.z))
+                               : value;
 }
 
 float bare_pdf(LobeView view, Vec3f wo, Vec3f wi) { return family_of(view.lobe.kind).pdf(view, wo, wi); }
@@ -62,19 +63,19 @@ Rgb bare_albedo(LobeView view, Vec3f wo) {
     Rgb coefficient;
     return bare_delta_direction(view, wo, wi, coefficient) ? coefficient : Rgb(0);
   }
-  return view.lobe.veil ? quadrature_albedo(view, wo) : family_of(view.lobe.kind).albedo(view, wo);
+  return view.lobe.sheen_layer ? quadrature_albedo(view, wo) : family_of(view.lobe.kind).albedo(view, wo);
 }
 
 float bare_importance(LobeView view, float cos_o) {
-  const Veil& veil = view.lobe.veil;
+  const SheenLayer& sheen_layer = view.lobe.sheen_layer;
   return family_of(view.lobe.kind).importance(view, cos_o) *
-         (veil ? std::max(0.05f, veil_factor(veil, cos_o)) : 1.0f);
+         (sheen_layer ? std::max(0.05f, sheen_layer_factor(sheen_layer, cos_o)) : 1.0f);
 }
 
 bool bare_delta_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
-  const Veil& veil = view.lobe.veil;
+  const SheenLayer& sheen_layer = view.lobe.sheen_layer;
   if (!family_of(view.lobe.kind).direction(view, wo, wi, coefficient)) return false;
-  if (veil) coefficient *= veil_factor(veil, wo.z);
+  if (sheen_layer) coefficient *= sheen_layer_factor(sheen_layer, wo.z);
   return !is_black(coefficient);
 }
 

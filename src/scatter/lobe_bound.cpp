@@ -84,14 +84,14 @@ AngleRange ring(const LobeTerm& t, float from, float to) {
 }
 
 // Bounds under a coat: `inside` are the angles there, the cosines those outside.
-Rgb under_coat(const LobeTerm& t, const AngleRange& inside, float cos_hi, Slant slant) {
+Rgb under_coat(const LobeTerm& t, const AngleRange& inside, float cos_hi, CosineFactor factor) {
   const auto bound = family_of(t.lobe->kind).bound;
-  Rgb most = bound(t, inside, Slant::none);
-  if (slant == Slant::none) return most;
+  Rgb most = bound(t, inside, CosineFactor::none);
+  if (factor == CosineFactor::none) return most;
   most *= cos_hi;
   // In a denser layer the cosine inside is the larger one.
   if (t.lobe->coat.bend >= 1) {
-    const Rgb other = bound(t, inside, Slant::cosine);
+    const Rgb other = bound(t, inside, CosineFactor::cosine);
     for (int c = 0; c < 3; ++c) most[c] = std::min(most[c], other[c]);
   }
   return most;
@@ -143,7 +143,7 @@ void ClosureBound::add(const Lobe& lobe, Rgb color, bool adjoint) {
     if (!once || !outside_)
       for (int c = 0; c < 3; ++c) factor[c] *= std::exp(-coat.depth[c]);
   }
-  if (lobe.veil) factor *= veil_factor(lobe.veil, t.cos_o);
+  if (lobe.sheen_layer) factor *= sheen_layer_factor(lobe.sheen_layer, t.cos_o);
   // Radiance is that much denser on the far side; see microfacet_transmit_value().
   if (adjoint && family.refracts) factor *= t.eta * t.eta;
   factor *= family.factor_of_wo(lobe, t.cos_o, t.narrowest);
@@ -161,23 +161,23 @@ float ClosureBound::crossed(const LobeTerm& t, float cos_lo) const {
   return coat_return(coat, coat_cosine(coat, cos_lo));
 }
 
-Rgb ClosureBound::on_fibre(const LobeTerm& t, const DirectionCone& cone, Slant slant) const {
+Rgb ClosureBound::on_fibre(const LobeTerm& t, const DirectionCone& cone, CosineFactor factor) const {
   const float about = latitude(cone.axis, n_);
   return family_of(t.lobe->kind)
       .fibre_bound(t, latitude(wo_, n_), std::max(-kPi / 2, about - cone.angle - kAngleSlack),
-                   std::min(kPi / 2, about + cone.angle + kAngleSlack), slant);
+                   std::min(kPi / 2, about + cone.angle + kAngleSlack), factor);
 }
 
 Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
-                            float cos_lo, float cos_hi, Slant slant) const {
+                            float cos_lo, float cos_hi, CosineFactor factor) const {
   const Coat& coat = t.lobe->coat;
   if (!coat) {
     const LobeFamily& family = family_of(t.lobe->kind);
     if (!family.bound_by_cosine)
-      return family.bound(t, range_about(n_, t, cone.axis, width, cos_lo, cos_hi), slant);
+      return family.bound(t, range_about(n_, t, cone.axis, width, cos_lo, cos_hi), factor);
     AngleRange r;
     r.cos_lo = cos_lo, r.cos_hi = cos_hi;
-    return family.bound(t, r, slant);
+    return family.bound(t, r, factor);
   }
   const float inside_lo = coat_cosine(coat, cos_lo), inside_hi = coat_cosine(coat, cos_hi);
   const float cosine = dot(cone.axis, n_);
@@ -189,11 +189,11 @@ Rgb ClosureBound::reflected(const LobeTerm& t, const DirectionCone& cone, const 
   } else {
     r.cos_lo = inside_lo, r.cos_hi = inside_hi, r.half_lo = 0.5f * (t.cos_o + inside_lo);
   }
-  return under_coat(t, r, cos_hi, slant) * crossed(t, cos_lo);
+  return under_coat(t, r, cos_hi, factor) * crossed(t, cos_lo);
 }
 
 Rgb ClosureBound::refracted(const LobeTerm& t, const DirectionCone& cone, float cos_lo, float cos_hi,
-                            Slant slant) const {
+                            CosineFactor factor) const {
   AngleRange r;
   r.cos_lo = cos_lo, r.cos_hi = cos_hi;
   // The half vector of refraction, wo + eta·w, is in a ball about that of the axis. Its length to the square
@@ -206,20 +206,20 @@ Rgb ClosureBound::refracted(const LobeTerm& t, const DirectionCone& cone, float 
     r.tilt_sin = least_tilt.sine, r.tilt_cos = std::max(0.0f, least_tilt.cosine);
   }
   const float least = std::max({len - reach, std::abs(t.eta - 1) - kAngleSlack, 1e-8f});
-  return family_of(t.lobe->kind).bound(t, r, slant) * (crossed(t, cos_lo) / (least * least));
+  return family_of(t.lobe->kind).bound(t, r, factor) * (crossed(t, cos_lo) / (least * least));
 }
 
 Rgb ClosureBound::through_sheet(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
-                                float cos_lo, float cos_hi, Slant slant) const {
+                                float cos_lo, float cos_hi, CosineFactor factor) const {
   const LobeFamily& family = family_of(t.lobe->kind);
   AngleRange r;
   r.cos_lo = cos_lo, r.cos_hi = cos_hi;
   if (!family.bound_by_cosine)
     r = range_about(n_, t, cone.axis - n_ * (2 * dot(cone.axis, n_)), width, cos_lo, cos_hi);
-  return family.bound(t, r, slant) * crossed(t, cos_lo);
+  return family.bound(t, r, factor) * crossed(t, cos_lo);
 }
 
-Rgb ClosureBound::within(const DirectionCone& cone, Slant slant, float sharp) const {
+Rgb ClosureBound::within(const DirectionCone& cone, CosineFactor factor, float sharp) const {
   Rgb sum(0);
   if (count_ == 0) return sum;
   const ConeWidth width(cone.angle);
@@ -231,18 +231,18 @@ Rgb ClosureBound::within(const DirectionCone& cone, Slant slant, float sharp) co
     const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
     if (t.roughness < sharp) continue;
     if (fibre_) {
-      sum += on_fibre(t, cone, slant);
+      sum += on_fibre(t, cone, factor);
     } else if (!shines_through(t.lobe->kind)) {
-      if (before) sum += reflected(t, cone, width, lo, hi, slant);
+      if (before) sum += reflected(t, cone, width, lo, hi, factor);
     } else if (behind) {
-      sum += family_of(t.lobe->kind).refracts ? refracted(t, cone, behind_lo, behind_hi, slant)
-                                              : through_sheet(t, cone, width, behind_lo, behind_hi, slant);
+      sum += family_of(t.lobe->kind).refracts ? refracted(t, cone, behind_lo, behind_hi, factor)
+                                              : through_sheet(t, cone, width, behind_lo, behind_hi, factor);
     }
   }
   return sum;
 }
 
-Rgb ClosureBound::in_rings(const LobeTerm& t, Slant slant) const {
+Rgb ClosureBound::in_rings(const LobeTerm& t, CosineFactor factor) const {
   const LobeFamily& family = family_of(t.lobe->kind);
   const Coat& coat = t.lobe->coat;
   const bool within = coat && !transmits(t.lobe->kind);
@@ -259,24 +259,24 @@ Rgb ClosureBound::in_rings(const LobeTerm& t, Slant slant) const {
       cos_lo = outside(cos_lo), cos_hi = std::min(1.0f, outside(cos_hi) + 1e-6f);
     }
     const Rgb here =
-        (within ? under_coat(t, r, cos_hi, slant) : family.bound(t, r, slant)) * crossed(t, cos_lo);
+        (within ? under_coat(t, r, cos_hi, factor) : family.bound(t, r, factor)) * crossed(t, cos_lo);
     for (int c = 0; c < 3; ++c) most[c] = std::max(most[c], here[c]);
     from = to;
   }
   return most;
 }
 
-Rgb ClosureBound::anywhere(Slant slant, float sharp) const {
+Rgb ClosureBound::anywhere(CosineFactor factor, float sharp) const {
   Rgb sum(0);
   for (int k = 0; k < count_; ++k) {
     const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
     if (t.roughness < sharp) continue;
     if (fibre_) {
-      sum += on_fibre(t, {n_, kPi}, slant);
+      sum += on_fibre(t, {n_, kPi}, factor);
     } else if (family_of(t.lobe->kind).refracts) {
-      sum += refracted(t, {-n_, kPi}, 0, 1, slant);
+      sum += refracted(t, {-n_, kPi}, 0, 1, factor);
     } else {
-      sum += in_rings(t, slant);
+      sum += in_rings(t, factor);
     }
   }
   return sum;

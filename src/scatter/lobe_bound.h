@@ -21,7 +21,7 @@ struct DirectionCone {
 };
 
 // What is multiplied with f.
-enum class Slant : std::uint8_t { none, cosine };
+enum class CosineFactor : std::uint8_t { none, cosine };
 
 struct ConeWidth;  // lobes/bound_terms.h
 
@@ -48,22 +48,22 @@ class ClosureBound {
 
   // At least eval_f(closure, wo, w, adjoint), times closure.cosine(w) if asked for, for all unit w in the
   // cone. Lobes with a roughness below `sharp` are left out.
-  Rgb within(const DirectionCone& cone, Slant slant, float sharp = 0) const;
+  Rgb within(const DirectionCone& cone, CosineFactor factor, float sharp = 0) const;
   // The same for all directions, tighter than a cone of π: rings about the mirror direction are bounded one
   // by one.
-  Rgb anywhere(Slant slant, float sharp = 0) const;
+  Rgb anywhere(CosineFactor factor, float sharp = 0) const;
   bool black() const { return count_ == 0; }
 
  private:
   void add(const Lobe& lobe, Rgb color, bool adjoint);
-  Rgb on_fibre(const LobeTerm& term, const DirectionCone& cone, Slant slant) const;
+  Rgb on_fibre(const LobeTerm& term, const DirectionCone& cone, CosineFactor factor) const;
   Rgb reflected(const LobeTerm& term, const DirectionCone& cone, const ConeWidth& width, float cos_lo,
-                float cos_hi, Slant slant) const;
+                float cos_hi, CosineFactor factor) const;
   Rgb refracted(const LobeTerm& term, const DirectionCone& cone, float cos_lo, float cos_hi,
-                Slant slant) const;
+                CosineFactor factor) const;
   Rgb through_sheet(const LobeTerm& term, const DirectionCone& cone, const ConeWidth& width, float cos_lo,
-                    float cos_hi, Slant slant) const;
-  Rgb in_rings(const LobeTerm& term, Slant slant) const;
+                    float cos_hi, CosineFactor factor) const;
+  Rgb in_rings(const LobeTerm& term, CosineFactor factor) const;
   // What a coat does where light crosses it at w, beyond what is in the scale.
   float crossed(const LobeTerm& term, float cos_lo) const;
 

@@ -12,11 +12,11 @@ bool same_sort(const Lobe& a, const Lobe& b) {
   return a.kind == b.kind && a.fresnel == b.fresnel && a.distribution == b.distribution &&
          a.variant == b.variant && a.table == b.table &&
          static_cast<bool>(a.coat) == static_cast<bool>(b.coat) &&
-         static_cast<bool>(a.veil) == static_cast<bool>(b.veil);
+         static_cast<bool>(a.sheen_layer) == static_cast<bool>(b.sheen_layer);
 }
 
 bool equal_but_color(const Lobe& a, const Lobe& b) {
-  if (!same_sort(a, b) || a.coat != b.coat || a.veil != b.veil) return false;
+  if (!same_sort(a, b) || a.coat != b.coat || a.sheen_layer != b.sheen_layer) return false;
   return a.alpha_u == b.alpha_u && a.alpha_v == b.alpha_v && a.eta == b.eta &&
          (family_of(a.kind).two_colors || a.conductor_eta == b.conductor_eta) &&
          a.conductor_k == b.conductor_k && a.extra == b.extra;
@@ -31,9 +31,9 @@ Lobe average(const Lobe& a, const Lobe& b) {
   out.coat.eta = lerp(a.coat.eta, b.coat.eta, t), out.coat.bend = lerp(a.coat.bend, b.coat.bend, t);
   for (int i = 0; i < 6; ++i) out.coat.t[i] = lerp(a.coat.t[i], b.coat.t[i], t);
   out.coat.depth = lerp(a.coat.depth, b.coat.depth, t);
-  if (a.veil)
-    out.veil = Veil(lerp(a.veil.share_value(), b.veil.share_value(), t),
-                    lerp(a.veil.roughness_value(), b.veil.roughness_value(), t));
+  if (a.sheen_layer)
+    out.sheen_layer = SheenLayer(lerp(a.sheen_layer.share_value(), b.sheen_layer.share_value(), t),
+                                 lerp(a.sheen_layer.roughness_value(), b.sheen_layer.roughness_value(), t));
   if (family_of(a.kind).two_colors) {
     out.conductor_eta = a.conductor_eta + b.conductor_eta;
   } else {

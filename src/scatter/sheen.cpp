@@ -1,4 +1,4 @@
-// A layer of sheen over an opaque material: every nested lobe behind a veil, and the sheen's own lobe.
+// A layer of sheen over an opaque material: every nested lobe under it, and the sheen's own lobe.
 #include "base/error.h"
 #include "scatter/closure_builder.h"
 #include "scatter/lobe.h"
@@ -16,7 +16,7 @@ void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& 
   SurfacePoint point = at;
   point.shading = nested.frame, point.ng = nested.ng;
   const float roughness = std::clamp(number(out.textures(), m.roughness, at.uv), kMinSheenRoughness, 1.0f);
-  const Veil veil(max_component(color), roughness);
+  const SheenLayer sheen_layer(max_component(color), roughness);
 
   Lobe own;
   own.kind = LobeKind::charlie_sheen;
@@ -25,9 +25,9 @@ void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& 
   out.push(own, point, weight);
   for (int k = 0; k < nested.count; ++k) {
     Lobe lobe = nested.lobes[k];
-    if (lobe.coat || lobe.veil || transmits(lobe.kind) || is_hair(lobe.kind))
+    if (lobe.coat || lobe.sheen_layer || transmits(lobe.kind) || is_hair(lobe.kind))
       throw InternalError("sheen over a coating, a sheen, hair or what lets light pass");
-    lobe.veil = veil;
+    lobe.sheen_layer = sheen_layer;
     out.push(lobe, point, weight);
   }
 }

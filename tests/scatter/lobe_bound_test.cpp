@@ -57,8 +57,8 @@ TEST_P(EveryBsdfBound, IsAboveAllValues) {
     const float limit = r.next_float() < 0.2f ? 0.15f : 0.0f;
     const Closure kept = limit > 0 ? broad_part(closure, limit) : closure;
     const ClosureBound bound(closure, wo, adjoint);
-    const Rgb anywhere = bound.anywhere(Slant::cosine, limit),
-              f_anywhere = bound.anywhere(Slant::none, limit);
+    const Rgb anywhere = bound.anywhere(CosineFactor::cosine, limit),
+              f_anywhere = bound.anywhere(CosineFactor::none, limit);
     DirectionCone cone;
     cone.angle = r.next_float() < 0.1f ? 0.0f : kPi * std::pow(10.0f, -5 * r.next_float());
     const float kind = r.next_float();
@@ -70,8 +70,8 @@ TEST_P(EveryBsdfBound, IsAboveAllValues) {
     }
     // Off centre, so that peaks may lie anywhere in the cone.
     if (r.next_float() < 0.7f) cone.axis = direction_in(cone, r.next_2d());
-    const Rgb in_cone = bound.within(cone, Slant::cosine, limit),
-              f_in_cone = bound.within(cone, Slant::none, limit);
+    const Rgb in_cone = bound.within(cone, CosineFactor::cosine, limit),
+              f_in_cone = bound.within(cone, CosineFactor::none, limit);
     for (int k = 0; k < 16; ++k) {
       Vec3f w = direction_in(cone, {k % 2 ? r.next_float() : 1.0f, r.next_float()});
       if (k == 0) w = cone.axis;
@@ -101,7 +101,7 @@ TEST_P(EveryBsdfBound, OfOneDirectionIsNearTheValue) {
     if (!s || std::abs(wo.z) < 0.1f || closure.cosine(s->wi) < 0.1f) continue;
     const float value = mean(eval(closure, wo, s->wi));
     if (!(value > 0)) continue;  // a direction drawn at the very edge of a lobe
-    const float most = mean(bound.within({s->wi, 0}, Slant::cosine));
+    const float most = mean(bound.within({s->wi, 0}, CosineFactor::cosine));
     sum += 1, bounds += std::log(most / value);
   }
   if (sum == 0) return;  // delta lobes alone

@@ -48,7 +48,7 @@ TEST(CharlieSheen, CoversWhatIsBelow) {
   EXPECT_EQ(set.closure(1, at, {0, 0, -1}).count, 0) << "nothing on the back of a one-sided base";
   const Vec3f o = at_angle(0.3f, 0), i = at_angle(0.8f, 2);
   const float expected = (1 - sheen_albedo(0.5f, 0.3f).raw) * kInvPi;
-  EXPECT_NEAR(eval_f(from_front, o, i).b, expected, 2e-5f) << "the veil's share and roughness have 16 bits";
+  EXPECT_NEAR(eval_f(from_front, o, i).b, expected, 2e-5f) << "the layer's share and roughness have 16 bits";
 }
 
 }  // namespace

@@ -99,8 +99,9 @@ SheenAlbedo sheen_albedo(float roughness, float cosine) {
   return {raw_albedo(roughness, cosine), std::min(1.0f, look_up(tables().held, roughness, cosine))};
 }
 
-float veil_factor(const Veil& veil, float least_cosine) {
-  return 1 - veil.share_value() * std::min(1.0f, raw_albedo(veil.roughness_value(), least_cosine));
+float sheen_layer_factor(const SheenLayer& sheen_layer, float least_cosine) {
+  return 1 -
+         sheen_layer.share_value() * std::min(1.0f, raw_albedo(sheen_layer.roughness_value(), least_cosine));
 }
 
 namespace {
@@ -123,11 +124,11 @@ float charlie_sheen_factor(const Lobe& lobe, float cos_o, float) {
   return (2 + 1 / lobe.alpha_u) * (0.5f * kInvPi) /
          std::max(1.0f, sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).raw);
 }
-Rgb charlie_sheen_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  const float cosine = slant == Slant::cosine ? r.cos_hi : 1.0f;
+Rgb charlie_sheen_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  const float cosine = factor == CosineFactor::cosine ? r.cos_hi : 1.0f;
   const float d = std::pow(r.most_tilt_sin, 1 / t.lobe->alpha_u);
   // c/(co + c - co·c) grows with c, and what is below it too.
-  const float c = slant == Slant::cosine ? r.cos_hi : r.cos_lo;
+  const float c = factor == CosineFactor::cosine ? r.cos_hi : r.cos_lo;
   return t.scale * (d * cosine / (4 * (t.cos_o + c - t.cos_o * c)));
 }
 float charlie_sheen_reach(const LobeTerm&) { return 1; }

@@ -66,25 +66,26 @@ bool clearcoat_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
   return dot(wo, m) > 0 && wi.z > 0;
 }
 
-float disney_diffuse_shape(const LobeTerm& t, const AngleRange& r, Slant slant) {
+float disney_diffuse_shape(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   const float fo = schlick_weight(t.cos_o), rr = 2 * t.lobe->alpha_u;
   // Linear in the weight of wi, so greatest at an end; it grows with rr.
   const auto smooth = [&](float fi) {
     return (1 - 0.5f * fo) * (1 - 0.5f * fi) + rr * (fo + fi + fo * fi * (rr - 1));
   };
-  const float cosine = slant == Slant::cosine ? r.cos_hi : 1.0f;
+  const float cosine = factor == CosineFactor::cosine ? r.cos_hi : 1.0f;
   float most = std::max(smooth(schlick_weight(r.cos_lo)), smooth(schlick_weight(r.cos_hi))) * cosine;
   if (t.lobe->extra > 0) {
     // ss·(1/(co + ci) - 1/2) + 1/2, where ss ≤ 1 and the bracket is not negative.
     const float ss = square(std::max(1.0f, 0.5f * rr));
-    const float flat = slant == Slant::cosine ? r.cos_hi / (t.cos_o + r.cos_hi) : 1 / (t.cos_o + r.cos_lo);
+    const float flat =
+        factor == CosineFactor::cosine ? r.cos_hi / (t.cos_o + r.cos_hi) : 1 / (t.cos_o + r.cos_lo);
     most = lerp(most, 1.25f * ss * flat, t.lobe->extra);
   }
   return most;
 }
 
-Rgb disney_diffuse_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  return t.scale * disney_diffuse_shape(t, r, slant);
+Rgb disney_diffuse_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  return t.scale * disney_diffuse_shape(t, r, factor);
 }
 UnderCoat disney_under_coat(LobeView view) { return {UnderCoat::Sort::diffuse, view.lobe.color}; }
 
@@ -94,8 +95,8 @@ float schlick_importance(LobeView view, float cos_o) {
 }
 
 float sheen_factor(const Lobe&, float, float) { return 1; }
-Rgb sheen_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  return t.scale * (schlick_weight(r.half_lo) * (slant == Slant::cosine ? r.cos_hi : 1.0f));
+Rgb sheen_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  return t.scale * (schlick_weight(r.half_lo) * (factor == CosineFactor::cosine ? r.cos_hi : 1.0f));
 }
 float sheen_reach(const LobeTerm&) { return 1; }
 
@@ -103,11 +104,11 @@ float clearcoat_factor(const Lobe& lobe, float cos_o, float) {
   const float a2 = square(lobe.alpha_u);
   return masking(NormalDistribution::ggx, cos_o, kCoatMaskAlpha) * kInvPi * (a2 - 1) / std::log(a2);
 }
-Rgb clearcoat_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
+Rgb clearcoat_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   const float f = lerp(schlick_weight(r.half_lo), 1.0f, 0.04f);
   const float d = 1 / (square(r.tilt_sin) + square(t.lobe->alpha_u * r.tilt_cos));
   return t.scale * (f * d * masking(NormalDistribution::ggx, r.cos_hi, kCoatMaskAlpha) *
-                    (slant == Slant::cosine ? r.cos_hi : 1.0f));
+                    (factor == CosineFactor::cosine ? r.cos_hi : 1.0f));
 }
 float clearcoat_roughness(const Lobe& lobe) { return lobe.alpha_u; }
 

@@ -20,8 +20,8 @@ Rgb color_albedo(LobeView view, Vec3f) { return view.lobe.color; }
 float color_importance(LobeView view, float) { return mean(view.lobe.color); }
 float inverse_pi(const Lobe&, float, float) { return kInvPi; }
 
-Rgb constant_bound(const LobeTerm& term, const AngleRange& range, Slant slant) {
-  return term.scale * (slant == Slant::cosine ? range.cos_hi : 1.0f);
+Rgb constant_bound(const LobeTerm& term, const AngleRange& range, CosineFactor factor) {
+  return term.scale * (factor == CosineFactor::cosine ? range.cos_hi : 1.0f);
 }
 
 float reach_of_alpha(const LobeTerm& term) { return std::clamp(term.widest, 1e-4f, 1.0f); }

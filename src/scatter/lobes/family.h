@@ -33,8 +33,8 @@ struct UnderCoat {
   enum class Sort : std::uint8_t { lost, diffuse, glossy };  // lost: next to nothing comes back to the layer
   Sort sort = Sort::lost;
   Rgb albedo{0};  // at normal incidence
-  // Glossy ones alone: the albedo at a slant, and the microfacets that are as wide.
-  Rgb slanted{0};
+  // Glossy ones alone: the albedo at 60 degrees, and the microfacets that are as wide.
+  Rgb oblique_albedo{0};
   NormalDistribution distribution = NormalDistribution::beckmann;
   float alpha = 0;  // at most 1 where they are GGX or Beckmann themselves
   float width = 0;  // the same without that limit
@@ -57,7 +57,7 @@ bool cosine_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
 Rgb color_albedo(LobeView view, Vec3f wo);
 float color_importance(LobeView view, float cos_o);
 float inverse_pi(const Lobe& lobe, float cos_o, float narrowest);
-Rgb constant_bound(const LobeTerm& term, const AngleRange& range, Slant slant);
+Rgb constant_bound(const LobeTerm& term, const AngleRange& range, CosineFactor factor);
 float reach_of_alpha(const LobeTerm& term);
 
 // Directions as in lobe.h: local, mirrored so that wo.z > 0, without the lobe's coat and sheen.
@@ -75,10 +75,11 @@ struct LobeFamily {
   // it, times the cosine if asked for (refracting: without the Jacobian's denominator); how far the lobe
   // reaches from its mirror direction, about.
   float (*factor_of_wo)(const Lobe& lobe, float cos_o, float narrowest) = inverse_pi;
-  Rgb (*bound)(const LobeTerm& term, const AngleRange& range, Slant slant) = constant_bound;
+  Rgb (*bound)(const LobeTerm& term, const AngleRange& range, CosineFactor factor) = constant_bound;
   float (*reach)(const LobeTerm& term) = reach_of_alpha;
   // The same of a fibre, at all w whose latitudes (radians) lie between the two.
-  Rgb (*fibre_bound)(const LobeTerm& term, float latitude_o, float lo, float hi, Slant slant) = nullptr;
+  Rgb (*fibre_bound)(const LobeTerm& term, float latitude_o, float lo, float hi,
+                     CosineFactor factor) = nullptr;
   bool bound_by_cosine = false;  // the bound takes of the range the cosines alone
   bool bound_by_mirror = false;  // it takes the cosine with the mirror direction
   bool power = false;            // alpha_u is the exponent of a cosine, and multiplies its rounding

@@ -103,10 +103,10 @@ float hair_specular_factor(const Lobe& lobe, float, float) { return lobe.alpha_v
 float most_sine_of(float lo, float hi) {
   return lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
 }
-Rgb hair_diffuse_bound(const LobeTerm& t, float, float lo, float hi, Slant slant) {
-  return t.scale * (slant == Slant::cosine ? most_sine_of(lo, hi) : 1.0f);
+Rgb hair_diffuse_bound(const LobeTerm& t, float, float lo, float hi, CosineFactor factor) {
+  return t.scale * (factor == CosineFactor::cosine ? most_sine_of(lo, hi) : 1.0f);
 }
-Rgb hair_specular_bound(const LobeTerm& t, float latitude_o, float lo, float hi, Slant slant) {
+Rgb hair_specular_bound(const LobeTerm& t, float latitude_o, float lo, float hi, CosineFactor factor) {
   const float least_sine = std::min(std::cos(lo), std::cos(hi));  // of the angle to the fibre
   const float most_sine = most_sine_of(lo, hi);
   const float from = latitude_o + lo, to = latitude_o + hi;
@@ -114,7 +114,7 @@ Rgb hair_specular_bound(const LobeTerm& t, float latitude_o, float lo, float hi,
   if (off >= kPi / 2) return Rgb(0);
   // c/max(co, c)² ≤ 1/max(co, c); the denominator does not count below 1e-8.
   const float larger = std::max({t.cos_o, least_sine, 1e-4f});
-  const float share = slant == Slant::cosine
+  const float share = factor == CosineFactor::cosine
                           ? std::min(1 / larger, most_sine / square(std::max(t.cos_o, 1e-4f)))
                           : 1 / square(larger);
   return t.scale * (std::pow(std::cos(off), t.lobe->alpha_u) * share);

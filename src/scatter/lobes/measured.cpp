@@ -123,16 +123,16 @@ void over_half_vectors(Vec3f wo, Visit&& visit) {
   }
 }
 
-Vec3f slanted(float cosine) { return {std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine}; }
+Vec3f at_cosine(float cosine) { return {std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine}; }
 
 void integrate_albedos(MeasuredTable& table) {
   for (int k = 0; k < kAlbedos; ++k) {
-    const Vec3f wo = slanted(albedo_cosine(k));
+    const Vec3f wo = at_cosine(albedo_cosine(k));
     Rgb& sum = table.raw[static_cast<std::size_t>(k)];
     over_half_vectors(wo, [&](Vec3f wi, float angle) { sum += table.at(wo, wi) * (wi.z * angle); });
   }
   for (int k = 0; k < kAlbedos; ++k) {
-    const Vec3f wo = slanted(albedo_cosine(k));
+    const Vec3f wo = at_cosine(albedo_cosine(k));
     Rgb sum(0);
     over_half_vectors(wo, [&](Vec3f wi, float angle) {
       sum += not_above_albedo(table, table.at(wo, wi), wo.z, wi.z) * (wi.z * angle);
@@ -150,7 +150,7 @@ void fit_draws(MeasuredTable& table) {
   std::vector<Seen> seen[3];
   double all[3] = {0, 0, 0};
   for (int k = 0; k < 3; ++k) {
-    const Vec3f wo = slanted(std::array{0.95f, 0.7f, 0.35f}[static_cast<std::size_t>(k)]);
+    const Vec3f wo = at_cosine(std::array{0.95f, 0.7f, 0.35f}[static_cast<std::size_t>(k)]);
     over_half_vectors(wo, [&](Vec3f wi, float angle) {
       const float flux = mean(table.at(wo, wi)) * wi.z;
       seen[k].push_back({wo, wi, flux, angle});
@@ -228,14 +228,14 @@ float measured_importance(LobeView view, float cos_o) {
 
 float measured_factor(const Lobe&, float, float) { return 1; }
 
-Rgb measured_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
+Rgb measured_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   const MeasuredTable& table = table_of(*t.lobe);
   // A thousandth of a cell is for the roundings of angles.
   const float h = cells_of_half(std::atan2(r.tilt_sin, r.tilt_cos), table.n_h) - 1e-3f;
   const float d = cells_of_difference(std::acos(std::clamp(r.half_lo, 0.0f, 1.0f)), table.n_d) + 1e-3f;
   const std::size_t row = between(h, table.n_h).a, column = between(d, table.n_d).b;
   return t.scale * table.max[row * static_cast<std::size_t>(table.n_d) + column] *
-         (slant == Slant::cosine ? r.cos_hi : 1.0f);
+         (factor == CosineFactor::cosine ? r.cos_hi : 1.0f);
 }
 
 float measured_roughness(const Lobe& lobe) { return table_of(lobe).alpha; }

@@ -154,7 +154,7 @@ void widen_facets(Lobe& lobe, const Widening& by) {
   lobe.alpha_u = by(lobe.alpha_u), lobe.alpha_v = by(lobe.alpha_v);
 }
 
-float normals(const LobeTerm& t, const AngleRange& r) {
+float ndf_bound(const LobeTerm& t, const AngleRange& r) {
   const float scale = kInvPi / (t.widest * t.narrowest);
   if (t.lobe->distribution == NormalDistribution::beckmann) return scale * gaussian_slopes(r, t.widest);
   float q = square(r.tilt_sin / t.widest) + square(r.tilt_cos);
@@ -163,8 +163,8 @@ float normals(const LobeTerm& t, const AngleRange& r) {
 }
 
 // G1, or G1 over the cosine: bounded at grazing angles.
-float masked(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  if (slant == Slant::cosine) return masking(t.lobe->distribution, r.cos_hi, t.narrowest);
+float masking_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  if (factor == CosineFactor::cosine) return masking(t.lobe->distribution, r.cos_hi, t.narrowest);
   const float c = r.cos_lo, alpha = std::min(t.narrowest, 1.0f);
   if (t.lobe->distribution == NormalDistribution::ggx)
     return 2 / (c + std::sqrt(alpha * alpha + (1 - alpha * alpha) * c * c));
@@ -177,9 +177,9 @@ float masked(const LobeTerm& t, const AngleRange& r, Slant slant) {
 // there: the greatest is at one of the ends.
 Rgb reflectance(const LobeTerm& t, const AngleRange& r) {
   if (t.lobe->fresnel == FresnelKind::none) return Rgb(1);
-  const Rgb slanted = lobe_fresnel({*t.lobe, t.eta, true}, r.half_lo);
-  return {std::max(t.at_normal.r, slanted.r), std::max(t.at_normal.g, slanted.g),
-          std::max(t.at_normal.b, slanted.b)};
+  const Rgb at_half = lobe_fresnel({*t.lobe, t.eta, true}, r.half_lo);
+  return {std::max(t.at_normal.r, at_half.r), std::max(t.at_normal.g, at_half.g),
+          std::max(t.at_normal.b, at_half.b)};
 }
 
 float reflect_factor(const Lobe& lobe, float cos_o, float narrowest) {
@@ -188,11 +188,11 @@ float reflect_factor(const Lobe& lobe, float cos_o, float narrowest) {
 float transmit_factor(const Lobe& lobe, float cos_o, float narrowest) {
   return masking(lobe.distribution, cos_o, narrowest) / cos_o;
 }
-Rgb reflect_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  return t.scale * reflectance(t, r) * (normals(t, r) * masked(t, r, slant));
+Rgb reflect_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  return t.scale * reflectance(t, r) * (ndf_bound(t, r) * masking_bound(t, r, factor));
 }
-Rgb transmit_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  return t.scale * (normals(t, r) * masked(t, r, slant));
+Rgb transmit_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  return t.scale * (ndf_bound(t, r) * masking_bound(t, r, factor));
 }
 
 }  // namespace

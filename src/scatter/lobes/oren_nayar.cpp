@@ -29,7 +29,8 @@ Rgb oren_nayar_value(LobeView view, Vec3f wo, Vec3f wi) {
 }
 
 // Of the direct and of the interreflected part.
-void oren_nayar_parts(const LobeTerm& t, const AngleRange& r, Slant slant, float& direct, float& indirect) {
+void oren_nayar_parts(const LobeTerm& t, const AngleRange& r, CosineFactor factor, float& direct,
+                      float& indirect) {
   const float s2 = square(t.lobe->alpha_u);
   const float c1 = 1 - 0.5f * s2 / (s2 + 0.33f), c2 = 0.45f * s2 / (s2 + 0.09f),
               c3 = 0.125f * s2 / (s2 + 0.09f);
@@ -37,16 +38,16 @@ void oren_nayar_parts(const LobeTerm& t, const AngleRange& r, Slant slant, float
   // β is the smaller angle: its tangent is at most either's.
   const float most = std::max(t.cos_o, lo), tan_beta = std::sqrt(std::max(0.0f, 1 - most * most)) / most;
   const float tan_half = 2 / (t.cos_o + r.cos_lo);
-  const float cosine = slant == Slant::cosine ? r.cos_hi : 1.0f;
+  const float cosine = factor == CosineFactor::cosine ? r.cos_hi : 1.0f;
   float across = c2 * tan_beta * cosine;
-  if (slant == Slant::cosine) across = std::min(across, c2);  // tan β·cos θi ≤ sin θi
+  if (factor == CosineFactor::cosine) across = std::min(across, c2);  // tan β·cos θi ≤ sin θi
   direct = c1 * cosine + std::max(across, c3 * tan_half * cosine);
   indirect = 0.17f * s2 / (s2 + 0.13f) * 2 * cosine;
 }
 
-Rgb oren_nayar_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
+Rgb oren_nayar_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   float direct, indirect;
-  oren_nayar_parts(t, r, slant, direct, indirect);
+  oren_nayar_parts(t, r, factor, direct, indirect);
   return t.scale * direct + t.at_normal * indirect;
 }
 UnderCoat oren_nayar_under_coat(LobeView view) { return {UnderCoat::Sort::diffuse, view.lobe.color}; }

@@ -28,9 +28,10 @@ bool phong_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 }
 
 float phong_factor(const Lobe& lobe, float, float) { return (lobe.alpha_u + 2) * (0.5f * kInvPi); }
-Rgb phong_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
+Rgb phong_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   if (!(r.cos_mirror > 0)) return Rgb(0);
-  return t.scale * (std::pow(r.cos_mirror, t.lobe->alpha_u) * (slant == Slant::cosine ? r.cos_hi : 1.0f));
+  return t.scale *
+         (std::pow(r.cos_mirror, t.lobe->alpha_u) * (factor == CosineFactor::cosine ? r.cos_hi : 1.0f));
 }
 // The width of Beckmann's microfacets that are about as sharp.
 float alpha_of(const Lobe& lobe) { return std::sqrt(2 / (lobe.alpha_u + 2)); }

@@ -50,23 +50,23 @@ float ward_factor(const Lobe& lobe, float cos_o, float) {
   const float area = kPi * lobe.alpha_u * lobe.alpha_v;
   return 1 / (area * (lobe.variant == 0 ? 4 * std::sqrt(cos_o) : lobe.variant == 1 ? 4 * cos_o : 1.0f));
 }
-float ward_shape(const LobeTerm& t, const AngleRange& r, Slant slant) {
+float ward_shape(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   const float lo = std::max(r.cos_lo, kLeastCosine);
   if (t.lobe->variant == 2) {
     // |h|²·exp(-tan²/α²)/h_z⁴ = exp(-tan²/α²)/cos⁴ / |h|², |h| = 2·cos(d/2) and no less than h_z.
     const float len2 = std::max(square(2 * r.half_lo), square(t.cos_o + r.cos_lo));
     const float shape = gaussian_slopes(r, t.widest);
-    if (slant == Slant::none) return shape / len2;
+    if (factor == CosineFactor::none) return shape / len2;
     return shape * std::min(r.cos_hi / len2, 1 / (4 * t.cos_o));  // c/(c_o + c)² has its peak at c_o
   }
   const float gaussian = std::exp(-square(r.tilt_sin / (std::max(r.tilt_cos, 1e-6f) * t.widest)));
   if (t.lobe->variant == 0)
-    return gaussian * (slant == Slant::none ? 1 / std::sqrt(lo) : std::sqrt(r.cos_hi));
-  return gaussian * (slant == Slant::none ? 1 / lo : 1.0f);
+    return gaussian * (factor == CosineFactor::none ? 1 / std::sqrt(lo) : std::sqrt(r.cos_hi));
+  return gaussian * (factor == CosineFactor::none ? 1 / lo : 1.0f);
 }
 
-Rgb ward_bound(const LobeTerm& t, const AngleRange& r, Slant slant) {
-  return t.scale * ward_shape(t, r, slant);
+Rgb ward_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
+  return t.scale * ward_shape(t, r, factor);
 }
 float ward_roughness(const Lobe& lobe) { return std::min(lobe.alpha_u, lobe.alpha_v); }
 UnderCoat ward_under_coat(LobeView view) {

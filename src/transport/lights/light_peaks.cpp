@@ -23,8 +23,8 @@ std::vector<LightPeak> light_peaks(const VirtualLights& lights) {
         fibre = fibre || scatter::is_hair(lobe.kind);
         peak.one_sided = peak.one_sided && !fibre && !scatter::shines_through(lobe.kind);
       }
-      peak.max_f = bound.anywhere(scatter::Slant::none);
-      peak.max_f_cos = bound.anywhere(scatter::Slant::cosine);
+      peak.max_f = bound.anywhere(scatter::CosineFactor::none);
+      peak.max_f_cos = bound.anywhere(scatter::CosineFactor::cosine);
       // The two normals' cosines differ by no more than the normals do.
       if (!fibre) peak.max_f_cos += peak.max_f * length(n - lights.ng[j]);
     }

@@ -23,7 +23,7 @@ Lane schlick_weight(Lane cosine) {
 }
 
 // scatter::ward_value; the constants of each variant are in the colour.
-Lane ward(const ScatterGroup& group, int variant, const LobeLanes& lobe, const Meeting& at) {
+Lane ward(const ScatterGroup& group, int variant, const LobeLanes& lobe, const LocalGeometry& at) {
   const Lane z2 = at.cos_m * at.cos_m;
   const Lane gaussian = exp_negative(-(shrunk(group, at.m, lobe) / z2));
   if (variant == 0) return gaussian / sqrt(at.cos_i);
@@ -32,7 +32,7 @@ Lane ward(const ScatterGroup& group, int variant, const LobeLanes& lobe, const M
 }
 
 // scatter::phong_value.
-Lane phong(const LobeLanes& lobe, const Meeting& at) {
+Lane phong(const LobeLanes& lobe, const LocalGeometry& at) {
   const Lane c = splat(2) * at.cos_o * at.cos_i - dot(at.wo, at.wi);
   const LaneMask near_mirror = c > kZero;
   const Lane exponent = min(lobe.alpha_u * log_positive(select(near_mirror, c, one())), kZero);
@@ -40,7 +40,7 @@ Lane phong(const LobeLanes& lobe, const Meeting& at) {
 }
 
 // scatter::oren_nayar_value. tan((α + β)/2) = (sin α + sin β)/(cos α + cos β).
-Lane3 oren_nayar(const LobeLanes& lobe, const Meeting& at) {
+Lane3 oren_nayar(const LobeLanes& lobe, const LocalGeometry& at) {
   const Lane sin_o = sqrt(max(kZero, one() - at.cos_o * at.cos_o)),
              sin_i = sqrt(max(kZero, one() - at.cos_i * at.cos_i));
   const Lane sin_sin = sin_o * sin_i;
@@ -64,7 +64,7 @@ Lane3 oren_nayar(const LobeLanes& lobe, const Meeting& at) {
 }
 
 // scatter::disney_diffuse_value.
-Lane disney_diffuse(const LobeLanes& lobe, const Meeting& at) {
+Lane disney_diffuse(const LobeLanes& lobe, const LocalGeometry& at) {
   const Lane fo = schlick_weight(at.cos_o), fi = schlick_weight(at.cos_i);
   const Lane rr = splat(2) * lobe.alpha_u * at.cos_d * at.cos_d;
   const Lane half = splat(0.5f);
@@ -78,20 +78,21 @@ Lane disney_diffuse(const LobeLanes& lobe, const Meeting& at) {
 constexpr float kCoatMask2 = 0.25f * 0.25f;  // of Disney's clear coat
 
 // scatter::clearcoat_value.
-Lane clearcoat(const ScatterGroup& group, const LobeLanes& lobe, const Meeting& at) {
+Lane clearcoat(const ScatterGroup& group, const LobeLanes& lobe, const LocalGeometry& at) {
   const Lane w = schlick_weight(at.cos_d), f = w + (one() - w) * splat(0.04f);
   const Lane a2 = lobe.alpha_u * lobe.alpha_u;
   const Lane g1 = masking(NormalDistribution::ggx, at.cos_i, splat(kCoatMask2) * sin2_of(group, at.i));
   return f * g1 / (sin2_of(group, at.m) + a2 * at.cos_m * at.cos_m);
 }
 
-Lane3 microfacet(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe, const Meeting& at) {
-  const Lane d = normals(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
+Lane3 microfacet(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe,
+                 const LocalGeometry& at) {
+  const Lane d = ndf(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
   const Lane g1 = masking(form.distribution, at.cos_i, stretched(group, at.i, lobe));
   return (lobe.color * fresnel(form.fresnel, lobe, at.cos_d)) * (d * g1 / at.cos_i);
 }
 
-Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe, const Meeting& at) {
+Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lobe, const LocalGeometry& at) {
   switch (form.lanes) {
     case LaneForm::interfaced_diffuse:
       return lobe.color * interface_transmittance(lobe, at.cos_i);
@@ -101,8 +102,7 @@ Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lo
       return microfacet(group, form, lobe, at);
     case LaneForm::thin_transmit: {
       const Lane f = fresnel_dielectric(at.cos_d, lobe.eta);
-      const Lane d =
-          normals(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
+      const Lane d = ndf(form.distribution, lobe.alpha_u * lobe.alpha_v, at.cos_m, shrunk(group, at.m, lobe));
       const Lane g1 = masking(form.distribution, at.cos_i, stretched(group, at.i, lobe));
       return lobe.color * ((one() - f) * d * g1 / at.cos_i);
     }
@@ -141,7 +141,8 @@ void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, c
     }
     case LaneForm::microfacet_reflect:
     case LaneForm::thin_transmit: {
-      const Lane g1 = masking(form.distribution, cos_o, stretched(group, across(group, wo, cos_o), lobe));
+      const Lane g1 =
+          masking(form.distribution, cos_o, stretched(group, tangent_slopes(group, wo, cos_o), lobe));
       lobe.color = lobe.color * (g1 / (splat(4) * cos_o));
       return;
     }
@@ -156,7 +157,7 @@ void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, c
       return;
     }
     case LaneForm::clearcoat: {
-      const Lane a2 = lobe.alpha_u * lobe.alpha_u, sin2 = sin2_of(group, across(group, wo, cos_o));
+      const Lane a2 = lobe.alpha_u * lobe.alpha_u, sin2 = sin2_of(group, tangent_slopes(group, wo, cos_o));
       const Lane g1 = masking(NormalDistribution::ggx, cos_o, splat(kCoatMask2) * sin2);
       lobe.color = lobe.color * (g1 * inv_pi * (a2 - one()) / log_positive(a2));
       return;
@@ -181,11 +182,11 @@ Lane3 under_coat(const ScatterGroup& group, const LobeForm& form, const LobeLane
                  const CoatLanes& coat, const Lane3& wi, Lane cos_i) {
   const Lane inside = coat_cosine(coat, cos_i);
   const LaneMask enters = inside > kZero;
-  Meeting at{coat.wo,    bent(group, coat, wi, cos_i, inside),
-             coat.cos_o, select(enters, inside, one()),
-             {},         {},
-             {},         {},
-             {}};
+  LocalGeometry at{coat.wo,    bent(group, coat, wi, cos_i, inside),
+                   coat.cos_o, select(enters, inside, one()),
+                   {},         {},
+                   {},         {},
+                   {}};
   find_half_vector(group, at);
   const Lane3 f = value(group, form, lobe, at) * coat_passage(coat, cos_i, inside);
   return select(enters, f, black());
@@ -222,7 +223,7 @@ Lane3 eval_behind(const ScatterGroup& group, const Lane3& wi, Lane cos_i, LaneMa
   Lane3 f = black();
   if (bits(lit) == 0) return f;
   const Lane3 mirrored = wi - group.n * (splat(2) * cos_i);
-  Meeting at{group.wo, mirrored, group.cos_o, select(lit, -cos_i, one()), {}, {}, {}, {}, {}};
+  LocalGeometry at{group.wo, mirrored, group.cos_o, select(lit, -cos_i, one()), {}, {}, {}, {}, {}};
   find_half_vector(group, at);
   for (std::size_t k = 0; k < form.lobes.size(); ++k) {
     if (!scatter::shines_through(form.lobes[k].kind)) continue;
@@ -242,7 +243,7 @@ Lane3 eval_lobes(const ScatterGroup& group, const Lane3& wi, LaneMask direct) {
   if (bits(lit) == 0) return behind;
   Lane3 f = black();
 
-  Meeting at{group.wo, wi, group.cos_o, select(lit, cos_i, one()), {}, {}, {}, {}, {}};
+  LocalGeometry at{group.wo, wi, group.cos_o, select(lit, cos_i, one()), {}, {}, {}, {}, {}};
   if (form.microfacets) find_half_vector(group, at);
   for (std::size_t k = 0; k < form.lobes.size(); ++k) {
     const LobeForm& kind = form.lobes[k];

@@ -25,7 +25,7 @@ inline Lane masking(scatter::NormalDistribution distribution, Lane z, Lane xy2) 
 }
 
 // The density of normals at cosine z; xy2: the square of the components across, over the roughness.
-inline Lane normals(scatter::NormalDistribution distribution, Lane alpha2, Lane z, Lane xy2) {
+inline Lane ndf(scatter::NormalDistribution distribution, Lane alpha2, Lane z, Lane xy2) {
   if (distribution == scatter::NormalDistribution::ggx) {
     const Lane d = xy2 + z * z;
     return splat(kInvPi) / (alpha2 * d * d);
@@ -35,12 +35,12 @@ inline Lane normals(scatter::NormalDistribution distribution, Lane alpha2, Lane 
 }
 
 // Components of a direction in the plane of the surface.
-struct Across {
+struct TangentSlopes {
   Lane x, y;  // anisotropic: along s and t
   Lane sin2;  // isotropic: x² + y²
 };
-inline Across across(const ScatterGroup& group, const Lane3& v, Lane cos_theta) {
-  Across out;
+inline TangentSlopes tangent_slopes(const ScatterGroup& group, const Lane3& v, Lane cos_theta) {
+  TangentSlopes out;
   if (group.form->anisotropic) {
     out.x = dot(v, group.s), out.y = dot(v, group.t);
   } else {
@@ -50,33 +50,33 @@ inline Across across(const ScatterGroup& group, const Lane3& v, Lane cos_theta) 
   }
   return out;
 }
-inline Lane stretched(const ScatterGroup& group, const Across& v, const LobeLanes& lobe) {
+inline Lane stretched(const ScatterGroup& group, const TangentSlopes& v, const LobeLanes& lobe) {
   if (!group.form->anisotropic) return v.sin2 * (lobe.alpha_u * lobe.alpha_u);
   const Lane x = v.x * lobe.alpha_u, y = v.y * lobe.alpha_v;
   return x * x + y * y;
 }
-inline Lane shrunk(const ScatterGroup& group, const Across& v, const LobeLanes& lobe) {
+inline Lane shrunk(const ScatterGroup& group, const TangentSlopes& v, const LobeLanes& lobe) {
   if (!group.form->anisotropic) return v.sin2 / (lobe.alpha_u * lobe.alpha_u);
   const Lane x = v.x / lobe.alpha_u, y = v.y / lobe.alpha_v;
   return x * x + y * y;
 }
 
-inline Lane sin2_of(const ScatterGroup& group, const Across& v) {
+inline Lane sin2_of(const ScatterGroup& group, const TangentSlopes& v) {
   return group.form->anisotropic ? v.x * v.x + v.y * v.y : v.sin2;
 }
 // A pair of directions on the side of n, outside or within a coat, and what lobes want to know of it.
-struct Meeting {
+struct LocalGeometry {
   Lane3 wo, wi;
   Lane cos_o, cos_i;
   Lane len2, cos_m, cos_d;  // of wo + wi: squared length; of the half vector: cosines with n and with wo
-  Across m, i;              // the half vector and wi
+  TangentSlopes m, i;       // the half vector and wi
 };
-inline void find_half_vector(const ScatterGroup& group, Meeting& at) {
+inline void find_half_vector(const ScatterGroup& group, LocalGeometry& at) {
   const Lane3 half = at.wo + at.wi;
   at.len2 = dot(half, half);
   const Lane3 normal = half * (splat(1) / sqrt(at.len2));
   at.cos_m = dot(group.n, normal), at.cos_d = dot(at.wo, normal);
-  at.m = across(group, normal, at.cos_m), at.i = across(group, at.wi, at.cos_i);
+  at.m = tangent_slopes(group, normal, at.cos_m), at.i = tangent_slopes(group, at.wi, at.cos_i);
 }
 
 }  // namespace lumirank::transport

@@ -8,8 +8,8 @@ namespace lumirank::transport {
 using matrix::ColumnSet;
 using matrix::Emission;
 using matrix::Index;
+using scatter::CosineFactor;
 using scatter::DirectionCone;
-using scatter::Slant;
 
 namespace {
 
@@ -117,8 +117,8 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
     }
     if (many_) {
       const scatter::ClosureBound bound = closure_bound(i);
-      most_ = greater(most_, bound.anywhere(Slant::cosine));
-      max_direct_ = greater(max_direct_, bound.anywhere(Slant::cosine, rules_.traced_direct_below));
+      most_ = greater(most_, bound.anywhere(CosineFactor::cosine));
+      max_direct_ = greater(max_direct_, bound.anywhere(CosineFactor::cosine, rules_.traced_direct_below));
     } else {
       closures_.push_back(closure_bound(i));
     }
@@ -131,7 +131,7 @@ Rgb SceneRowBounds::scattered(const DirectionCone& cone, float cosine, bool dire
   Rgb most = cosine > 0 ? matt_ * cosine : Rgb(0);
   if (many_) return cosine > 0 || behind_ ? greater(most, direct ? max_direct_ : most_) : most;
   for (const scatter::ClosureBound& closure : closures_)
-    most = greater(most, closure.within(cone, Slant::cosine, direct ? rules_.traced_direct_below : 0));
+    most = greater(most, closure.within(cone, CosineFactor::cosine, direct ? rules_.traced_direct_below : 0));
   return most;
 }
 
@@ -162,19 +162,19 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
       if (far > 0) cone.axis = d.center / far;
       if (radius < far) cone.angle = radius > 0 ? std::asin(radius / far) : 0.0f;
     }
-    bool slanted = set.emission == Emission::oriented;
+    bool has_cosine = set.emission == Emission::oriented;
     if (!set.spherical) {
       parts.near = d.distance2 > 0 ? 1 / d.distance2 : kInfinity;
     } else {
       parts.near = sphere_geometry(d.distance2, set.radius, set.min_radius, rules_.spheres.beyond);
       parts.far = std::min(parts.near, parts.far);
       const bool near = d.distance2 < square(kDiscReach * set.radius) * 1.00001f;
-      if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) slanted = false;
+      if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) has_cosine = false;
       // The centre's distance alone says whether a row is inside, where light comes from everywhere.
       if (d.distance2 <= set.radius * set.radius * 1.00001f) cone.angle = kPi, cosine = 1;
       if (sharp_) factor *= 3.5f;  // see SceneMatrix::column_set()
     }
-    if (slanted) {
+    if (has_cosine) {
       d.center = -d.center;
       const float cos_y = towards(greatest_cosine(set.cone.axis, d, set.cone.cosine >= 1), set.cone.cosine,
                                   sine_of(set.cone.cosine));

@@ -6,7 +6,7 @@ namespace lumirank::transport {
 namespace {
 
 bool has_lane_code(const scatter::Lobe& lobe) {
-  if (lobe.veil) return false;
+  if (lobe.sheen_layer) return false;
   if (lobe.coat && scatter::shines_through(lobe.kind)) return false;
   return scatter::family_of(lobe.kind).lanes != scatter::LaneForm::none;
 }
