@@ -82,20 +82,20 @@ void run(const Options& options) {
   for (std::size_t i = 0; i < matrix.rows(); i += step) {
     matrix.row(static_cast<matrix::Index>(i), row, matrix::Part::value);
     const float weight = max_component(prepared->receivers().weight[i]);
-    double sum = 0, most = 0;
+    double sum = 0, max_value = 0;
     for (std::size_t j = 0; j < lights.size(); ++j) {
       if (lights.kind[j] != transport::LightKind::surface) continue;
       const double value = static_cast<double>(weight) * max_component(row[j]);
-      column[j] += value, sum += value, most = std::max(most, value);
+      column[j] += value, sum += value, max_value = std::max(max_value, value);
     }
-    total += sum, strongest += most;
-    strongest_of_one = std::max(strongest_of_one, most);
+    total += sum, strongest += max_value;
+    strongest_of_one = std::max(strongest_of_one, max_value);
   }
   std::vector<double> powers;
-  double sum = 0, squares = 0, greatest = 0, mean_power = 0;
+  double sum = 0, squares = 0, max_value = 0, mean_power = 0;
   for (std::size_t j = 0; j < lights.size(); ++j) {
     if (!(column[j] > 0)) continue;
-    sum += column[j], squares += column[j] * column[j], greatest = std::max(greatest, column[j]);
+    sum += column[j], squares += column[j] * column[j], max_value = std::max(max_value, column[j]);
     powers.push_back(
         max_component(lights.power[j] * scatter::albedo(lights.closure_at(j), lights.incoming[j])));
     mean_power += powers.back();
@@ -105,7 +105,8 @@ void run(const Options& options) {
   std::printf("lights %zu (emitter samples %zu), paths %zu, %.2f s\n", lights.size(), lights.direct_count,
               lights.paths, seconds);
   std::printf("reach a receiver %zu, worth %.0f; strongest column %.2f %% of all indirect light\n",
-              powers.size(), squares > 0 ? sum * sum / squares : 0.0, 100 * greatest / std::max(sum, 1e-300));
+              powers.size(), squares > 0 ? sum * sum / squares : 0.0,
+              100 * max_value / std::max(sum, 1e-300));
   std::printf("power / mean: 10 %% %.3g, 50 %% %.3g, 90 %% %.3g, 99 %% %.3g, 99.9 %% %.3g, greatest %.3g\n",
               quantile(powers, 0.1) / mean_power, quantile(powers, 0.5) / mean_power,
               quantile(powers, 0.9) / mean_power, quantile(powers, 0.99) / mean_power,

@@ -74,11 +74,11 @@ void build_light_tree(benchmark::State& state) {
       return mean(set.intensity) * (length_squared(set.box.diagonal()) + 3 * square(1 - set.cone.cosine));
     };
     while (cut.size() < 1000) {
-      std::size_t most = 0;
+      std::size_t best = 0;
       for (std::size_t k = 1; k < cut.size(); ++k)
-        if (measure(cut[k]) > measure(cut[most])) most = k;
-      const auto node = cut[most];
-      cut[most] = tree.left(node), cut.push_back(tree.right(node));
+        if (measure(cut[k]) > measure(cut[best])) best = k;
+      const auto node = cut[best];
+      cut[best] = tree.left(node), cut.push_back(tree.right(node));
     }
     for (const auto node : cut) cost += static_cast<double>(measure(node));
     state.counters["measure of 1000"] = cost;

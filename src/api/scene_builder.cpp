@@ -19,11 +19,11 @@ namespace {
 
 bool finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-void require_color(const std::string& what, Rgb c, float highest) {
+void require_color(const std::string& what, Rgb c, float max_value) {
   for (int k = 0; k < 3; ++k)
-    if (!(c[k] >= 0 && c[k] <= highest))
+    if (!(c[k] >= 0 && c[k] <= max_value))
       throw InputError(what + " is " + std::to_string(c[k]),
-                       highest < kInfinity ? "give numbers from 0 to 1" : "give finite numbers from 0 on");
+                       max_value < kInfinity ? "give numbers from 0 to 1" : "give finite numbers from 0 on");
 }
 
 void require_share(const char* what, float x) {

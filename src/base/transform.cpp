@@ -44,9 +44,9 @@ Transform Transform::rotate(double x, double y, double z, double degrees) {
 Transform Transform::look_at(Vec3d origin, Vec3d target, Vec3f up) {
   const Vec3d way = target - origin;
   // Scaled first: the squares of tiny and huge numbers leave the range of float.
-  const double largest = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
-  const bool extreme = !(largest > 0x1p-40 && largest < 0x1p40) && largest > 0 && std::isfinite(largest);
-  return aimed(origin, static_cast<Vec3f>(extreme ? way * (1 / largest) : way), up);
+  const double max_abs = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+  const bool extreme = !(max_abs > 0x1p-40 && max_abs < 0x1p40) && max_abs > 0 && std::isfinite(max_abs);
+  return aimed(origin, static_cast<Vec3f>(extreme ? way * (1 / max_abs) : way), up);
 }
 
 Transform Transform::aimed(Vec3d origin, Vec3f direction, Vec3f up) {

@@ -19,8 +19,8 @@ namespace lumirank::emitters {
 class PreethamSky {
  public:
   // `to_sun` is a unit vector with +y up, above the horizon. The fits of the paper hold for turbidities 2 to
-  // about 6; below 1.7 the zenith's luminance turns negative, so the caller clamps to kLeastTurbidity.
-  static constexpr float kLeastTurbidity = 1.7f, kGreatestTurbidity = 10;
+  // about 6; below 1.7 the zenith's luminance turns negative, so the caller clamps to kMinTurbidity.
+  static constexpr float kMinTurbidity = 1.7f, kMaxTurbidity = 10;
   PreethamSky(float turbidity, Vec3f to_sun);
 
   // Radiance from a unit direction (+y up); black below the horizon.

@@ -44,7 +44,7 @@ void LightExtents::set(int k, const LightBound& bound) {
   const bool all_round = bound.spread >= kPi;
   spread_.cosine[k] = all_round ? -1.0f : std::cos(bound.spread);
   spread_.sine[k] = all_round ? 0.0f : std::sin(bound.spread);
-  least_cosine_[k] = bound.reach >= kPi / 2 ? 0.0f : std::cos(bound.reach);
+  min_cosine_[k] = bound.reach >= kPi / 2 ? 0.0f : std::cos(bound.reach);
   intensity_[k] = bound.intensity;
 }
 
@@ -69,7 +69,7 @@ void LightExtents::importance(const LitPoint& at, float out[kCount]) const {
   if (at.normal == Vec3f{}) received = one;
 
   const Lane value = intensity_ * emitted * received * inv2;
-  const Lane result = emitted > least_cosine_ ? (received > 0 ? value : zero) : zero;
+  const Lane result = emitted > min_cosine_ ? (received > 0 ? value : zero) : zero;
   std::memcpy(out, &result, sizeof result);
 }
 

@@ -32,7 +32,7 @@ class LightExtents {
   Lane center_x_{}, center_y_{}, center_z_{}, radius2_{};
   Lane axis_x_{}, axis_y_{}, axis_z_{};
   Angle spread_{};
-  Lane least_cosine_{};  // of the angle beyond all normals
+  Lane min_cosine_{};  // of the angle beyond all normals
   Lane intensity_{};
 };
 

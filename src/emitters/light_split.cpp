@@ -16,7 +16,7 @@ struct Bin {
   LightBound bound;
   Vec3f axes{0, 0, 0};
   std::size_t count = 0;
-  float least_cosine = 1;  // of the axis with those of flat lights
+  float min_cosine = 1;  // of the axis with those of flat lights
 
   void add(const LightItem& item) {
     bound.bounds.extend(item.bound.bounds);
@@ -32,13 +32,13 @@ struct Bin {
   void widen(const LightItem& item) {
     const float cosine = dot(bound.axis, item.bound.axis);
     if (item.bound.spread == 0) {
-      least_cosine = std::min(least_cosine, cosine);  // one arc cosine for all flat lights
+      min_cosine = std::min(min_cosine, cosine);  // one arc cosine for all flat lights
     } else {
       bound.spread = std::max(bound.spread, angle_of(cosine) + item.bound.spread);
     }
   }
   void set_spread() {
-    if (least_cosine < 1) bound.spread = std::max(bound.spread, angle_of(least_cosine));
+    if (min_cosine < 1) bound.spread = std::max(bound.spread, angle_of(min_cosine));
     bound.spread = std::min(bound.spread, kPi);
   }
   // The arc cosine of a rounded cosine is within 5·10⁻⁴ of the angle.

@@ -45,11 +45,11 @@ AngularProfile::AngularProfile(std::vector<float> theta, std::vector<float> phi,
     columns_.emplace_back(weights);
   }
   rows_ = Distribution1D(row_weights);
-  highest_ = *std::max_element(values_.begin(), values_.end());
+  max_value_ = *std::max_element(values_.begin(), values_.end());
   std::size_t first = 0, last = row_weights.size();
   while (first < last && !(row_weights[first] > 0)) ++first;
   while (last > first && !(row_weights[last - 1] > 0)) --last;
-  least_theta_ = theta_[first], greatest_theta_ = theta_[last];
+  min_theta_ = theta_[first], max_theta_ = theta_[last];
 }
 
 // The mean over phi is linear in theta: a + (b - a)·t, t = (θ - θ0)/h. By parts,

@@ -29,10 +29,10 @@ class AngularProfile {
   float pdf(Vec3f local) const;
 
   double integral() const { return rows_.total(); }  // ∫ eval dω, exact
-  float highest() const { return highest_; }
+  float max_value() const { return max_value_; }
   // All directions that are not dark lie between these polar angles.
-  float least_theta() const { return least_theta_; }
-  float greatest_theta() const { return greatest_theta_; }
+  float min_theta() const { return min_theta_; }
+  float max_theta() const { return max_theta_; }
   std::size_t memory_bytes() const;
 
  private:
@@ -49,7 +49,7 @@ class AngularProfile {
   std::vector<float> theta_, phi_, values_, cos_theta_;
   Distribution1D rows_;
   std::vector<Distribution1D> columns_;  // of each row of cells
-  float highest_ = 0, least_theta_ = 0, greatest_theta_ = 0;
+  float max_value_ = 0, min_theta_ = 0, max_theta_ = 0;
 };
 
 }  // namespace lumirank::emitters

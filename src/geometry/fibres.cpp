@@ -8,7 +8,7 @@ namespace lumirank::geometry {
 namespace {
 
 constexpr float kTurnPerSegment = 5 * kPi / 180;
-constexpr int kMostSegments = 24;
+constexpr int kMaxSegments = 24;
 
 struct Cubic {  // Bernstein form
   Vec3f p[4];
@@ -66,7 +66,7 @@ class Chain {
     open_ = true;
   }
   void add(const Cubic& piece) {
-    const int n = std::clamp(static_cast<int>(std::ceil(piece.turn() / kTurnPerSegment)), 1, kMostSegments);
+    const int n = std::clamp(static_cast<int>(std::ceil(piece.turn() / kTurnPerSegment)), 1, kMaxSegments);
     if (!open_) add(piece.at(0), piece_);
     for (int k = 1; k <= n; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(n);

@@ -23,12 +23,12 @@ RTCRay to_embree(const Ray& ray, float start) {
 
 // Embree's own bound of what it can trace; some builds of it (Debian's) abort beyond, so such rays are
 // answered here.
-constexpr float kLargest = 1.8e18f;
+constexpr float kMaxCoordinate = 1.8e18f;
 
 bool can_trace(const RTCRay& r) {
   bool good = true;
   for (const float x : {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z})
-    good &= std::abs(x) <= kLargest;
+    good &= std::abs(x) <= kMaxCoordinate;
   return good && r.tnear >= 0 && r.tnear <= r.tfar;
 }
 
@@ -106,10 +106,11 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
     rays.id[k] = k;
     rays.flags[k] = 0;
     // Integers and bitwise, so that the loop becomes a few vector instructions.
-    const int good = int{std::abs(packet.ox[k]) <= kLargest} & int{std::abs(packet.oy[k]) <= kLargest} &
-                     int{std::abs(packet.oz[k]) <= kLargest} & int{std::abs(packet.dx[k]) <= kLargest} &
-                     int{std::abs(packet.dy[k]) <= kLargest} & int{std::abs(packet.dz[k]) <= kLargest} &
-                     int{rays.tfar[k] >= kShadowEpsilon};
+    const int good =
+        int{std::abs(packet.ox[k]) <= kMaxCoordinate} & int{std::abs(packet.oy[k]) <= kMaxCoordinate} &
+        int{std::abs(packet.oz[k]) <= kMaxCoordinate} & int{std::abs(packet.dx[k]) <= kMaxCoordinate} &
+        int{std::abs(packet.dy[k]) <= kMaxCoordinate} & int{std::abs(packet.dz[k]) <= kMaxCoordinate} &
+        int{rays.tfar[k] >= kShadowEpsilon};
     valid[k] = good ? packet.valid[k] : 0;
   }
   if (context.scene->run_up > 0) run_up(*context.scene, rays);

@@ -30,10 +30,11 @@ void jpeg_warned(j_common_ptr) {}
 // Every scan of a progressive file costs a pass over all its pixels, and a scan may be a few bytes long.
 // Real files have about ten.
 void limit_scans(j_common_ptr info) {
-  constexpr int kMost = 500;
-  if (!info->is_decompressor || reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMost) return;
+  constexpr int kMaxScans = 500;
+  if (!info->is_decompressor || reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMaxScans)
+    return;
   auto* errors = reinterpret_cast<JpegErrors*>(info->err);
-  std::snprintf(errors->message, sizeof errors->message, "it has more than %d scans", kMost);
+  std::snprintf(errors->message, sizeof errors->message, "it has more than %d scans", kMaxScans);
   std::longjmp(errors->back, 1);
 }
 

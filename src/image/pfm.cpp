@@ -77,8 +77,8 @@ Image read_pfm(const std::string& filename, std::size_t max_pixels) {
     throw InputError(SourceLocation{filename, 0},
                      std::string("cannot open the image: ") + std::strerror(errno));
   const Header header = read_header(in, filename);
-  constexpr long long most = std::numeric_limits<int>::max();
-  if (header.width <= 0 || header.height <= 0 || header.width > most || header.height > most)
+  constexpr long long max_size = std::numeric_limits<int>::max();
+  if (header.width <= 0 || header.height <= 0 || header.width > max_size || header.height > max_size)
     throw InputError(SourceLocation{filename, 0},
                      "the image's size in its header is not positive, or absurd");
   const auto pixels =

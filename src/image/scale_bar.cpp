@@ -78,11 +78,11 @@ Range round_range(const Image& values) {
   if (v.empty()) return {};
   const auto place = static_cast<std::ptrdiff_t>(v.size() - 1 - v.size() / 200);
   std::nth_element(v.begin(), v.begin() + place, v.end());
-  const float most = v[static_cast<std::size_t>(place)];
-  if (!(most > 0)) return {};
-  const double power = std::pow(10.0, std::floor(std::log10(double{most})));
+  const float max_value = v[static_cast<std::size_t>(place)];
+  if (!(max_value > 0)) return {};
+  const double power = std::pow(10.0, std::floor(std::log10(double{max_value})));
   for (const double step : {1.0, 2.0, 3.0, 5.0, 10.0})
-    if (most <= step * power * (1 + 1e-6)) return {0, static_cast<float>(step * power)};
+    if (max_value <= step * power * (1 + 1e-6)) return {0, static_cast<float>(step * power)};
   return {0, static_cast<float>(10 * power)};
 }
 

@@ -51,7 +51,7 @@ double ColumnSketch::add_row(std::uint64_t id, float weight, std::span<const flo
       scalar[j - begin] = std::sqrt(sum);
       some += static_cast<double>(scalar[j - begin]);
     }
-    const float scale = scale_for(largest_of({scalar, end - begin})), inverse = 1 / scale;
+    const float scale = scale_for(max_abs_of({scalar, end - begin})), inverse = 1 / scale;
     batch_scale_[b * blocks(columns_) + begin / kSketchBlock] = scale;
     std::uint16_t* out = batch_.data() + b * columns_ + begin;
     for (std::size_t k = 0; k < end - begin; ++k) out[k] = shorten(scalar[k] * inverse);

@@ -92,10 +92,10 @@ void LocalSplitter::choose_line(const Node& node) {
     if (norms_[k] > norms_[heaviest]) heaviest = k;
   const float* a = point(heaviest);
   std::size_t farthest = node.begin;
-  float most = -1;
+  float max_cost = -1;
   for (std::size_t k = node.begin; k < node.end; ++k) {
     const float cost = norms_[heaviest] * norms_[k] - short_dot<kLanes>(a, point(k), padded_);
-    if (cost > most && k != heaviest) most = cost, farthest = k;
+    if (cost > max_cost && k != heaviest) max_cost = cost, farthest = k;
   }
   const float *b = point(farthest), na = 1 / norms_[heaviest], nb = 1 / norms_[farthest];
   for (std::size_t d = 0; d < padded_; ++d) line_[d] = a[d] * na - b[d] * nb;
@@ -139,13 +139,13 @@ std::uint32_t LocalSplitter::cut(const Node& node) {
   for (std::size_t k = node.begin; k < node.end; ++k)
     add_to<kLanes>(bins_.data() + bin_of(keys_[k]) * stride, point(k), norms_[k], padded_);
   add_bins(0, kBins, right);
-  double least = std::numeric_limits<double>::infinity();
+  double min_cost = std::numeric_limits<double>::infinity();
   std::size_t bins_left = 1;
   for (std::size_t b = 0; b + 1 < kBins; ++b) {
     add_bins(b, b + 1, left);
     for (std::size_t d = 0; d < stride; ++d) right[d] -= bins_[b * stride + d];
     const double cost = short_cost(left, padded_) + short_cost(right, padded_);
-    if (cost < least) least = cost, bins_left = b + 1;
+    if (cost < min_cost) min_cost = cost, bins_left = b + 1;
   }
   // Afresh, so that no difference of large numbers is carried on.
   std::fill(left, right + stride, 0.0);

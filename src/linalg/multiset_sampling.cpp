@@ -95,7 +95,7 @@ void nearest_centres(const Points& points, std::span<const double> norms,
       label[p + a] = 0;
     }
     std::uint32_t* at = label + p;
-    float* least = best.data();
+    float* min_distances = best.data();
     for (std::size_t q = 0; q < scales.size(); q += kCentreBlock) {
       const std::size_t centres = std::min(kCentreBlock, scales.size() - q);
       gemm({centres, count, dim, false, true}, units.data() + q * dim, dim, block.data(), dim, cosine.data(),
@@ -108,8 +108,8 @@ void nearest_centres(const Points& points, std::span<const double> norms,
         for (std::size_t a = 0; a < count; ++a) {
           const float angle = 1.0f - row[a];
           const float distance = angle > kSameDirection ? scale * angle : 0.0f;
-          const bool nearer = distance < kNearer * least[a];
-          least[a] = nearer ? distance : least[a];
+          const bool nearer = distance < kNearer * min_distances[a];
+          min_distances[a] = nearer ? distance : min_distances[a];
           at[a] = nearer ? number : at[a];
         }
       }
@@ -123,9 +123,9 @@ Partition assign_to_centres(const Points& points, std::span<const double> norms,
                             const Centres& centres) {
   const std::size_t dim = points.dimension;
   // Scales only matter by their ratios; the largest is made 1 to stay within single precision.
-  double largest = 0;
+  double max_scale = 0;
   for (std::size_t k = 0; k < centres.position.size(); ++k)
-    largest = std::max(largest, centres.weight[k] * norms[groups.order[centres.position[k]]]);
+    max_scale = std::max(max_scale, centres.weight[k] * norms[groups.order[centres.position[k]]]);
 
   Partition result;
   result.order.reserve(groups.order.size());
@@ -142,7 +142,7 @@ Partition assign_to_centres(const Points& points, std::span<const double> norms,
       const PointReader reader(points);
       for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t j = groups.order[centres.position[first + k]];
-        scales[k] = static_cast<float>(centres.weight[first + k] * norms[j] / largest);
+        scales[k] = static_cast<float>(centres.weight[first + k] * norms[j] / max_scale);
         reader.read(j, units.data() + k * dim, static_cast<float>(1 / norms[j]));
       }
       parallel_for(members.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -8,9 +8,9 @@
 namespace lumirank::linalg {
 
 float pack_point(std::span<const float> point, std::int16_t* out) {
-  const float largest = largest_of(point);
+  const float max_abs = max_abs_of(point);
   // |v| < 2·scale; units below the least normal number would have no inverse.
-  const float unit = std::max(scale_for(largest) * 0x1p-14f, 0x1p-126f);
+  const float unit = std::max(scale_for(max_abs) * 0x1p-14f, 0x1p-126f);
   const float inverse = 1 / unit;
   for (std::size_t d = 0; d < point.size(); ++d) {
     const float scaled = point[d] * inverse;

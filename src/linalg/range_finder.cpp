@@ -43,10 +43,10 @@ void orthonormalise(std::span<float> vectors, std::size_t k, std::size_t n) {
   }
 }
 
-RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t most,
+RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t max_rank,
                       std::uint64_t seed, const RangeSpace& space) {
   RangeFound found;
-  const std::size_t s = std::min({most, kMax, rows, columns}), m = rows;
+  const std::size_t s = std::min({max_rank, kMax, rows, columns}), m = rows;
   if (s == 0) return found;
   float* const x = space.x.data();
   std::fill_n(x, s * m, 0.0f);
@@ -80,12 +80,12 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
   const auto& squares = eigen.eigenvalues();
   double inside = 0;
   for (Eigen::Index a = 0; a < squares.size(); ++a) inside += std::max(squares[a], 0.0);
-  const double least = static_cast<double>(std::min(rows, columns)),
-               larger = static_cast<double>(std::max(rows, columns));
+  const double min_side = static_cast<double>(std::min(rows, columns)),
+               max_side = static_cast<double>(std::max(rows, columns));
   const double outside = std::max(energy - inside, 1e-10 * energy);
-  const double directions = std::max(least - static_cast<double>(s), 1.0);
+  const double directions = std::max(min_side - static_cast<double>(s), 1.0);
   const double edge =
-      outside / directions * (1 + std::sqrt(least / larger)) * (1 + std::sqrt(least / larger));
+      outside / directions * (1 + std::sqrt(min_side / max_side)) * (1 + std::sqrt(min_side / max_side));
   for (std::size_t a = 0; a < s; ++a) {
     const double square = std::max(squares[squares.size() - 1 - static_cast<Eigen::Index>(a)], 0.0);
     space.values[a] = std::sqrt(square);

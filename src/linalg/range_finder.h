@@ -9,14 +9,14 @@
 namespace lumirank::linalg {
 
 struct RangeSpace {
-  std::span<float> x;         // most × rows, orthonormal; of it the first rank × rows are the result
+  std::span<float> x;         // max_rank × rows, orthonormal; of it the first rank × rows are the result
   std::span<float> gathered;  // as large
-  std::span<float> y;         // at least 16 × most
+  std::span<float> y;         // at least 16 × max_rank
   std::span<float> block;     // unused rows are left alone
-  std::span<double> values;   // most
+  std::span<double> values;   // max_rank
 };
 struct RangeFound {
-  std::size_t rank = 0;    // 1 … most, or 0 if the matrix is zero
+  std::size_t rank = 0;    // 1 … max_rank, or 0 if the matrix is zero
   std::size_t values = 0;  // leading singular values, descending, in RangeSpace::values
   double norm = 0;         // Frobenius
 };
@@ -26,7 +26,7 @@ struct RangeFound {
 // is above what noise with the energy of all that lies outside the range would reach
 // (σ²(√rows + √columns)², the edge of Marchenko and Pastur's law).
 // The matrix lies column after column.
-RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t most,
+RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t max_rank,
                       std::uint64_t seed, const RangeSpace& space);
 
 // k vectors of length n, one after the other: Gram and Schmidt twice. A vector that depends on those before

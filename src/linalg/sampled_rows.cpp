@@ -14,7 +14,7 @@ void SampledRows::add(std::span<const float> row) {
                        std::vector<float>((columns_ + kStretch - 1) / kStretch * kBlockRows, 0.0f)});
   Block& block = blocks_.back();
   parallel_for(columns_, kStretch, [&](std::size_t begin, std::size_t end) {
-    const float scale = scale_for(largest_of(row.subspan(begin, end - begin))), inverse = 1 / scale;
+    const float scale = scale_for(max_abs_of(row.subspan(begin, end - begin))), inverse = 1 / scale;
     block.scale[begin / kStretch * kBlockRows + place] = scale;
     for (std::size_t j = begin; j < end; ++j)
       block.entries[j * kBlockRows + place] = shorten(row[j] * inverse);

@@ -12,17 +12,17 @@ namespace lumirank::linalg {
 
 // The greatest magnitude. Bit patterns of numbers ≥ 0 are in the order of the numbers, and the greatest
 // integer is found in vectors.
-inline float largest_of(std::span<const float> values) {
+inline float max_abs_of(std::span<const float> values) {
   std::uint32_t bits = 0;
   for (float v : values) bits = std::max(bits, std::bit_cast<std::uint32_t>(v) & 0x7fffffffu);
   return std::bit_cast<float>(bits);
 }
 
-// The power of two below `largest` (1 for 0): numbers are divided by it before they are shortened. Kept so
+// The power of two below `max_abs` (1 for 0): numbers are divided by it before they are shortened. Kept so
 // large that its inverse is a number as well.
-inline float scale_for(float largest) {
-  const std::uint32_t exponent = std::clamp(std::bit_cast<std::uint32_t>(largest) >> 23, 1u, 253u);
-  return largest > 0 ? std::bit_cast<float>(exponent << 23) : 1.0f;
+inline float scale_for(float max_abs) {
+  const std::uint32_t exponent = std::clamp(std::bit_cast<std::uint32_t>(max_abs) >> 23, 1u, 253u);
+  return max_abs > 0 ? std::bit_cast<float>(exponent << 23) : 1.0f;
 }
 
 namespace short_float {

@@ -14,7 +14,7 @@ constexpr std::size_t kRowStretch = 16384;
 
 void ShortRows::set(std::size_t row, std::span<const float> values) {
   if (values.size() != columns_) throw InternalError("short rows: a row of the wrong length");
-  const float scale = scale_for(largest_of(values)), inverse = 1 / scale;
+  const float scale = scale_for(max_abs_of(values)), inverse = 1 / scale;
   scale_[row] = scale;
   std::uint16_t* out = entries_.data() + row * columns_;
   parallel_for(columns_, kRowStretch, [&](std::size_t begin, std::size_t end) {

@@ -118,28 +118,28 @@ Capabilities DenseMatrix::capabilities() const {
 }
 
 ColumnSet DenseMatrix::column_set(Index j) const {
-  std::call_once(greatest_known_, [&] {
-    greatest_.assign(columns_, Rgb(0));
+  std::call_once(max_entries_known_, [&] {
+    max_entries_.assign(columns_, Rgb(0));
     for (std::size_t i = 0; i < rows_; ++i)
       for (std::size_t k = 0; k < columns_; ++k)
         for (int c = 0; c < 3; ++c)
-          greatest_[k][c] = std::max(greatest_[k][c], unoccluded_[i * columns_ + k][c]);
+          max_entries_[k][c] = std::max(max_entries_[k][c], unoccluded_[i * columns_ + k][c]);
   });
   ColumnSet set;
-  set.intensity = greatest_[j];
+  set.intensity = max_entries_[j];
   set.box.extend(column_position.empty() ? Vec3f{} : column_position[j]);
   set.ceiling = set.intensity;
   return set;
 }
 
 namespace {
-class GreatestEntries final : public RowBounds {
+class MaxEntries final : public RowBounds {
   void set_rows(std::span<const Index>) override {}
   Rgb bound(const ColumnSet& set) const override { return set.intensity; }
 };
 }  // namespace
 
-std::unique_ptr<RowBounds> DenseMatrix::row_bounds() const { return std::make_unique<GreatestEntries>(); }
+std::unique_ptr<RowBounds> DenseMatrix::row_bounds() const { return std::make_unique<MaxEntries>(); }
 
 RowFeatures DenseMatrix::row_features() const {
   return {pixel, row_position, row_normal, row_weight, row_id};

@@ -58,8 +58,8 @@ class DenseMatrix : public LightingMatrix {
   std::vector<Rgb> unoccluded_;
   std::vector<float> visibility_;
   bool binary_ = true;
-  mutable std::once_flag greatest_known_;
-  mutable std::vector<Rgb> greatest_;  // by column: the greatest entries, as if all were visible
+  mutable std::once_flag max_entries_known_;
+  mutable std::vector<Rgb> max_entries_;  // by column: the greatest entries, as if all were visible
 };
 
 }  // namespace lumirank::matrix

@@ -7,18 +7,19 @@
 
 namespace lumirank::methods {
 
-bool parse_count(const std::string& text, std::size_t lowest, std::size_t highest, std::size_t& value) {
+bool parse_count(const std::string& text, std::size_t min_value, std::size_t max_value, std::size_t& value) {
   std::size_t v = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-  if (error != std::errc() || end != text.data() + text.size() || v < lowest || v > highest) return false;
+  if (error != std::errc() || end != text.data() + text.size() || v < min_value || v > max_value)
+    return false;
   value = v;
   return true;
 }
 
-bool parse_number(const std::string& text, double lowest, double highest, double& value) {
+bool parse_number(const std::string& text, double min_value, double max_value, double& value) {
   double v = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-  if (error != std::errc() || end != text.data() + text.size() || !(v >= lowest && v <= highest))
+  if (error != std::errc() || end != text.data() + text.size() || !(v >= min_value && v <= max_value))
     return false;
   value = v;
   return true;

@@ -28,8 +28,8 @@ struct FieldText {
 };
 
 // Text → number, whole text or nothing.
-bool parse_count(const std::string& text, std::size_t lowest, std::size_t highest, std::size_t& value);
-bool parse_number(const std::string& text, double lowest, double highest, double& value);
+bool parse_count(const std::string& text, std::size_t min_value, std::size_t max_value, std::size_t& value);
+bool parse_number(const std::string& text, double min_value, double max_value, double& value);
 std::string number_text(double value);
 
 // Highest counts of columns and of receivers: more than any scene has, and memory for them can be had. Where
@@ -38,17 +38,17 @@ inline constexpr std::size_t kMaxColumns = 10'000'000, kMaxRows = 1'000'000;
 
 // `member` may belong to a base of S.
 template <typename S, typename B>
-Field<S> count_field(FieldText text, std::size_t B::*member, std::size_t lowest, std::size_t highest) {
+Field<S> count_field(FieldText text, std::size_t B::*member, std::size_t min_value, std::size_t max_value) {
   return {{text.key, "integer", std::to_string(S{}.*member),
-           std::to_string(lowest) + " … " + std::to_string(highest), text.unit, text.help},
-          [=](S& s, const std::string& v) { return parse_count(v, lowest, highest, s.*member); }};
+           std::to_string(min_value) + " … " + std::to_string(max_value), text.unit, text.help},
+          [=](S& s, const std::string& v) { return parse_count(v, min_value, max_value, s.*member); }};
 }
 
 template <typename S, typename B>
-Field<S> number_field(FieldText text, double B::*member, double lowest, double highest) {
-  return {{text.key, "number", number_text(S{}.*member), number_text(lowest) + " … " + number_text(highest),
-           text.unit, text.help},
-          [=](S& s, const std::string& v) { return parse_number(v, lowest, highest, s.*member); }};
+Field<S> number_field(FieldText text, double B::*member, double min_value, double max_value) {
+  return {{text.key, "number", number_text(S{}.*member),
+           number_text(min_value) + " … " + number_text(max_value), text.unit, text.help},
+          [=](S& s, const std::string& v) { return parse_number(v, min_value, max_value, s.*member); }};
 }
 
 // choices: name of every value of the enumeration, in its order from 0.

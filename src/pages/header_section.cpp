@@ -37,7 +37,7 @@ std::string header_section(const CompareResults& results, const CompareSummary& 
       "<header><h1>" + escape_html(results.scene) + "</h1>\n<p class=\"soft\">" +
       std::to_string(summary.series.size()) + (summary.series.size() == 1 ? " curve, " : " curves, ") +
       std::to_string(summary.groups.size()) + " settings, " + std::to_string(results.runs.size()) + " runs" +
-      (summary.most_seeds > 1 ? ", up to " + std::to_string(summary.most_seeds) + " seeds each" : "") +
+      (summary.max_seeds > 1 ? ", up to " + std::to_string(summary.max_seeds) + " seeds each" : "") +
       ". Rays, entries and errors are facts of the methods; seconds are of this machine.</p>\n<dl "
       "class=\"facts\">";
   out += fact("Image", std::to_string(results.width) + " × " + std::to_string(results.height) + " pixels");

@@ -40,8 +40,8 @@ Scale::Scale(const PlotAxis& axis, const std::vector<double>& values, double fro
   low_ = log_ ? std::log10(*smallest) : *smallest;
   high_ = log_ ? std::log10(*largest) : *largest;
   // At least a factor of two (or a unit) is shown, so that one point alone lies in the middle.
-  const double least = log_ ? 0.6 : std::max(1e-12, 1e-3 * std::abs(high_));
-  const double spread = std::max(high_ - low_, least), middle = (low_ + high_) / 2;
+  const double min_spread = log_ ? 0.6 : std::max(1e-12, 1e-3 * std::abs(high_));
+  const double spread = std::max(high_ - low_, min_spread), middle = (low_ + high_) / 2;
   low_ = middle - 0.55 * spread, high_ = middle + 0.55 * spread;
   if (!log_ && *smallest >= 0 && low_ < 0) low_ = 0;
 }

@@ -59,7 +59,7 @@ std::string error_section(const CompareResults& results, const CompareSummary& s
   std::string out =
       "<section class=\"errors\"><h2>Error against cost</h2>\n<p class=\"soft\">Lower and further left is "
       "better.";
-  if (summary.most_seeds > 1)
+  if (summary.max_seeds > 1)
     out += " Points are means over the seeds, bands reach from the lowest to the highest.";
   out +=
       " Click a name to hide its curve.</p>\n<div class=\"bar\"><div class=\"choice\" role=\"radiogroup\" "
@@ -102,9 +102,9 @@ std::string singular_value_section(const CompareResults& results) {
   plot.x = {"number k", false, Unit::plain};
   plot.y = {"k-th over the largest singular value", true, Unit::plain};
   plot.series.push_back({"singular values", {}, false});
-  const double largest = *std::max_element(values.begin(), values.end());
+  const double max_value = *std::max_element(values.begin(), values.end());
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const double ratio = largest > 0 ? values[k] / largest : 0;
+    const double ratio = max_value > 0 ? values[k] / max_value : 0;
     // Below the rounding of the decomposition the curve says nothing, and would only flatten the rest.
     if (ratio > 1e-9) plot.series[0].points.push_back({static_cast<double>(k + 1), ratio, ratio, ratio, ""});
   }

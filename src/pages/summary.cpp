@@ -11,15 +11,15 @@ double CompareGroup::mean(const std::function<double(const CompareRun&)>& value)
 }
 
 double CompareGroup::lowest(const std::function<double(const CompareRun&)>& value) const {
-  double least = value(first());
-  for (const CompareRun* run : runs) least = std::min(least, value(*run));
-  return least;
+  double min_value = value(first());
+  for (const CompareRun* run : runs) min_value = std::min(min_value, value(*run));
+  return min_value;
 }
 
 double CompareGroup::highest(const std::function<double(const CompareRun&)>& value) const {
-  double most = value(first());
-  for (const CompareRun* run : runs) most = std::max(most, value(*run));
-  return most;
+  double max_value = value(first());
+  for (const CompareRun* run : runs) max_value = std::max(max_value, value(*run));
+  return max_value;
 }
 
 CompareSummary summarize(const CompareResults& results) {
@@ -33,7 +33,7 @@ CompareSummary summarize(const CompareResults& results) {
     });
     if (group == summary.groups.end()) group = summary.groups.insert(group, CompareGroup{{}, number});
     group->runs.push_back(&run);
-    summary.most_seeds = std::max(summary.most_seeds, group->runs.size());
+    summary.max_seeds = std::max(summary.max_seeds, group->runs.size());
   }
   return summary;
 }

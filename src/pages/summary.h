@@ -22,7 +22,7 @@ struct CompareGroup {
 struct CompareSummary {
   std::vector<std::string> series;   // in order of appearance
   std::vector<CompareGroup> groups;  // of one series and label, in order of appearance
-  std::size_t most_seeds = 0;
+  std::size_t max_seeds = 0;
 };
 
 CompareSummary summarize(const CompareResults& results);

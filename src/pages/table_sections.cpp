@@ -62,7 +62,7 @@ std::string table_section(const CompareSummary& summary) {
       "<section><h2>All settings</h2>\n<p class=\"soft\">Click a heading to sort by it.</p>\n<div "
       "class=\"scroll\"><table id=\"runs\"><thead><tr>" +
       head("Method and settings");
-  const bool seeds = summary.most_seeds > 1;
+  const bool seeds = summary.max_seeds > 1;
   if (seeds) out += head("Seeds", "the other numbers are means over them");
   for (const Column& column : kColumns) out += head(column.name, column.hint);
   out += "</tr></thead><tbody>\n";

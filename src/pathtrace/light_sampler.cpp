@@ -48,11 +48,11 @@ LightBound bound_of(const emitters::SpotEmitter& e) {
 LightBound bound_of(const emitters::ProfileEmitter& e) {
   LightBound b;
   b.bounds.extend(e.position);
-  const float down = e.profile->greatest_theta(), up = kPi - e.profile->least_theta();
+  const float down = e.profile->max_theta(), up = kPi - e.profile->min_theta();
   b.axis = down <= up ? e.frame.n : -e.frame.n;
   b.spread = std::min(down, up);
   b.reach = std::min(0.01f, kPi - b.spread);
-  b.intensity = luminance(e.scale) * e.profile->highest();
+  b.intensity = luminance(e.scale) * e.profile->max_value();
   return b;
 }
 

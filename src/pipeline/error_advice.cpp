@@ -9,7 +9,7 @@
 namespace lumirank::pipeline {
 namespace {
 
-constexpr double kMostLights = 1e7;  // more than this is no advice
+constexpr double kMaxLights = 1e7;  // more than this is no advice
 
 std::string number(const char* format, double x) {
   char text[64];
@@ -56,7 +56,7 @@ std::string error_advice(const ErrorAsked& asked, const std::map<std::string, do
                        : "; a smaller one takes other values of " + asked.decided_by + " (--set)");
   const double count = lights_for_error(asked, lights, clamping);
   text += "; more columns cannot help";
-  if (count > kMostLights)
+  if (count > kMaxLights)
     text += ", and it would take " + number("%.1e", count) + " lights: ask for a larger error";
   else
     text += ": " + asked.option + (asked.option.back() == '=' ? "" : " ") + number("%.0f", count) + " should";

@@ -60,13 +60,14 @@ double group_left() {
     std::filesystem::path group = line.substr(4);
     while (true) {
       const auto folder = root / group;
-      const double most = number_in(folder / "memory.max"), now = number_in(folder / "memory.current");
+      const double max_bytes = number_in(folder / "memory.max"), now = number_in(folder / "memory.current");
       double reclaimable = 0;
       std::ifstream statistics(folder / "memory.stat");
       std::string key;
       for (double value = 0; statistics >> key >> value;)
         if (key == "inactive_file" || key == "active_file") reclaimable += value;
-      if (std::isfinite(most) && std::isfinite(now)) left = std::min(left, most - now + reclaimable);
+      if (std::isfinite(max_bytes) && std::isfinite(now))
+        left = std::min(left, max_bytes - now + reclaimable);
       if (group.empty()) break;
       group = group.parent_path();
     }
@@ -101,7 +102,7 @@ double memory_of_picture(double film_samples, double lights, bool layers) {
 }
 
 void require_countable(double film_samples) {
-  if (constexpr double most = std::numeric_limits<std::uint32_t>::max(); film_samples > most)
+  if (constexpr double max_samples = std::numeric_limits<std::uint32_t>::max(); film_samples > max_samples)
     throw InputError("the picture has more than 4294967295 film samples, which is as far as they are counted",
                      "ask for a smaller --size, a lower --spp or a --crop");
 }

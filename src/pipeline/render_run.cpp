@@ -88,12 +88,12 @@ class RenderRun {
   // ------------------------------------------------------------ the plan
 
   std::int64_t planned(const char* what, bool given, std::size_t wanted, std::size_t by_plan,
-                       std::int64_t most) {
+                       std::int64_t max_value) {
     if (given) {
       choices_.expect(what, static_cast<std::int64_t>(wanted));
       return static_cast<std::int64_t>(wanted);
     }
-    const auto earlier = choices_.earlier(what, most);
+    const auto earlier = choices_.earlier(what, max_value);
     const std::int64_t value = earlier ? *earlier : static_cast<std::int64_t>(by_plan);
     choices_.record(what, value);
     return value;

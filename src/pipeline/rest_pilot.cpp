@@ -34,7 +34,7 @@ int RestPilot::paths() const {
   // E|mean of N − truth| is √(2/π) of its deviation where N is not small.
   const double wanted = 2 / 3.14159265358979 * (deviation / kNoise) * (deviation / kNoise);
   return static_cast<int>(
-      std::clamp(std::ceil(wanted), static_cast<double>(kFewestPaths), static_cast<double>(kMostPaths)));
+      std::clamp(std::ceil(wanted), static_cast<double>(kMinPaths), static_cast<double>(kMaxPaths)));
 }
 
 RestPilot pilot_rest(const world::World& world, const View& view, const RenderSettings& settings,

@@ -14,16 +14,16 @@ struct RestPilot {
   double without_brightest = 0;  // the same without the brightest of the paths: one path decides nothing
   double deviation = 0;          // of one path per pixel, over that light: Σ standard deviation / Σ light
   double path_seconds = 0;       // of one such path, all threads at work
-  bool matters() const { return without_brightest > kLeast; }
+  bool matters() const { return without_brightest > kMinShare; }
   // pathtrace::Paths per pixel whose noise is as large as the error allowed for it, within reason.
   int paths() const;
 
   // Half a percent: a tenth of what the columns' own error is by default (5 % and more on interiors). Below
   // that the noise of any affordable number of paths is larger than the light that they bring.
-  static constexpr double kLeast = 0.005;
+  static constexpr double kMinShare = 0.005;
   // Relative L1 of the picture that the paths' noise may add. In quadrature with 5 % it is a twelfth of that.
   static constexpr double kNoise = 0.02;
-  static constexpr int kFewestPaths = 16, kMostPaths = 64;
+  static constexpr int kMinPaths = 16, kMaxPaths = 64;
 };
 
 RestPilot pilot_rest(const world::World& world, const View& view, const RenderSettings& settings,

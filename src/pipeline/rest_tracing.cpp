@@ -18,8 +18,9 @@ RestTracing::RestTracing(SharedWorld world, const View& view, const RenderSettin
   std::snprintf(share, sizeof share, "%.2g %%", 100 * plan_.pilot.share);
   sinks.say("light that columns cannot carry: " + std::string(share) +
             (plan_.paths > 0 ? ", traced with " + std::to_string(plan_.paths) + " paths per pixel"
-             : plan_.pilot.share > RestPilot::kLeast ? ", nearly all of it in one path of the pilot, left out"
-                                                     : ", left out"));
+             : plan_.pilot.share > RestPilot::kMinShare
+                 ? ", nearly all of it in one path of the pilot, left out"
+                 : ", left out"));
 }
 
 bool RestTracing::add(int paths, const Sinks& sinks) {

@@ -16,26 +16,26 @@ constexpr double kReceiverShare = 0.2, kLightShare = 0.2, kDirectShare = 0.2, kR
                  kFilmShare = 0.15, kMethodShare = 0.4;
 // Fewer receivers per pixel are better than sums over fewer columns than this (a third of what slice-cuts has
 // without a budget; with less, whole shadows are missing and slices show) ...
-constexpr double kLeastColumns = 150;
+constexpr double kMinColumns = 150;
 // ... or than direct light of fewer samples, whose noise four receivers of one sample have as well.
-constexpr double kLeastDirect = 4;
+constexpr double kMinDirect = 4;
 // slice-cuts has nothing left to gain beyond some 8,000 to 12,000 entries of a receiver, and would end before
 // its time; they take about as long as 1,000 to 3,000 columns take the pilot. Where more than this many of
 // the pilot's columns fit, more receivers per pixel serve the picture (cleaner edges) and use the time; no
 // more than the film shows, nor than memory should be spent on (240 bytes for each of them).
-constexpr double kManyColumns = 1000, kMostSamples = 8e6;
-constexpr int kMostReceivers = 64;
+constexpr double kManyColumns = 1000, kMaxSamples = 8e6;
+constexpr int kMaxReceivers = 64;
 // A film of half the width and height, enlarged, is better than sums over fewer columns than these for each
 // of its pixels, of which a method has time for a third to a half (those that it chooses are lit, which the
 // pilot's seldom are, and rows come first): kitchen, living-room and dining-room at 1280 × 720 in 3 s were
 // flat or black, or with 27 columns of 79 half as bright again. And it is better than a budget that is not
 // kept because single samples of every pixel take longer (paths: the pilot's few take about twice as long as
 // those of a whole film). A quarter is the end, and shows: it takes more to be worth it.
-constexpr double kFewColumns = 100, kFewColumnsOfHalf = 40, kMostOfShare = 1.5, kMostOfPathShare = 3;
-constexpr int kMostDivisor = 4;
-constexpr double kFewestPixels = 4096;  // fewer save no time worth having
+constexpr double kFewColumns = 100, kFewColumnsOfHalf = 40, kMaxOfShare = 1.5, kMaxOfPathShare = 3;
+constexpr int kMaxDivisor = 4;
+constexpr double kMinPixels = 4096;  // fewer save no time worth having
 // With fewer lights one sees each of them.
-constexpr std::size_t kFewestLights = 2000;
+constexpr std::size_t kMinLights = 2000;
 
 // Two significant digits, rounded up.
 double planned_round(double seconds) {
@@ -55,7 +55,7 @@ double wanted_for_receivers(const TimeCosts& costs, int spp, int layers) {
   const double samples = costs.pixels * spp;
   return samples *
          std::max({costs.receiver / kReceiverShare, costs.develop * (1 + layers) / kFilmShare,
-                   kLeastDirect * costs.direct / kDirectShare, kLeastColumns * costs.column / kMethodShare});
+                   kMinDirect * costs.direct / kDirectShare, kMinColumns * costs.column / kMethodShare});
 }
 
 std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, const TimePlan& plan,
@@ -73,8 +73,8 @@ std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, cons
   else if (wishes.lights_given && static_cast<double>(wishes.lights) * costs.light > kLightShare * left)
     add("--lights " + std::to_string(wishes.lights) + " take more than their part");
   const double samples = costs.pixels * plan.spp;
-  if (costs.direct > 0 && plan.direct_seconds < kLeastDirect * samples * costs.direct * (1 - 1e-9))
-    add("fewer than " + planned_number(kLeastDirect) + " samples of traced direct light");
+  if (costs.direct > 0 && plan.direct_seconds < kMinDirect * samples * costs.direct * (1 - 1e-9))
+    add("fewer than " + planned_number(kMinDirect) + " samples of traced direct light");
   if (lacks.empty() && !plan.build_alone) return {};
   const std::string budget = planned_number(wishes.budget) + " s";
   std::string text = plan.build_alone ? "building the scene took " + planned_number(costs.passed) +
@@ -93,15 +93,15 @@ TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {
     while (plan.spp > 1 && wanted_for_receivers(costs, plan.spp, wishes.layers) > left) --plan.spp;
   const auto more_fit = [&](int spp) {
     const double samples = costs.pixels * spp;
-    return samples <= kMostSamples && wanted_for_receivers(costs, spp, wishes.layers) <= left &&
+    return samples <= kMaxSamples && wanted_for_receivers(costs, spp, wishes.layers) <= left &&
            kManyColumns * costs.column * samples <= left;
   };
   if (!wishes.spp_given)
-    while (plan.spp >= wishes.spp && plan.spp < kMostReceivers && more_fit(plan.spp + 1)) ++plan.spp;
+    while (plan.spp >= wishes.spp && plan.spp < kMaxReceivers && more_fit(plan.spp + 1)) ++plan.spp;
   plan.lights = wishes.lights;
   if (!wishes.lights_given && static_cast<double>(wishes.lights) * costs.light > kLightShare * left) {
     const double fitting = kLightShare * left / costs.light;
-    plan.lights = std::min(wishes.lights, std::max(kFewestLights, static_cast<std::size_t>(fitting)));
+    plan.lights = std::min(wishes.lights, std::max(kMinLights, static_cast<std::size_t>(fitting)));
   }
   const double samples = costs.pixels * plan.spp;
   // Their passes end earlier where they have as many samples as were wished for.
@@ -118,16 +118,16 @@ TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {
 // Whether every pixel can have what it needs least.
 bool plan_holds(const TimePlan& plan, const TimeWishes& wishes, const TimeCosts& costs, double left) {
   return plan.columns >= (plan.divisor == 1 ? kFewColumns : kFewColumnsOfHalf) &&
-         costs.pixels * costs.receiver <= kMostOfShare * kReceiverShare * left &&
-         costs.pixels * costs.direct <= kMostOfShare * kDirectShare * left &&
-         (wishes.rest_paths == 0 || costs.pixels * costs.rest <= kMostOfPathShare * kRestShare * left);
+         costs.pixels * costs.receiver <= kMaxOfShare * kReceiverShare * left &&
+         costs.pixels * costs.direct <= kMaxOfShare * kDirectShare * left &&
+         (wishes.rest_paths == 0 || costs.pixels * costs.rest <= kMaxOfPathShare * kRestShare * left);
 }
 
 }  // namespace
 
 double stage_seconds(double planned, double left) {
-  constexpr double kMostOfRest = 0.25;
-  return std::clamp(planned, 0.0, std::max(0.0, kMostOfRest * left));
+  constexpr double kMaxOfRest = 0.25;
+  return std::clamp(planned, 0.0, std::max(0.0, kMaxOfRest * left));
 }
 
 TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
@@ -135,15 +135,14 @@ TimePlan plan_time(const TimeWishes& wishes, const TimeCosts& costs) {
   TimePlan plan = plan_of_size(wishes, costs);
   TimeCosts fewer = costs;
   if (wishes.may_be_smaller && !wishes.spp_given)
-    while (plan.divisor < kMostDivisor && !plan_holds(plan, wishes, fewer, left)) {
+    while (plan.divisor < kMaxDivisor && !plan_holds(plan, wishes, fewer, left)) {
       const int divisor = 2 * plan.divisor;
-      if (costs.pixels < kFewestPixels * divisor * divisor) break;
+      if (costs.pixels < kMinPixels * divisor * divisor) break;
       fewer.pixels = costs.pixels / (divisor * divisor);
       plan = plan_of_size(wishes, fewer);
       plan.divisor = divisor;
     }
-  const double paths =
-      wishes.rest_paths > 0 ? costs.pixels * costs.rest / (kMostOfPathShare * kRestShare) : 0;
+  const double paths = wishes.rest_paths > 0 ? costs.pixels * costs.rest / (kMaxOfPathShare * kRestShare) : 0;
   plan.enough = planned_round(
       (costs.passed + std::max({wanted_for_receivers(costs, wishes.spp, wishes.layers), paths,
                                 static_cast<double>(wishes.lights) * costs.light / kLightShare})) /

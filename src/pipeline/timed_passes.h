@@ -9,9 +9,9 @@ namespace lumirank::pipeline {
 using Clock = std::function<double()>;
 
 struct PassLimits {
-  int done = 0;   // units before
-  int least = 0;  // are done whatever the clock says: what a picture cannot do without
-  int most = 1;
+  int done = 0;        // units before
+  int min_passes = 0;  // are done whatever the clock says: what a picture cannot do without
+  int max_passes = 1;
   double deadline = 0;  // of the clock
   double pace = 0;      // seconds of a unit, where it is known
 };

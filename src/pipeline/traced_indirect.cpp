@@ -72,7 +72,7 @@ class Tracing {
 constexpr std::size_t kGroup = 64;
 // Of the paths, what finds out where they are needed, and what is spread evenly.
 constexpr float kPilot = 0.125f, kEven = 0.25f;
-constexpr float kMost = 64;  // times the average
+constexpr float kMaxWeight = 64;  // times the average
 
 }  // namespace
 
@@ -115,7 +115,7 @@ std::vector<Rgb> trace_indirect(const world::World& world, const transport::Rece
   }
   const float average = all > 0 ? static_cast<float>(total / all) : 0;
   for_groups("traced indirect", [&](std::size_t g, std::size_t i) {
-    const float share = average > 0 ? std::min(kMost, deviation[g] / average) : 1;
+    const float share = average > 0 ? std::min(kMaxWeight, deviation[g] / average) : 1;
     const float paths = static_cast<float>(settings.paths) * (kEven + (1 - kEven) * share);
     radiance[i] = tracing.at(i, std::max(1, static_cast<int>(std::lround(paths))), false).mean;
   });

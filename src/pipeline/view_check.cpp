@@ -16,7 +16,7 @@ std::string shortly(float value) {
 
 // Where the scene's box lies along the camera's axis, in the units of the clipping planes.
 struct Depths {
-  double least = kInfinity, most = -kInfinity;
+  double min = kInfinity, max = -kInfinity;
 };
 Depths depths(const world::World& world, const View& view) {
   Depths out;
@@ -27,7 +27,7 @@ Depths depths(const world::World& world, const View& view) {
     const Vec3f p{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
                   corner & 4 ? box.hi.z : box.lo.z};
     const double z = to_camera->place(p).z;
-    out.least = std::min(out.least, z), out.most = std::max(out.most, z);
+    out.min = std::min(out.min, z), out.max = std::max(out.max, z);
   }
   return out;
 }
@@ -68,8 +68,8 @@ std::string empty_view(const world::World& world, const View& view) {
     }
   if (before + beyond > 0) return cut_off(view, before > 0, beyond > 0);
   const Depths all = depths(world, view);
-  if (all.least > view.sensor.far_clip) return cut_off(view, false, true);
-  if (all.most > 0 && all.most < view.sensor.near_clip) return cut_off(view, true, false);
+  if (all.min > view.sensor.far_clip) return cut_off(view, false, true);
+  if (all.max > 0 && all.max < view.sensor.near_clip) return cut_off(view, true, false);
   if (world.environment() >= 0) return {};
   return "none of " + std::to_string(kGrid * kGrid) +
          " rays spread over the picture meets a surface: it may show nothing; turn the camera towards the "

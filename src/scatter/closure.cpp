@@ -167,10 +167,10 @@ Rgb Closure::diffuse_color() const {
 }
 
 float Closure::roughness() const {
-  float least = has_smooth() ? 1.0f : 0.0f;
+  float min_roughness = has_smooth() ? 1.0f : 0.0f;
   for (int k = 0; k < count; ++k)
-    if (!is_delta(lobes[k].kind)) least = std::min(least, lobe_roughness(lobes[k]));
-  return least;
+    if (!is_delta(lobes[k].kind)) min_roughness = std::min(min_roughness, lobe_roughness(lobes[k]));
+  return min_roughness;
 }
 
 namespace {

@@ -145,8 +145,8 @@ namespace {
 // Diffuse and specular reflectance that together exceed 1 in some channel are scaled down alike, as Mitsuba
 // 0.6 does.
 void conserve(Rgb& diffuse, Rgb& specular) {
-  const float most = max_component(diffuse + specular);
-  if (most > 1) diffuse *= 1 / most, specular *= 1 / most;
+  const float max_reflectance = max_component(diffuse + specular);
+  if (max_reflectance > 1) diffuse *= 1 / max_reflectance, specular *= 1 / max_reflectance;
 }
 
 }  // namespace

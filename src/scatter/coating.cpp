@@ -31,7 +31,7 @@ struct Layer {
   NormalDistribution distribution = NormalDistribution::ggx;
   float alpha = 0;  // 0: smooth
   float diffuse_transmittance = 1;
-  float least = 0;        // R0
+  float r0 = 0;           // at normal incidence
   Rgb diffuse_return{0};  // rd, absorption on the way up and down included
 };
 
@@ -65,7 +65,7 @@ Layer make_layer(float eta, float weight, Rgb depth, NormalDistribution distribu
   for (int i = 0; i < 6; ++i) coat.t[i] = weight * k.c[i], layer.twice[i] = weight * k.twice[i];
   coat.t[0] += 1 - weight, layer.twice[0] += 1 - weight;
   layer.diffuse_transmittance = 1 - weight + weight * k.diffuse_transmittance;
-  layer.least = weight * square((eta - 1) / (eta + 1));
+  layer.r0 = weight * square((eta - 1) / (eta + 1));
   // What the interface neither transmits nor reflects (masked by its own facets) is lost.
   const float lost = 1 - k.internal_reflectance - k.diffuse_transmittance / (eta * eta);
   const float returned =
@@ -90,7 +90,7 @@ Rgb glossy_return(const Layer& layer, NormalDistribution distribution, float alp
     all += g;
     for (int c = 0; c < 3; ++c) sum[c] += g * r * std::exp(-2 * layer.coat.depth[c] / mu);
   }
-  const float weight = layer.least / square((layer.coat.eta - 1) / (layer.coat.eta + 1) + 1e-12f);
+  const float weight = layer.r0 / square((layer.coat.eta - 1) / (layer.coat.eta + 1) + 1e-12f);
   return all > 0 ? sum * (weight / all) : Rgb(0);
 }
 
@@ -119,7 +119,7 @@ Base glossy_base(const Layer& layer, Rgb albedo, Rgb oblique_albedo, NormalDistr
                  float alpha) {
   Rgb beyond = glossy_return(layer, distribution, alpha);
   for (int c = 0; c < 3; ++c)
-    beyond[c] = std::max(0.0f, beyond[c] - layer.least * std::exp(-2 * layer.coat.depth[c]));
+    beyond[c] = std::max(0.0f, beyond[c] - layer.r0 * std::exp(-2 * layer.coat.depth[c]));
   const float again = mean(oblique_albedo);  // the albedo of a further bounce
   // A layer rougher than what it covers has no sharp critical angle.
   const float sharp = alpha * alpha / (alpha * alpha + layer.alpha * layer.alpha);
@@ -234,7 +234,7 @@ void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint
       const bool long_tail = nested_lobe.distribution == NormalDistribution::ggx;
       lobe.coat.width = (long_tail ? 1.0f : 0.6f) * nested_lobe.width / lobe.coat.bend;
       for (int c = 0; c < 3; ++c) {
-        const float stays = layer.least * std::exp(-2 * layer.coat.depth[c]);
+        const float stays = layer.r0 * std::exp(-2 * layer.coat.depth[c]);
         lobe.color[c] /= 1 - std::min(base.albedo[c], 1.0f) * stays;
       }
     }

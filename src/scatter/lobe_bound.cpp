@@ -46,9 +46,9 @@ AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, const ConeWidth& wid
   const float len = length(h), hz = dot(h, n);
   const Angle half = Angle::of_cosine(0.5f * len);
   // Above the horizon |wo + w| is no less than the sum of the cosines.
-  const float least = 0.5f * (t.cos_o + cos_lo);
+  const float min_half = 0.5f * (t.cos_o + cos_lo);
   float half_lo = width.half.cosine > 0 ? std::max(0.0f, cos_sum(half, width.half) - kAngleSlack) : 0.0f;
-  r.half_lo = std::max(half_lo, least);
+  r.half_lo = std::max(half_lo, min_half);
   if (dot(a, n) >= 0) half_lo = r.half_lo;
   const float turn = 0.5f * (width.angle + kAngleSlack) / std::max(half_lo, 1e-6f) + kAngleSlack;
   if (turn < kPi / 2 && len > 1e-6f) {
@@ -57,8 +57,7 @@ AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, const ConeWidth& wid
       r.tilt_cos = std::max(0.0f, cos_difference(tilt, by));
       r.tilt_sin = r.tilt_cos > 0 ? tilt.sine * by.cosine - tilt.cosine * by.sine : 1.0f;
     }
-    if (tilt.cosine > by.sine)
-      r.most_tilt_sin = std::min(1.0f, tilt.sine * by.cosine + tilt.cosine * by.sine);
+    if (tilt.cosine > by.sine) r.max_tilt_sin = std::min(1.0f, tilt.sine * by.cosine + tilt.cosine * by.sine);
   }
   if (family_of(t.lobe->kind).bound_by_mirror) {
     const float off = 2 * std::asin(std::min(1.0f, 0.5f * length(a - n * (2 * t.cos_o) + t.wo)));
@@ -71,9 +70,10 @@ AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, const ConeWidth& wid
 AngleRange ring(const LobeTerm& t, float from, float to) {
   AngleRange r;
   const float theta = angle_of(t.cos_o);
-  const float least = std::max({0.0f, theta - to - kAngleSlack, from - theta - kAngleSlack});
-  const float most = theta + to + kAngleSlack;
-  r.cos_hi = std::cos(std::min(least, kPi / 2)), r.cos_lo = most < kPi / 2 ? std::cos(most) : 0.0f;
+  const float min_angle = std::max({0.0f, theta - to - kAngleSlack, from - theta - kAngleSlack});
+  const float max_angle = theta + to + kAngleSlack;
+  r.cos_hi = std::cos(std::min(min_angle, kPi / 2)),
+  r.cos_lo = max_angle < kPi / 2 ? std::cos(max_angle) : 0.0f;
   const float half = theta + 0.5f * to + kAngleSlack;
   r.half_lo = std::max(half < kPi / 2 ? std::cos(half) : 0.0f, 0.5f * (t.cos_o + r.cos_lo));
   // Tilting the half vector by δ turns w by 2δ at most.
@@ -86,15 +86,15 @@ AngleRange ring(const LobeTerm& t, float from, float to) {
 // Bounds under a coat: `inside` are the angles there, the cosines those outside.
 Rgb under_coat(const LobeTerm& t, const AngleRange& inside, float cos_hi, CosineFactor factor) {
   const auto bound = family_of(t.lobe->kind).bound;
-  Rgb most = bound(t, inside, CosineFactor::none);
-  if (factor == CosineFactor::none) return most;
-  most *= cos_hi;
+  Rgb max_f = bound(t, inside, CosineFactor::none);
+  if (factor == CosineFactor::none) return max_f;
+  max_f *= cos_hi;
   // In a denser layer the cosine inside is the larger one.
   if (t.lobe->coat.bend >= 1) {
     const Rgb other = bound(t, inside, CosineFactor::cosine);
-    for (int c = 0; c < 3; ++c) most[c] = std::min(most[c], other[c]);
+    for (int c = 0; c < 3; ++c) max_f[c] = std::min(max_f[c], other[c]);
   }
-  return most;
+  return max_f;
 }
 
 }  // namespace
@@ -202,11 +202,11 @@ Rgb ClosureBound::refracted(const LobeTerm& t, const DirectionCone& cone, float 
   const float len = length(h), reach = t.eta * (cone.angle + kAngleSlack) + kAngleSlack, hz = dot(h, n_);
   if (reach < len) {
     const float tilt = std::atan2(length(h - n_ * hz), std::abs(hz)) - std::asin(reach / len) - kAngleSlack;
-    const Angle least_tilt = Angle::of(std::max(0.0f, tilt));
-    r.tilt_sin = least_tilt.sine, r.tilt_cos = std::max(0.0f, least_tilt.cosine);
+    const Angle min_tilt = Angle::of(std::max(0.0f, tilt));
+    r.tilt_sin = min_tilt.sine, r.tilt_cos = std::max(0.0f, min_tilt.cosine);
   }
-  const float least = std::max({len - reach, std::abs(t.eta - 1) - kAngleSlack, 1e-8f});
-  return family_of(t.lobe->kind).bound(t, r, factor) * (crossed(t, cos_lo) / (least * least));
+  const float min_length = std::max({len - reach, std::abs(t.eta - 1) - kAngleSlack, 1e-8f});
+  return family_of(t.lobe->kind).bound(t, r, factor) * (crossed(t, cos_lo) / (min_length * min_length));
 }
 
 Rgb ClosureBound::through_sheet(const LobeTerm& t, const DirectionCone& cone, const ConeWidth& width,
@@ -246,7 +246,7 @@ Rgb ClosureBound::in_rings(const LobeTerm& t, CosineFactor factor) const {
   const LobeFamily& family = family_of(t.lobe->kind);
   const Coat& coat = t.lobe->coat;
   const bool within = coat && !transmits(t.lobe->kind);
-  Rgb most(0);
+  Rgb max_f(0);
   float from = 0;
   for (float to = family.reach(t); from < kPi; to *= 2) {
     if (to > 2) to = kPi;
@@ -260,10 +260,10 @@ Rgb ClosureBound::in_rings(const LobeTerm& t, CosineFactor factor) const {
     }
     const Rgb here =
         (within ? under_coat(t, r, cos_hi, factor) : family.bound(t, r, factor)) * crossed(t, cos_lo);
-    for (int c = 0; c < 3; ++c) most[c] = std::max(most[c], here[c]);
+    for (int c = 0; c < 3; ++c) max_f[c] = std::max(max_f[c], here[c]);
     from = to;
   }
-  return most;
+  return max_f;
 }
 
 Rgb ClosureBound::anywhere(CosineFactor factor, float sharp) const {

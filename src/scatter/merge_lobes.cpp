@@ -66,14 +66,14 @@ void merge_lobes(Closure& closure, const Lobe& extra) {
   std::copy(closure.lobes, closure.lobes + kMaxLobes, all);
   all[kMaxLobes] = extra;
   int first = -1, second = -1;
-  float least = kInfinity;
+  float min_gap = kInfinity;
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) {
       if (!same_sort(all[i], all[j])) continue;
       const float gap = family_of(all[i].kind).matt ? -1.0f
                                                     : std::abs(all[i].alpha_u - all[j].alpha_u) +
                                                           std::abs(all[i].alpha_v - all[j].alpha_v);
-      if (gap < least) least = gap, first = i, second = j;
+      if (gap < min_gap) min_gap = gap, first = i, second = j;
     }
   }
   if (first < 0) throw InternalError("a closure has more sorts of lobes than kMaxLobes");

@@ -8,8 +8,8 @@ SurfacePoint with_normal(const SurfacePoint& at, Vec3f n, Vec3f tangent) {
   SurfacePoint out = at;
   const float toward = dot(n, at.ng);
   // A closure's shading normal is never behind its surface: lift it to just above the horizon.
-  constexpr float least = 1e-3f;
-  if (!(toward >= least)) n = n + at.ng * (least - toward);
+  constexpr float min_cosine = 1e-3f;
+  if (!(toward >= min_cosine)) n = n + at.ng * (min_cosine - toward);
   const float len = length(n);
   if (!(len > 1e-12f) || !std::isfinite(len)) return at;
   out.shading = Frame::from_normal_tangent(n / len, tangent);

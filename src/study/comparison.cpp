@@ -161,22 +161,23 @@ class Comparison {
 
   // The largest of the runs, as far as it is known before them.
   void require_memory_of_runs() const {
-    double most = 0;
+    double max_bytes = 0;
     for (const PlannedRun& run : plan_) {
       const double samples = static_cast<double>(view_.width) * static_cast<double>(view_.height) * run.spp;
       require_countable(samples);
-      most = std::max(most, memory_of_picture(samples, static_cast<double>(run.lights), false));
+      max_bytes = std::max(max_bytes, memory_of_picture(samples, static_cast<double>(run.lights), false));
     }
-    require_memory(most, kSmallerPicture);
+    require_memory(max_bytes, kSmallerPicture);
   }
 
   // What a reference at some receivers can have at most.
   void require_receivers() const {
-    const auto most = static_cast<std::size_t>(view_.width) * static_cast<std::size_t>(view_.height) *
-                      static_cast<std::size_t>(settings_.base.view.spp_or_default());
-    if (sampled_receivers() > most)
+    const auto max_receivers = static_cast<std::size_t>(view_.width) *
+                               static_cast<std::size_t>(view_.height) *
+                               static_cast<std::size_t>(settings_.base.view.spp_or_default());
+    if (sampled_receivers() > max_receivers)
       throw InputError("'" + settings_.reference + "' asks for more receivers than the " +
-                           std::to_string(most) + " film samples of this render",
+                           std::to_string(max_receivers) + " film samples of this render",
                        "write brute-force for all of them, or a smaller number");
   }
 

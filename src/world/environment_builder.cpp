@@ -102,7 +102,7 @@ std::optional<em::DirectionalEmitter> EnvironmentBuilder::add_sun_sky(const sd::
   const auto bad = [&](const char* message, const char* remedy) {
     throw InputError(from.where, message, remedy);
   };
-  if (!(d.turbidity >= 1 && d.turbidity <= em::PreethamSky::kGreatestTurbidity))
+  if (!(d.turbidity >= 1 && d.turbidity <= em::PreethamSky::kMaxTurbidity))
     bad("the turbidity is not between 1 and 10", "give a number in between");
   if (!(d.sun_scale >= 0 && d.sky_scale >= 0 && std::isfinite(d.sun_scale) && std::isfinite(d.sky_scale)))
     bad("a scale of the sun or the sky is negative or not finite", "give 0 or more");
@@ -117,8 +117,8 @@ std::optional<em::DirectionalEmitter> EnvironmentBuilder::add_sun_sky(const sd::
 
   if (d.sky) {
     float turbidity = d.turbidity;
-    if (turbidity < em::PreethamSky::kLeastTurbidity) {
-      turbidity = em::PreethamSky::kLeastTurbidity;
+    if (turbidity < em::PreethamSky::kMinTurbidity) {
+      turbidity = em::PreethamSky::kMinTurbidity;
       notes_.warn(from.where, "a sky of turbidity below 1.7", "a sky of turbidity 1.7");
     }
     constexpr int kWidth = 512, kHeight = 256;

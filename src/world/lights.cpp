@@ -65,10 +65,10 @@ em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint3
 }
 
 void check_light(float value, const char* what, const SourceLocation& where) {
-  if (value <= kGreatestLight) return;
+  if (value <= kMaxLight) return;
   char text[96];
   std::snprintf(text, sizeof text, " is %.3g; more than %.0e cannot be carried by 32-bit arithmetic",
-                static_cast<double>(value), static_cast<double>(kGreatestLight));
+                static_cast<double>(value), static_cast<double>(kMaxLight));
   throw InputError(where, what + std::string(text), "make all lights of the scene darker alike");
 }
 

@@ -39,7 +39,7 @@ emitters::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std:
 // The greatest radiance, irradiance, or intensity (in the world's units): methods add the squares of entries
 // of the matrix, and 10⁶ of this one's are the range of 32-bit numbers. The sun, seen directly, has 2·10⁷
 // W/(m² sr) or 2·10⁹ cd/m².
-inline constexpr float kGreatestLight = 1e16f;
+inline constexpr float kMaxLight = 1e16f;
 // InputError if `value` exceeds that; `what` names it.
 void check_light(float value, const char* what, const SourceLocation& where);
 

@@ -23,13 +23,13 @@ sc::NormalDistribution convert(sd::Distribution d) {
 bool is_zero(const sd::FloatInput& f) { return f.texture == sd::kNone && f.value == 0; }
 
 // Fresnel's formulas have sixth powers of them.
-constexpr float kGreatestIndex = 1e6f;
+constexpr float kMaxIndex = 1e6f;
 
 float checked_eta(float eta, const SourceLocation& where) {
   if (!(eta > 0) || !std::isfinite(eta))
     throw InputError(where, "a relative index of refraction is not a positive number",
                      "give positive interior and exterior indices");
-  if (eta > kGreatestIndex || eta < 1 / kGreatestIndex)
+  if (eta > kMaxIndex || eta < 1 / kMaxIndex)
     throw InputError(where, "a relative index of refraction is beyond what 32-bit arithmetic can carry",
                      "give one from 1e-6 to 1e6");
   return eta;
@@ -39,7 +39,7 @@ void check_index(Rgb value, const SourceLocation& where) {
   if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0)
     throw InputError(where, "a conductor's index of refraction is negative or not finite",
                      "give numbers ≥ 0");
-  if (max_component(value) > kGreatestIndex)
+  if (max_component(value) > kMaxIndex)
     throw InputError(where, "a conductor's index of refraction is beyond what 32-bit arithmetic can carry",
                      "give numbers up to 1e6");
 }

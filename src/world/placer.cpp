@@ -124,7 +124,7 @@ Units units_for(const std::vector<Placed>& placed, const MeshStore& store) {
     }
   });
   Bounds3d all;
-  double smallest = kInfinity;
+  double min_radius = kInfinity;
   for (const Placed& p : placed) {
     const Bounds3f& box = boxes[static_cast<std::size_t>(p.source)];
     if (box.empty()) continue;
@@ -135,9 +135,9 @@ Units units_for(const std::vector<Placed>& placed, const MeshStore& store) {
       own.extend(p.to_world.place(local + store.origin(p.source)));
     }
     all.extend(own.lo), all.extend(own.hi);
-    if (own.radius() > 0) smallest = std::min(smallest, own.radius());
+    if (own.radius() > 0) min_radius = std::min(min_radius, own.radius());
   }
-  return Units(all, smallest);
+  return Units(all, min_radius);
 }
 
 Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& units, Notes& notes) {

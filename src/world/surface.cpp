@@ -30,9 +30,9 @@ Vec3f point_on(Vec3f p0, Vec3f p1, Vec3f p2, Vec2f b) {
 
 Vec3f unit_or_zero(Vec3f v) {
   // Scaled first: the square of a tiny or huge vector leaves the range of float.
-  const float largest = std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
-  if (!(largest > 0) || !std::isfinite(largest)) return {};
-  return normalize(v / largest);
+  const float max_abs = std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+  if (!(max_abs > 0) || !std::isfinite(max_abs)) return {};
+  return normalize(v / max_abs);
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ Rgb times(Rgb value, double factor) {
 
 }  // namespace
 
-Units::Units(const Bounds3d& box, double smallest_shape) : origin_(near_origin(box, kFar)) {
+Units::Units(const Bounds3d& box, double min_shape_radius) : origin_(near_origin(box, kFar)) {
   const double radius = box.radius();
   if (!(radius > 0) || !std::isfinite(radius)) return;
   const double power = std::floor(std::log2(radius));
-  if (radius < kLeastRadius) scale_ = std::exp2(-power);
-  if (radius <= kGreatestRadius) return;
-  const double least = smallest_shape > 0 ? std::exp2(-std::floor(std::log2(smallest_shape))) : 1;
-  scale_ = std::min(1.0, std::max(kGreatestRadius / 2 * std::exp2(-power), least));
+  if (radius < kMinRadius) scale_ = std::exp2(-power);
+  if (radius <= kMaxRadius) return;
+  const double min_scale = min_shape_radius > 0 ? std::exp2(-std::floor(std::log2(min_shape_radius))) : 1;
+  scale_ = std::min(1.0, std::max(kMaxRadius / 2 * std::exp2(-power), min_scale));
 }
 
 Transform Units::to_world() const {

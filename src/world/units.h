@@ -22,8 +22,8 @@ class Units {
   //   them, stay within floats; but no further than keeps the radius of the smallest shape above 1: a few
   //   things far away from one another must not make all of them tiny.
   // Scales are powers of two, which keep bits.
-  static constexpr double kFar = 8, kLeastRadius = 0x1p-5, kGreatestRadius = 0x1p24;
-  explicit Units(const Bounds3d& box, double smallest_shape = kInfinity);
+  static constexpr double kFar = 8, kMinRadius = 0x1p-5, kMaxRadius = 0x1p24;
+  explicit Units(const Bounds3d& box, double min_shape_radius = kInfinity);
 
   bool are_the_files() const { return scale_ == 1 && origin_ == Vec3d{}; }
   double scale() const { return scale_; }  // the world's lengths over the file's

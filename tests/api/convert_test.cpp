@@ -71,12 +71,12 @@ Shape "bilinearmesh" "point3 P" [ 0 -2 3  2 -2 3  0 2 3  2 2 3 ]
   const auto a = render(scene, settings).picture.planes[0].rgb;
   const auto b = render(Scene::load(folder / "out.xml"), settings).picture.planes[0].rgb;
   ASSERT_EQ(a.size(), b.size());
-  float most = 0;
+  float max_value = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     EXPECT_NEAR(a[k], b[k], std::abs(a[k]) * (std::ldexp(1.0f, -11) + std::ldexp(16.0f, -23))) << k;
-    most = std::max(most, a[k]);
+    max_value = std::max(max_value, a[k]);
   }
-  EXPECT_GT(most, 0);
+  EXPECT_GT(max_value, 0);
 }
 
 // An equal-area map, a constant and a goniometric light of pbrt: one map of latitudes and longitudes with the

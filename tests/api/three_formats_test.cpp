@@ -95,10 +95,9 @@ std::string gltf_file(const TemporaryFolder& folder) {
   std::string views = "{\"buffer\":0,\"byteLength\":12}";
   accessors = "{\"bufferView\":0,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}";
   for (int k = 0; k < 5; ++k) {
-    Point least = kQuads[k].p[0], most = least;
+    Point min = kQuads[k].p[0], max = min;
     for (const Point& p : kQuads[k].p)
-      for (std::size_t a = 0; a < 3; ++a)
-        least[a] = std::min(least[a], p[a]), most[a] = std::max(most[a], p[a]);
+      for (std::size_t a = 0; a < 3; ++a) min[a] = std::min(min[a], p[a]), max[a] = std::max(max[a], p[a]);
     const auto numbers = [](const Point& p) {
       char out[96];
       std::snprintf(out, sizeof out, "[%.9g,%.9g,%.9g]", double{p[0]}, double{p[1]}, double{p[2]});
@@ -108,8 +107,8 @@ std::string gltf_file(const TemporaryFolder& folder) {
     views += ",{\"buffer\":0,\"byteOffset\":" + std::to_string(buffer.size()) + ",\"byteLength\":48}";
     buffer.append(reinterpret_cast<const char*>(kQuads[k].p), 48);
     accessors += ",{\"bufferView\":" + next +
-                 ",\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":" + numbers(least) +
-                 ",\"max\":" + numbers(most) + "}";
+                 ",\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":" + numbers(min) +
+                 ",\"max\":" + numbers(max) + "}";
     meshes += std::string(k ? "," : "") + "{\"primitives\":[{\"attributes\":{\"POSITION\":" + next +
               "},\"indices\":0,\"material\":" + index + "}]}";
     nodes += "{\"mesh\":" + index + "},";

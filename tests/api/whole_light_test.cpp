@@ -57,7 +57,7 @@ TEST(WholeLight, TheSkyInAMirrorIsPartOfThePictureByDefault) {
     const RenderResult result = render(scene, s);
     whole.push_back(mean_value(result.picture));
     shares.push_back(report_of(result)["rest.share"].get<double>());
-    EXPECT_GE(report_of(result)["rest.paths"], pipeline::RestPilot::kFewestPaths);
+    EXPECT_GE(report_of(result)["rest.paths"], pipeline::RestPilot::kMinPaths);
     s.traced.rest = RestOfPaths::skip;
     const RenderResult skipped = render(scene, s);
     columns.push_back(mean_value(skipped.picture));
@@ -103,15 +103,15 @@ TEST(WholeLight, ThePilotLooksAtTheWholeFilmAtAnySize) {
 TEST(WholeLight, PathsByTheNoiseThatTheyAdd) {
   using pipeline::RestPilot;
   RestPilot pilot;
-  EXPECT_EQ(pilot.paths(), RestPilot::kFewestPaths);
+  EXPECT_EQ(pilot.paths(), RestPilot::kMinPaths);
   // 40 paths: √(2/π) · deviation / √40 is the noise allowed.
   pilot.deviation = RestPilot::kNoise * std::sqrt(40 * 3.14159265358979 / 2) * (1 - 1e-9);
   EXPECT_EQ(pilot.paths(), 40);
   pilot.deviation = 100;
-  EXPECT_EQ(pilot.paths(), RestPilot::kMostPaths);
-  pilot.share = 0.1, pilot.without_brightest = RestPilot::kLeast;
+  EXPECT_EQ(pilot.paths(), RestPilot::kMaxPaths);
+  pilot.share = 0.1, pilot.without_brightest = RestPilot::kMinShare;
   EXPECT_FALSE(pilot.matters()) << "one path has found nearly all of it";
-  pilot.without_brightest = 2 * RestPilot::kLeast;
+  pilot.without_brightest = 2 * RestPilot::kMinShare;
   EXPECT_TRUE(pilot.matters());
 }
 

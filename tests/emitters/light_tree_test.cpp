@@ -106,7 +106,7 @@ TEST(LightTree, EveryLightThatReachesAPointCanBeDrawn) {
   // Random points in a light's box and normals in its cone are what the bound promises to cover.
   const auto all = lights(400, 5);
   const LightTree tree(all);
-  int reached = 0, least_drawn = 0;
+  int reached = 0, rarely_drawn = 0;
   for (std::uint64_t i = 0; i < 20000; ++i) {
     Rng rng(6, Stage::test, i);
     const LitPoint at = lit_point(rng);
@@ -121,10 +121,10 @@ TEST(LightTree, EveryLightThatReachesAPointCanBeDrawn) {
     if (!(sent(b, from, normal, at) > 0)) continue;
     ++reached;
     EXPECT_GT(tree.pmf(at, k), 0) << "light " << k << ", draw " << i;
-    if (tree.pmf(at, k) < 1e-6f) ++least_drawn;
+    if (tree.pmf(at, k) < 1e-6f) ++rarely_drawn;
   }
   EXPECT_GT(reached, 3000);
-  EXPECT_LT(least_drawn, reached / 2) << "the sizes of the test: most lights are drawn with some frequency";
+  EXPECT_LT(rarely_drawn, reached / 2) << "the sizes of the test: most lights are drawn with some frequency";
 }
 
 TEST(LightTree, LightBehindTheSurfaceOrBeyondItsCutOffIsNotDrawn) {

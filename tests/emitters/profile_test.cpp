@@ -56,9 +56,9 @@ TEST(AngularProfile, BilinearInTheAngles) {
   EXPECT_NEAR(p.eval(direction(1.5, 3)), 2.5, 1e-5);
   EXPECT_EQ(p.eval(direction(0.49, 1)), 0);
   EXPECT_EQ(p.eval(direction(2.01, 1)), 0);
-  EXPECT_EQ(p.highest(), 5);
-  EXPECT_EQ(p.least_theta(), 0.5f);
-  EXPECT_EQ(p.greatest_theta(), 2.0f);
+  EXPECT_EQ(p.max_value(), 5);
+  EXPECT_EQ(p.min_theta(), 0.5f);
+  EXPECT_EQ(p.max_theta(), 2.0f);
 }
 
 TEST(AngularProfile, TheIntegralIsExact) {
@@ -66,7 +66,7 @@ TEST(AngularProfile, TheIntegralIsExact) {
     // Midpoint rule in theta and phi over the range that is not dark; its error falls with n².
     double sum = 0;
     constexpr int n = 1500;
-    const double lo = p.least_theta(), hi = p.greatest_theta();
+    const double lo = p.min_theta(), hi = p.max_theta();
     for (int i = 0; i < n; ++i) {
       const double theta = lo + (i + 0.5) / n * (hi - lo);
       double ring = 0;
@@ -86,7 +86,7 @@ TEST(AngularProfile, SamplesHaveTheDensityThatPdfStates) {
     constexpr int n = 100000, kRows = 16, kColumns = 16;
     // Bins of equal solid angle between the polar angles of the profile; expected counts by quadrature of the
     // density, which is constant over cells, in 64 points of each bin.
-    const double z0 = std::cos(double{p.least_theta()}), z1 = std::cos(double{p.greatest_theta()});
+    const double z0 = std::cos(double{p.min_theta()}), z1 = std::cos(double{p.max_theta()});
     std::vector<double> counts(kRows * kColumns), expected(kRows * kColumns);
     for (int r = 0; r < kRows; ++r)
       for (int c = 0; c < kColumns; ++c)
@@ -159,17 +159,17 @@ TEST(ProfileEmitter, PowerIsTheMeanWeightOfItsParticles) {
   for (AngularProfile& p : profiles()) {
     const Emitter e{"", 0, emitter(std::move(p))};
     Mean mean;
-    float greatest = 0;
+    float max_weight = 0;
     for (std::uint64_t i = 0; i < 40000; ++i) {
       Rng rng(9, Stage::test, i);
       const Emission s = sample_emission(e, Bounds3f{}, 0, {0, 0}, rng.next_2d());
       EXPECT_EQ(s.origin, (Vec3f{1, 2, 3}));
-      mean.add(s.weight.g), greatest = std::max(greatest, s.weight.g);
+      mean.add(s.weight.g), max_weight = std::max(max_weight, s.weight.g);
     }
     expect_mean(mean, power(e, 1).g, 1e-3);  // the thin beam: directions hold its angle to 10⁻⁵ of it
     // Bilinear within a cell and the cell drawn by its integral: at most four times the mean, and where three
     // corners are dark not far above it.
-    EXPECT_LT(greatest, 20 * power(e, 1).g);
+    EXPECT_LT(max_weight, 20 * power(e, 1).g);
   }
 }
 

@@ -158,13 +158,14 @@ TEST(MultisetSampling, AssignsToTheNearestWeightedCentre) {
     }
     ASSERT_LT(own, centres.position.size());
     for (std::uint32_t j : p.members(c)) {
-      double least = INFINITY;
-      for (std::size_t k = 0; k < centres.position.size(); ++k) least = std::min(least, distance(k, j));
+      double min_distance = INFINITY;
+      for (std::size_t k = 0; k < centres.position.size(); ++k)
+        min_distance = std::min(min_distance, distance(k, j));
       // Cosines are compared in single precision (2⁻²⁴ each of ten products and of 1 − cos).
       const double rounding = 20 * 0x1p-24 * centres.weight[own] * norms[centres.position[own]] * norms[j];
-      EXPECT_LE(distance(own, j), least + rounding +
+      EXPECT_LE(distance(own, j), min_distance + rounding +
                                       1e-6 * centres.weight[own] * norms[centres.position[own]] * norms[j] +
-                                      1.001e-4 * least);
+                                      1.001e-4 * min_distance);
     }
   }
 }

@@ -79,13 +79,14 @@ TEST(Cost, BestCutEqualsTheExhaustiveSearch) {
     const PointCloud cloud = random_cloud(30, 4, seed);
     const auto sorted = all_of(cloud);
     const auto norms = own_norms(cloud.points());
-    double least = INFINITY;
+    double min_cost = INFINITY;
     for (std::size_t left = 1; left < 30; ++left) {
       const std::span<const std::uint32_t> s(sorted);
-      least = std::min(least, pairwise_cost(cloud, s.first(left)) + pairwise_cost(cloud, s.subspan(left)));
+      min_cost =
+          std::min(min_cost, pairwise_cost(cloud, s.first(left)) + pairwise_cost(cloud, s.subspan(left)));
     }
     const Cut cut = best_cut(cloud.points(), norms, sorted);
-    EXPECT_NEAR(cut.left_cost + cut.right_cost, least, 1e-12 * least);
+    EXPECT_NEAR(cut.left_cost + cut.right_cost, min_cost, 1e-12 * min_cost);
   }
 }
 

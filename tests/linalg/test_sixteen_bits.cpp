@@ -33,8 +33,8 @@ TEST(ShortFloat, IsWithinTwoToTheMinusTwelveDownToTwoToTheMinusThirtyOne) {
     }
   }
   // The greatest number below 2 rounds down: above it there is none.
-  const float greatest = std::nextafter(2.0f, 0.0f);
-  EXPECT_LE(greatest - lengthen(shorten(greatest)), 0x1p-11f);
+  const float max_value = std::nextafter(2.0f, 0.0f);
+  EXPECT_LE(max_value - lengthen(shorten(max_value)), 0x1p-11f);
 }
 
 TEST(ShortFloat, ScalesArePowersOfTwoAndHaveInverses) {
@@ -57,15 +57,15 @@ TEST(PackedPoints, AreWithinTwoToTheMinusFifteenOfTheLargestCoordinate) {
     Rng rng(2, Stage::test, 31, std::bit_cast<std::uint32_t>(length));
     std::vector<float> point(50), back(50);
     std::vector<std::int16_t> units(50);
-    float largest = 0;
+    float max_value = 0;
     for (float& v : point) {
       v = length * static_cast<float>(rng.next_gaussian());
-      largest = std::max(largest, std::abs(v));
+      max_value = std::max(max_value, std::abs(v));
     }
     const float unit = pack_point(point, units.data());
     PointReader(Points{nullptr, 1, 50, units.data(), &unit}).read(0, back.data());
     // Numbers without an inverse are in units of the least normal one.
-    const float bound = std::max(largest * 0x1p-15f, 0x1p-127f);
+    const float bound = std::max(max_value * 0x1p-15f, 0x1p-127f);
     for (std::size_t d = 0; d < 50; ++d) EXPECT_LE(std::abs(back[d] - point[d]), bound * (1 + 0x1p-20f));
   }
 }

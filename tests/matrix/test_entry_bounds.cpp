@@ -43,8 +43,8 @@ TEST(Cones, JoinedHoldBoth) {
     const double spread_a = std::acos(static_cast<double>(a.cosine)),
                  spread_b = std::acos(static_cast<double>(b.cosine));
     const double between = angle(a.axis, b.axis);
-    const double least = std::max({0.5 * (spread_a + spread_b + between), spread_a, spread_b});
-    ASSERT_GE(both.cosine, std::cos(least) - 1e-6) << i;
+    const double min_spread = std::max({0.5 * (spread_a + spread_b + between), spread_a, spread_b});
+    ASSERT_GE(both.cosine, std::cos(min_spread) - 1e-6) << i;
   }
 }
 

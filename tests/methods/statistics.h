@@ -50,14 +50,14 @@ class UnbiasednessTest {
   double limit(double alpha = 0.001) const {
     return lumirank::test::student_quantile(alpha, projections_ + 1, runs_ - 1);
   }
-  double largest_t() const {
-    double largest = 0;
+  double max_t() const {
+    double max_t_value = 0;
     const double n = static_cast<double>(runs_);
     for (std::size_t p = 0; p <= projections_; ++p) {
       const double mean = sum_[p] / n, variance = (squares_[p] - n * mean * mean) / (n - 1);
-      largest = std::max(largest, std::abs(mean) / std::sqrt(variance / n));
+      max_t_value = std::max(max_t_value, std::abs(mean) / std::sqrt(variance / n));
     }
-    return largest;
+    return max_t_value;
   }
 
  private:

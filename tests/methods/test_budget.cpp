@@ -144,14 +144,14 @@ TEST_P(EveryBudget, EveryIntegerHasAHighestValue) {
     if (p.type != "integer") continue;
     const std::size_t dots = p.range.find(" … ");
     ASSERT_NE(dots, std::string::npos) << p.key;
-    const std::string highest = p.range.substr(dots + std::string(" … ").size());
-    EXPECT_NE(info().make({{p.key, highest}}), nullptr) << p.key;
-    EXPECT_LE(std::stoull(highest), 10'000'000u) << p.key;
+    const std::string max_value = p.range.substr(dots + std::string(" … ").size());
+    EXPECT_NE(info().make({{p.key, max_value}}), nullptr) << p.key;
+    EXPECT_LE(std::stoull(max_value), 10'000'000u) << p.key;
     try {
-      info().make({{p.key, std::to_string(std::stoull(highest) + 1)}});
+      info().make({{p.key, std::to_string(std::stoull(max_value) + 1)}});
       ADD_FAILURE() << p.key;
     } catch (const InputError& e) {
-      EXPECT_NE(std::string(e.what()).find(highest), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(max_value), std::string::npos) << e.what();
     }
   }
 }
@@ -224,8 +224,8 @@ TEST(CoarsePicture, TakesATwentiethOfTheTime) {
   for (const double seconds : {0.04, 0.2, 1.0, 3.0}) {
     const Covered c = coarse(m, seconds);
     EXPECT_TRUE(c.picture.all_rows_read);
-    const double most = seconds < 0.7 ? 0.25 : 0.07;
-    EXPECT_LE(c.seconds, most * seconds);
+    const double tolerance = seconds < 0.7 ? 0.25 : 0.07;
+    EXPECT_LE(c.seconds, tolerance * seconds);
     EXPECT_GE(c.picture.columns, seconds < 0.1 ? 3u : 15u);
   }
   EXPECT_EQ(coarse(m, 1e-9).picture.columns, 1u);

@@ -32,10 +32,10 @@ TEST(Lightcuts, CutsEndWhereBoundsAreSmallOrTheLimitIsReached) {
   const auto reader = m.reader();
   const auto bounds = m.row_bounds();
   for (const std::size_t per_round : {1u, 7u, 32u})
-    for (const std::size_t most : {40u, 100000u}) {
+    for (const std::size_t max_columns : {40u, 100000u}) {
       std::vector<Cut> cuts;
       for (Index row = 0; row < 5; ++row) {
-        cuts.emplace_back(tree, CutLimits{0.02, most, per_round});
+        cuts.emplace_back(tree, CutLimits{0.02, max_columns, per_round});
         cuts.back().begin(row, *bounds);
       }
       CutRounds rounds;
@@ -43,19 +43,19 @@ TEST(Lightcuts, CutsEndWhereBoundsAreSmallOrTheLimitIsReached) {
       for (const Cut& cut : cuts) {
         const float limit = 0.02f * luminance(cut.total());
         std::size_t on_cut = 0, columns = 0;
-        float greatest = 0;
+        float max_bound = 0;
         for (const CutNode& n : cut.nodes()) {
           EXPECT_EQ(n.entry, m.at(cut.row(), tree.representative(n.node)));
           if (n.children != 0) continue;
           ++on_cut, columns += tree.columns(n.node).size();
           if (!tree.is_leaf(n.node))
-            greatest = std::max(greatest, luminance(bounds->bound(tree.set(n.node))));
+            max_bound = std::max(max_bound, luminance(bounds->bound(tree.set(n.node))));
         }
         EXPECT_EQ(on_cut, cut.size());
         EXPECT_EQ(columns, tree.leaves());  // it is a cut
-        EXPECT_LE(on_cut, most);
-        if (on_cut < most) {
-          EXPECT_LE(greatest, 1.00001f * limit);
+        EXPECT_LE(on_cut, max_columns);
+        if (on_cut < max_columns) {
+          EXPECT_LE(max_bound, 1.00001f * limit);
         }
       }
     }

@@ -63,7 +63,7 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
                  {"zero-share", "0.3"}},
                 seed)
                 .sums);
-    EXPECT_LT(t.largest_t(), t.limit());
+    EXPECT_LT(t.max_t(), t.limit());
   }
 }
 

@@ -23,8 +23,8 @@ test::UnbiasednessTest seen(const matrix::DenseMatrix& m, const std::string& met
   return t;
 }
 
-void expect_unbiased(const test::UnbiasednessTest& t) { EXPECT_LT(t.largest_t(), t.limit()); }
-void expect_biased(const test::UnbiasednessTest& t) { EXPECT_GT(t.largest_t(), t.limit()); }
+void expect_unbiased(const test::UnbiasednessTest& t) { EXPECT_LT(t.max_t(), t.limit()); }
+void expect_biased(const test::UnbiasednessTest& t) { EXPECT_GT(t.max_t(), t.limit()); }
 
 TEST(Unbiased, PowerSampling) {
   for (const char* drawing : {"stratified", "independent"}) {

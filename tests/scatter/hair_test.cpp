@@ -42,9 +42,9 @@ TEST(Hair, SpecularPeakLiesOnTheConeOfMirrorDirections) {
     const float peak = eval_f(c, at(phi), at(-phi)).r;
     for (const float off : {0.1f, -0.1f}) {
       // cosⁿ of the angle off, and at most the denominators' change.
-      const float most = std::max(1.0f, std::pow(std::cos(phi) / std::cos(-phi + off), 2.0f));
+      const float max_value = std::max(1.0f, std::pow(std::cos(phi) / std::cos(-phi + off), 2.0f));
       EXPECT_LE(eval_f(c, at(phi), at(-phi + off)).r,
-                peak * std::pow(std::cos(off), 100.0f) * most * 1.0001f);
+                peak * std::pow(std::cos(off), 100.0f) * max_value * 1.0001f);
     }
   }
 }

@@ -101,8 +101,8 @@ TEST_P(EveryBsdfBound, OfOneDirectionIsNearTheValue) {
     if (!s || std::abs(wo.z) < 0.1f || closure.cosine(s->wi) < 0.1f) continue;
     const float value = mean(eval(closure, wo, s->wi));
     if (!(value > 0)) continue;  // a direction drawn at the very edge of a lobe
-    const float most = mean(bound.within({s->wi, 0}, CosineFactor::cosine));
-    sum += 1, bounds += std::log(most / value);
+    const float bound_here = mean(bound.within({s->wi, 0}, CosineFactor::cosine));
+    sum += 1, bounds += std::log(bound_here / value);
   }
   if (sum == 0) return;  // delta lobes alone
   EXPECT_LE(std::exp(bounds / sum), 5) << c.name;

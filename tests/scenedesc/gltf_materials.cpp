@@ -347,15 +347,15 @@ TEST(GltfCameras, TheDefaultOneFramesTheScene) {
     const SensorDesc& s = scene.sensors[0];
     const Transform to_camera = s.to_world.inverse().value();
     const double tan_x = std::tan(s.fov_x * M_PI / 360), tan_y = tan_x * s.film.height / s.film.width;
-    double most = 0;
+    double max_value = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3f p =
           to_camera.point({corner & 1 ? 5.0f : -3.0f, corner & 2 ? 2.0f : 1.0f, corner & 4 ? depth : -depth});
       EXPECT_GT(p.z, s.near_clip);
-      most = std::max({most, std::abs(p.x) / p.z / tan_x, std::abs(p.y) / p.z / tan_y});
+      max_value = std::max({max_value, std::abs(p.x) / p.z / tan_x, std::abs(p.y) / p.z / tan_y});
     }
-    EXPECT_LT(most, 1);
-    EXPECT_GT(most, 0.9);
+    EXPECT_LT(max_value, 1);
+    EXPECT_GT(max_value, 0.9);
   }
 }
 

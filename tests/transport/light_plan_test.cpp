@@ -161,14 +161,14 @@ TEST(VirtualLights, NoSingleOneIsHeavyBehindAWindow) {
     settings.seed = seed, settings.count = 4000, settings.direct = false;
     settings.receivers = &receivers;
     const auto lights = trace_virtual_lights(world, settings);
-    double sum = 0, greatest = 0, count = 0;
+    double sum = 0, max_power = 0, count = 0;
     for (std::size_t j = 0; j < lights.size(); ++j) {
       if (!inside_room(lights, j)) continue;
       const double power = lights.power[j].r;
-      sum += power, greatest = std::max(greatest, power), ++count;
+      sum += power, max_power = std::max(max_power, power), ++count;
     }
     ASSERT_GT(count, 100);
-    EXPECT_LT(greatest * count / sum, 10) << "seed " << seed;
+    EXPECT_LT(max_power * count / sum, 10) << "seed " << seed;
   }
 }
 

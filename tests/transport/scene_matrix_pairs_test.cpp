@@ -59,9 +59,10 @@ double wobble(const scatter::Closure& closure, Vec3f wo, Vec3f wi, bool adjoint)
     Vec3f moved[2] = {wo, wi};
     moved[axis / 3][axis % 3] += 2.4e-7f;
     const Rgb g = scatter::eval_f(closure, moved[0], moved[1], adjoint);
-    double most = 0;
-    for (int c = 0; c < 3; ++c) most = std::max(most, static_cast<double>(std::abs(g[c] - f[c])));
-    sum += most;
+    double max_difference = 0;
+    for (int c = 0; c < 3; ++c)
+      max_difference = std::max(max_difference, static_cast<double>(std::abs(g[c] - f[c])));
+    sum += max_difference;
   }
   return sum;
 }
@@ -80,7 +81,7 @@ Pair one_pair(const RandomEnds& ends, Index i, Index j) {
                            ? l.closure_at(j).cosine(w)
                            : std::abs(dot(w, l.ng[j]));
   double g = cos_x / (d * d);
-  double least_cosine = cos_x;
+  double min_cosine = cos_x;
   Rgb fy(1);
   double fy_bound = kInvPi;
   if (l.kind[j] == LightKind::oriented) g *= std::max(0.0f, -dot(w, l.normal[j]));
@@ -108,11 +109,11 @@ Pair one_pair(const RandomEnds& ends, Index i, Index j) {
   if (l.kind[j] == LightKind::surface)
     wobbles += wobble(l.closure_at(j), l.incoming[j], -w, true) * max_component(fx);
   if (l.kind[j] == LightKind::oriented || l.kind[j] == LightKind::surface)
-    least_cosine = std::min(least_cosine, cos_y);
-  pair.grazing = least_cosine < 2e-6;
+    min_cosine = std::min(min_cosine, cos_y);
+  pair.grazing = min_cosine < 2e-6;
   pair.slack += wobbles * max_component(l.power[j]) * g;
   // A cosine is a sum of three products near 1, good to 3e-7.
-  if (g > 0) pair.slack += 3e-7 / least_cosine * max_component(l.power[j] * fy * fx) * g;
+  if (g > 0) pair.slack += 3e-7 / min_cosine * max_component(l.power[j] * fy * fx) * g;
   for (int c = 0; c < 3; ++c) pair.e[c] = static_cast<double>(l.power[j][c]) * fy[c] * fx[c] * g;
   pair.bound = l.area[j] * g * (kPi * max_component(fx)) * (kPi * fy_bound);
   return pair;
@@ -122,8 +123,8 @@ Pair one_pair(const RandomEnds& ends, Index i, Index j) {
 // greatest are compared absolutely: cosines near 0 have no relative precision.
 TEST_F(SceneMatrixPairs, UnoccludedEntriesFollowTheDefinition) {
   const std::vector<Rgb> e = all(make(), Part::unoccluded);
-  double greatest = 0;
-  for (const Rgb& c : e) greatest = std::max(greatest, static_cast<double>(max_component(c)));
+  double max_entry = 0;
+  for (const Rgb& c : e) max_entry = std::max(max_entry, static_cast<double>(max_component(c)));
   std::size_t not_black = 0;
   for (Index i = 0; i < kRows; ++i)
     for (Index j = 0; j < kColumns; ++j) {
@@ -132,7 +133,7 @@ TEST_F(SceneMatrixPairs, UnoccludedEntriesFollowTheDefinition) {
       const Rgb got = e[i * kColumns + j];
       not_black += !is_black(got);
       for (int c = 0; c < 3; ++c)
-        ASSERT_NEAR(got[c], pair.e[c], 1e-5 * pair.e[c] + pair.slack + 1e-11 * greatest)
+        ASSERT_NEAR(got[c], pair.e[c], 1e-5 * pair.e[c] + pair.slack + 1e-11 * max_entry)
             << "row " << i << ", column " << j << ", kind " << static_cast<int>(ends_->lights.kind[j]);
     }
   EXPECT_GT(not_black, kRows * kColumns / 10);

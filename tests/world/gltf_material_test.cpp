@@ -71,11 +71,11 @@ Specular specular(double alpha, Vec3f wo, Vec3f wi) {
 }
 
 template <typename Check>
-void for_directions(float least_cosine, const Check& check) {
+void for_directions(float min_cosine, const Check& check) {
   for (const float co : {0.1f, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f})
     for (const float ci : {0.1f, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f})
       for (const float angle : {0.0f, 1.0f, 2.0f, 3.1f})
-        if (std::min(co, ci) >= least_cosine) check(direction(co, 0), direction(ci, angle));
+        if (std::min(co, ci) >= min_cosine) check(direction(co, 0), direction(ci, angle));
 }
 
 std::string material(double metallic, double roughness) {

@@ -79,16 +79,16 @@ TEST(GoniometricLight, PowerScalesThePicture) {
     return w.sample_direct(emitter, p, 0.5f, {0.5f, 0.5f}).radiance.g;
   };
   // Half of the map is 2, half 6: the mean is 4, far from the seam the values are those of the picture.
-  double least = 1e9, most = 0;
+  double min_intensity = 1e9, max_intensity = 0;
   for (const float y : {-1.0f, 1.0f}) {
     const Vec3f p{0.1f, y, 0.2f};
     const double ratio = at(1, p) / at(0, p);
     EXPECT_NEAR(ratio / (100 / (4 * kPiD * 4)), 1, 1e-5);
     const double intensity = at(0, p) * dot(p, p);
-    least = std::min(least, intensity), most = std::max(most, intensity);
+    min_intensity = std::min(min_intensity, intensity), max_intensity = std::max(max_intensity, intensity);
   }
-  EXPECT_NEAR(least, 1, 1e-5);
-  EXPECT_NEAR(most, 3, 1e-5);
+  EXPECT_NEAR(min_intensity, 1, 1e-5);
+  EXPECT_NEAR(max_intensity, 3, 1e-5);
   image = image::Image(32, 32);
   image::write_image(path, {image, {}});
   EXPECT_THROW(build(desc), InputError);

@@ -130,13 +130,13 @@ void check(const LoadingCase& c) {
   }
 }
 
-void check_all(const std::vector<LoadingCase>& cases, std::size_t least) {
+void check_all(const std::vector<LoadingCase>& cases, std::size_t min_cases) {
   std::set<std::string> names;
   for (const LoadingCase& c : cases) {
     EXPECT_TRUE(names.insert(c.name).second) << c.name << " is there twice";
     check(c);
   }
-  EXPECT_GE(cases.size(), least);
+  EXPECT_GE(cases.size(), min_cases);
 }
 
 TEST(LoadingCorpus, MeshesWithoutATriangleAreLeftOut) { check_all(meshes_without_triangles(), 35); }

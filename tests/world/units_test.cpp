@@ -36,8 +36,8 @@ TEST(Units, FarTinyAndHugeScenesAreMovedAndScaledByRoundNumbers) {
     const Units units(box({0, 0, 0}, half));
     EXPECT_EQ(units.scale(), std::exp2(std::round(std::log2(units.scale()))));
     const double radius = units.scale() * half * std::sqrt(3.0);
-    const double least = half < 1 ? 1 : 0x1p23;
-    EXPECT_TRUE(radius >= least && radius <= 2 * least) << half;
+    const double min_radius = half < 1 ? 1 : 0x1p23;
+    EXPECT_TRUE(radius >= min_radius && radius <= 2 * min_radius) << half;
   }
 }
 

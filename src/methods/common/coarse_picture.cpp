@@ -57,25 +57,25 @@ void sum_stretch(std::span<const Index> rows, std::span<const matrix::ScaledColu
 std::vector<float> importance(const matrix::LightingMatrix& matrix, const RunOptions& options,
                               const RunClock& clock) {
   const std::size_t rows = matrix.rows(), columns = matrix.columns();
-  const std::size_t most = std::min(kTriedRows, rows);
-  const std::vector<std::uint32_t> order = coarse_to_fine(most);
-  std::vector<std::vector<Rgb>> read(most);
+  const std::size_t max_count = std::min(kTriedRows, rows);
+  const std::vector<std::uint32_t> order = coarse_to_fine(max_count);
+  std::vector<std::vector<Rgb>> read(max_count);
   std::size_t have = 0;
   const auto read_until = [&](std::size_t end) {
     parallel_for(end - have, 1, [&](std::size_t b, std::size_t e) {
       for (std::size_t k = have + b; k < have + e; ++k) {
         read[k].resize(columns);
-        matrix.row(static_cast<Index>((2 * order[k] + 1) * rows / (2 * most)), read[k]);
+        matrix.row(static_cast<Index>((2 * order[k] + 1) * rows / (2 * max_count)), read[k]);
       }
     });
     have = end;
   };
   // One for each thread in any case; they tell what the others take.
   const std::size_t count =
-      timed_choice(options, "coarse_rows", static_cast<std::int64_t>(most), [&]() -> std::size_t {
+      timed_choice(options, "coarse_rows", static_cast<std::int64_t>(max_count), [&]() -> std::size_t {
         const double begin = clock.seconds();
-        while (have < most) {
-          const std::size_t next = std::min(most, have + static_cast<std::size_t>(current_threads()));
+        while (have < max_count) {
+          const std::size_t next = std::min(max_count, have + static_cast<std::size_t>(current_threads()));
           const double took = clock.seconds() - begin;
           if (have > 0 && took * static_cast<double>(next) >
                               kTriedRowsShare * options.time_seconds * static_cast<double>(have))
@@ -148,9 +148,9 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   const auto fitting = [&]() -> std::size_t {
     const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
     const std::size_t tried = std::min(units.size(), static_cast<std::size_t>(current_threads()));
-    std::size_t most = 1;
+    std::size_t max_count = 1;
     for (const std::size_t count : {std::size_t{1}, std::min<std::size_t>(8, drawn.size())}) {
-      if (count > most) break;
+      if (count > max_count) break;
       // The fastest of three: the first warms caches, and others may be at work on the machine.
       double took = 1e9;
       for (int repeat = 0; repeat < 3; ++repeat) {
@@ -167,11 +167,11 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
       picture.entry_seconds = took / static_cast<double>(read * count);
       const double column = std::max(picture.entry_seconds * static_cast<double>(rows), 1e-12);
       const double fit = options.time_seconds / column;
-      most = static_cast<std::size_t>(
+      max_count = static_cast<std::size_t>(
           std::clamp(std::max(kCoarseShare * fit, std::min(kFewDrawsShare * fit, double{kMinDraws})), 1.0,
                      static_cast<double>(drawn.size())));
     }
-    return most;
+    return max_count;
   };
   picture.columns = timed_choice(options, "coarse_columns", static_cast<std::int64_t>(drawn.size()), fitting);
   // A prefix of the draws is a fair sample of them.

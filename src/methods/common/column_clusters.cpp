@@ -145,13 +145,13 @@ double ColumnClusters::expected_error(const linalg::Splitter& clusters, const He
 
 void ColumnClusters::tune_power_share(const linalg::Splitter& clusters, const HeldOutRows& unseen) {
   const auto power = matrix_.column_features().power;
-  double least = expected_error(clusters, unseen);
+  double min_error = expected_error(clusters, unseen);
   for (double share : {0.0, 0.1, 0.3, 0.6}) {
     weights_ = selection_weights(lit_, reduced_.sketch(), power, share);
     const double error = expected_error(clusters, unseen);
     // Held-out rows are few: a gain must be clear to be one.
-    if (error < 0.97 * least) {
-      least = error;
+    if (error < 0.97 * min_error) {
+      min_error = error;
       power_share_ = share;
     }
   }

@@ -13,8 +13,8 @@ namespace lumirank::methods {
 
 namespace {
 
-constexpr double kNoColor = 1e-3;   // of the scalar norm: less than that is no colour to scale
-constexpr double kLargestGain = 4;  // of a channel over the scalar factor
+constexpr double kNoColor = 1e-3;  // of the scalar norm: less than that is no colour to scale
+constexpr double kMaxGain = 4;     // of a channel over the scalar factor
 
 // The cluster's colour over the representative's, per channel.
 Rgb color_gain(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members, std::uint32_t j) {
@@ -28,7 +28,7 @@ Rgb color_gain(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t
     double all_channel = 0;
     for (std::uint32_t k : members) all_channel += static_cast<double>(sketch.channel_norm(k, c));
     gain[static_cast<int>(c)] =
-        static_cast<float>(std::min((all_channel / own_channel) / (all / own), kLargestGain));
+        static_cast<float>(std::min((all_channel / own_channel) / (all / own), kMaxGain));
   }
   return gain;
 }

@@ -18,15 +18,15 @@ TimedChoices::TimedChoices(Lists earlier) : repeats_(true), earlier_(std::move(e
   for (auto& [what, values] : earlier_) std::reverse(values.begin(), values.end());
 }
 
-std::optional<std::int64_t> TimedChoices::earlier(const std::string& what, std::int64_t most) {
+std::optional<std::int64_t> TimedChoices::earlier(const std::string& what, std::int64_t max_value) {
   if (!repeats_) return std::nullopt;
   const auto found = earlier_.find(what);
   if (found == earlier_.end()) does_not_fit("they lack '" + what + "'");
   if (found->second.empty()) does_not_fit("there are too few of '" + what + "'");
   const std::int64_t value = found->second.back();
   found->second.pop_back();
-  if (value < 0 || value > most)
-    does_not_fit("'" + what + "' is " + std::to_string(value) + ", and at most " + std::to_string(most) +
+  if (value < 0 || value > max_value)
+    does_not_fit("'" + what + "' is " + std::to_string(value) + ", and at most " + std::to_string(max_value) +
                  " is possible");
   return value;
 }

@@ -22,7 +22,7 @@ class TimedChoices {
 
   // The earlier run's next choice; nothing if the clock is to be asked. Throws InputError if there is none
   // left, or if it does not lie in 0 … most: the choices belong to another scene or other settings.
-  std::optional<std::int64_t> earlier(const std::string& what, std::int64_t most);
+  std::optional<std::int64_t> earlier(const std::string& what, std::int64_t max_value);
   void record(const std::string& what, std::int64_t value) { made_[what].push_back(value); }
   // A number that must be what it was in the earlier run. Throws InputError if it is not.
   void expect(const std::string& what, std::int64_t value);
@@ -41,11 +41,11 @@ inline TimedChoices* choices_of(const RunOptions& options) {
 }
 // A choice that `measure` makes, once: a count, or 0 or 1.
 template <typename Measure>
-auto timed_choice(const RunOptions& options, const char* what, std::int64_t most, Measure&& measure) {
+auto timed_choice(const RunOptions& options, const char* what, std::int64_t max_value, Measure&& measure) {
   using Value = decltype(measure());
   TimedChoices* choices = choices_of(options);
   if (!choices) return measure();
-  const auto before = choices->earlier(what, most);
+  const auto before = choices->earlier(what, max_value);
   const Value value = before ? static_cast<Value>(*before) : measure();
   choices->record(what, static_cast<std::int64_t>(value));
   return value;

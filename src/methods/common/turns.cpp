@@ -35,10 +35,10 @@ std::int64_t steps_of(double quality) {
 
 }  // namespace
 
-std::size_t Turn::scaled(std::size_t count, std::size_t least) const {
+std::size_t Turn::scaled(std::size_t count, std::size_t min_count) const {
   if (quality == 1) return count;
   const double scaled = std::min(quality * static_cast<double>(count), 1e15);
-  return std::max(static_cast<std::size_t>(std::llround(scaled)), least);
+  return std::max(static_cast<std::size_t>(std::llround(scaled)), min_count);
 }
 
 // A unit for each thread at rising quality, as long as the next trial is short beside the time that is left.
@@ -46,8 +46,8 @@ double Turns::first_quality(const RowGroups& units, const TurnMethod& method, co
                             std::span<Rgb> out) {
   const double deadline = deadline_of(options_);
   const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
-  double quality = std::clamp(std::ceil(method.least * kSteps), 1.0, kSteps) / kSteps;
-  const double least = quality;
+  double quality = std::clamp(std::ceil(method.min_quality * kSteps), 1.0, kSteps) / kSteps;
+  const double min_quality = quality;
   const double left_at_first = deadline - clock_.seconds();
   // Some units for each thread, since they differ; one if that is dear.
   const auto threads = static_cast<std::size_t>(current_threads());
@@ -87,7 +87,7 @@ double Turns::first_quality(const RowGroups& units, const TurnMethod& method, co
     quality = next;
   }
   // Even the lowest quality may be too dear for all units; as many as there is time for have it.
-  return std::max(fitting, least);
+  return std::max(fitting, min_quality);
 }
 
 double Turns::fitting_in(double seconds) const {
@@ -101,7 +101,7 @@ double Turns::next_quality(const TurnMethod& method) const {
   const double fitting = fitting_in(kLaterTurn * left);
   const double next =
       method.averaged ? std::max(fitting, last_quality_ / 2) : std::max(fitting, 2 * last_quality_);
-  return std::max(next, std::max(1 / kSteps, std::ceil(method.least * kSteps) / kSteps));
+  return std::max(next, std::max(1 / kSteps, std::ceil(method.min_quality * kSteps) / kSteps));
 }
 
 RowGroupResult Turns::run_turn(const RowGroups& units, const TurnMethod& method, const Turn& turn,
@@ -147,10 +147,10 @@ RowGroupResult Turns::run(const RowGroups& units, const TurnMethod& method, std:
   fresh_.assign(sums.size(), Rgb(0));
   if (coarse_.all_rows_read)
     coarse_quality_ = kCoarseWorth * static_cast<double>(coarse_.columns) / method.entries_per_row;
-  const auto most = static_cast<std::int64_t>(kSteps * kMaxQualityOfTurn);
+  const auto max_steps = static_cast<std::int64_t>(kSteps * kMaxQualityOfTurn);
   double spent = 0;
   for (std::uint64_t number = 0; spent < kMaxQuality; ++number) {
-    const std::int64_t steps = timed_choice(options_, "turn_quality", most, [&]() -> std::int64_t {
+    const std::int64_t steps = timed_choice(options_, "turn_quality", max_steps, [&]() -> std::int64_t {
       return steps_of(number == 0 ? first_quality(units, method, trial, fresh_) : next_quality(method));
     });
     if (steps == 0) {

@@ -30,7 +30,7 @@ struct Turn {
   std::uint64_t number = 0;  // of independent turns: 0 without a budget
   bool first() const { return number == 0; }
   // A number of something at this quality, at least `least`.
-  std::size_t scaled(std::size_t count, std::size_t least = 1) const;
+  std::size_t scaled(std::size_t count, std::size_t min_count = 1) const;
 };
 
 struct TurnMethod {
@@ -40,7 +40,7 @@ struct TurnMethod {
   bool averaged = true;
   double entries_per_row = 500;  // of quality 1, roughly: for a first guess of what a unit takes
   double exact_from = 0;         // quality from which units are exact; 0: none is
-  double least = 0;              // quality that there is, if more than a sixty-fourth
+  double min_quality = 0;        // quality that there is, if more than a sixty-fourth
   double of_own = 1;             // what quality 1 is of the method's own, where it was cut to the time before
   std::function<void(const Turn&)> prepare{};  // before a turn and before its trials; may be empty
 };

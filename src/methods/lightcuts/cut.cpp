@@ -88,9 +88,9 @@ void Cut::add(std::uint32_t place) {
 void Cut::wait(std::uint32_t place) {
   const LightTree::Node node = nodes_[place].node;
   if (tree_.is_leaf(node)) return;
-  const float most = luminance(bounds_->bound(tree_.set(node)));
+  const float raw_bound = luminance(bounds_->bound(tree_.set(node)));
   ++bounds_computed_;
-  const float bound = most < kUnboundedNode ? most : kUnboundedNode * (1 + tree_.power(node));
+  const float bound = raw_bound < kUnboundedNode ? raw_bound : kUnboundedNode * (1 + tree_.power(node));
   if (!(bound > 0)) return;
   if (bound > kAsleep * threshold()) {
     heap_.push_back({bound, place});
@@ -103,11 +103,11 @@ void Cut::wait(std::uint32_t place) {
 
 // The total has fallen: what slept may have to be refined. False if nothing has.
 bool Cut::wake() {
-  const float least = kAsleep * threshold();
+  const float min_bound = kAsleep * threshold();
   max_asleep_ = 0;
   std::size_t kept = 0, woken = 0;
   for (const Waiting& w : asleep_) {
-    if (w.bound > least) {
+    if (w.bound > min_bound) {
       heap_.push_back(w);
       std::push_heap(heap_.begin(), heap_.end(), later);
       ++woken;

@@ -12,15 +12,15 @@ using matrix::Index;
 namespace {
 
 constexpr Index kNoBlock = 0xffffffffu;
-constexpr int kSmallestUnit = 16, kLargestUnit = 32;  // pixels
+constexpr int kMinUnit = 16, kMaxUnit = 32;  // pixels
 constexpr int kEnoughUnits = 256;
 constexpr float kCosine30 = 0.8660254f;
 constexpr float kSine30 = 0.5f;
 
 int unit_side(int width, int height) {
-  int side = kLargestUnit;
+  int side = kMaxUnit;
   const auto units = [&] { return ((width + side - 1) / side) * ((height + side - 1) / side); };
-  while (side > kSmallestUnit && units() < kEnoughUnits) side /= 2;
+  while (side > kMinUnit && units() < kEnoughUnits) side /= 2;
   return side;
 }
 

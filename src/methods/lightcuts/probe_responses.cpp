@@ -13,12 +13,13 @@ constexpr std::size_t kLights = 32;
 ProbeResponses::ProbeResponses(const LightTree& tree) {
   std::vector<LightTree::Node> cut(tree.roots().begin(), tree.roots().end());
   while (cut.size() < kLights) {
-    auto most = cut.end();
+    auto strongest = cut.end();
     for (auto n = cut.begin(); n != cut.end(); ++n)
-      if (!tree.is_leaf(*n) && (most == cut.end() || tree.power(*n) > tree.power(*most))) most = n;
-    if (most == cut.end()) break;
-    const LightTree::Node node = *most;
-    *most = tree.left(node);
+      if (!tree.is_leaf(*n) && (strongest == cut.end() || tree.power(*n) > tree.power(*strongest)))
+        strongest = n;
+    if (strongest == cut.end()) break;
+    const LightTree::Node node = *strongest;
+    *strongest = tree.left(node);
     cut.push_back(tree.right(node));
   }
   for (const LightTree::Node node : cut) lights_.push_back(tree.representative(node));

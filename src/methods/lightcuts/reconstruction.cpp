@@ -39,16 +39,16 @@ void ReconstructionCut::find(std::span<const CutSample* const> samples) {
   while (!stack_.empty()) {
     const Visit visit = stack_.back();
     stack_.pop_back();
-    float least = kInfinity, most = 0;
+    float min_value = kInfinity, max_value = 0;
     bool on_cut = false;
     for (std::size_t s = 0; s < samples.size(); ++s) {
       const CutSample::Node& n = samples[s]->nodes[visit.places[s]];
       const float value = luminance(n.value);
-      least = std::min(least, value), most = std::max(most, value);
+      min_value = std::min(min_value, value), max_value = std::max(max_value, value);
       on_cut = on_cut || n.children == 0;
     }
-    if (most == 0) continue;
-    if (least > 0 && most - least < agreed) {
+    if (max_value == 0) continue;
+    if (min_value > 0 && max_value - min_value < agreed) {
       Interpolated node{visit.node, {}};
       for (std::size_t s = 0; s < samples.size(); ++s)
         node.values[s] = samples[s]->nodes[visit.places[s]].value;

@@ -87,9 +87,10 @@ void PairCut::wait(std::uint32_t place) {
   if (exact(p)) return;
   const float weight = gather_.weight(p.gather);
   if (!(weight > 0)) return;
-  const float most = weight * luminance(gather_.bounds(p.gather).bound(lights_.set(p.light)));
+  const float raw_bound = weight * luminance(gather_.bounds(p.gather).bound(lights_.set(p.light)));
   ++bounds_computed_;
-  const float bound = most < kUnboundedPair ? most : kUnboundedPair * (1 + weight * lights_.power(p.light));
+  const float bound =
+      raw_bound < kUnboundedPair ? raw_bound : kUnboundedPair * (1 + weight * lights_.power(p.light));
   if (!(bound > 0)) return;
   heap_.push_back({bound, place});
   std::push_heap(heap_.begin(), heap_.end(), later);

@@ -68,7 +68,7 @@ class PowerSampling final : public Method {
     std::size_t draws = 0, rendered = 0;
     double seconds = 0;
     // Without this an error that cannot be had would be pursued for ever.
-    const auto most =
+    const auto max_rendered =
         static_cast<std::size_t>((options.time_seconds > 0 ? kMaxShareOfColumnsInTime : kMaxShareOfColumns) *
                                  static_cast<double>(all.size()));
     for (std::size_t round = 0;; ++round) {
@@ -112,7 +112,7 @@ class PowerSampling final : public Method {
       draws += count;
       if (options.on_estimate) options.on_estimate(estimate.sums);
       if (estimate.interrupted || pass.out_of_time || !open_ended) break;
-      if (rendered >= most) {
+      if (rendered >= max_rendered) {
         if (options.target_error > 0) estimate.trace.notes["target"] = "not reached";
         break;
       }
@@ -129,7 +129,7 @@ class PowerSampling final : public Method {
     }
     if (options.time_seconds > 0) {
       numbers["budget.coarse_share"] = 0;  // every row has all columns that were rendered
-      if (draws < settings_.columns && rendered < most && draws > 0)
+      if (draws < settings_.columns && rendered < max_rendered && draws > 0)
         numbers["budget.seconds_wanted"] =
             1.1 * timer.seconds() * static_cast<double>(settings_.columns) / static_cast<double>(draws);
     }

@@ -56,9 +56,9 @@ bool RowColumnRun::target_met() const {
 
 ErrorCurve RowColumnRun::error_curve(ColumnClusters& known, double until_error) {
   ErrorCurve curve;
-  const std::size_t most = std::max<std::size_t>(64, std::min<std::size_t>(columns_ / 2, 8192));
+  const std::size_t max_clusters = std::max<std::size_t>(64, std::min<std::size_t>(columns_ / 2, 8192));
   linalg::Splitter clusters = known.cluster(1, linalg::ClusteringAlgorithm::splitting);
-  for (std::size_t c = 32; c <= most; c *= 2) {
+  for (std::size_t c = 32; c <= max_clusters; c *= 2) {
     const bool more = clusters.split_to(c);
     if (c == 256) known.tune_power_share(clusters, unseen_);
     curve.points.push_back(
@@ -86,9 +86,9 @@ void RowColumnRun::more_rows_while_they_pay(double needed) {
         pay = curve.unseen(c) > 1.25 * curve.seen(c) &&
               static_cast<double>(rows_read()) * costs().row < 0.5 * c * costs().column;
       } else if (needed > 0) {
-        const auto most = static_cast<double>(columns_);
-        pay = more_rows_pay_for_target(curve, {needed, rows_read(), most, columns_before}, costs());
-        columns_before = std::min(curve.columns_for_unseen(needed), most);
+        const auto max_columns = static_cast<double>(columns_);
+        pay = more_rows_pay_for_target(curve, {needed, rows_read(), max_columns, columns_before}, costs());
+        columns_before = std::min(curve.columns_for_unseen(needed), max_columns);
       }
       if (options_.time_seconds > 0 && settings_.columns == 0)
         pay = pay && more_rows_pay_for_budget(curve, kPlannedTime * time_left(), rows_read(), costs());
@@ -103,17 +103,17 @@ void RowColumnRun::more_rows_while_they_pay(double needed) {
 }
 
 linalg::Splitter RowColumnRun::cluster_for(ColumnClusters& known, double needed) {
-  std::size_t most = settings_.columns > 0 ? settings_.columns : columns_;
+  std::size_t max_columns = settings_.columns > 0 ? settings_.columns : columns_;
   const bool asked = options_.target_error > 0 || options_.time_seconds > 0;
-  if (settings_.columns == 0 && !asked) most = std::min(most, kMaxColumnsUnasked);
+  if (settings_.columns == 0 && !asked) max_columns = std::min(max_columns, kMaxColumnsUnasked);
   if (options_.time_seconds > 0 && settings_.columns == 0) {
-    most = timed_choice(options_, "affordable_columns", static_cast<std::int64_t>(most), [&] {
+    max_columns = timed_choice(options_, "affordable_columns", static_cast<std::int64_t>(max_columns), [&] {
       const double affordable = kPlannedTime * time_left() / costs().column / (1 + settings_.zero_share);
-      return std::min(most, static_cast<std::size_t>(std::max(affordable, 1.0)));
+      return std::min(max_columns, static_cast<std::size_t>(std::max(affordable, 1.0)));
     });
   }
   if (settings_.columns > 0 || needed <= 0) {
-    linalg::Splitter all = known.cluster(most, settings_.clustering);
+    linalg::Splitter all = known.cluster(max_columns, settings_.clustering);
     known.tune_power_share(all, unseen_);
     return all;
   }
@@ -121,7 +121,7 @@ linalg::Splitter RowColumnRun::cluster_for(ColumnClusters& known, double needed)
   // Splitting alone is quick and gives a first guess; the clustering that is used needs fewer columns.
   const ErrorCurve curve = error_curve(known, needed);
   const auto bounded = [&](double c) {
-    return static_cast<std::size_t>(std::clamp(c, 1.0, static_cast<double>(most)));
+    return static_cast<std::size_t>(std::clamp(c, 1.0, static_cast<double>(max_columns)));
   };
   std::size_t c = bounded(0.7 * curve.columns_for_unseen(needed));
   linalg::Splitter clusters = known.cluster(c, settings_.clustering);
@@ -129,7 +129,7 @@ linalg::Splitter RowColumnRun::cluster_for(ColumnClusters& known, double needed)
   for (int round = 0; round < 6; ++round) {
     const double error = known.expected_error(clusters, unseen_);
     if (error <= needed && (error >= 0.93 * needed || round >= 3)) break;
-    if (error > needed && (c >= most || clusters.clusters() < c)) break;  // no more can be had
+    if (error > needed && (c >= max_columns || clusters.clusters() < c)) break;  // no more can be had
     c = bounded(static_cast<double>(c) * std::clamp(1.02 * error / needed, 0.5, 2.0));
     clusters = known.cluster(c, settings_.clustering);
   }

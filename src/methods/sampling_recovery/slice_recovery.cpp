@@ -107,11 +107,11 @@ void SliceRecovery::request_where_dense() {
         static_cast<std::uint8_t>((std::abs(sparse[at]) > 0.5f * all[at]) & (state[at] != Entry::free));
   density_.build(wrong_, rows, columns);
   const auto density = density_.density();
-  const auto least = static_cast<float>(settings_.density);
+  const auto min_density = static_cast<float>(settings_.density);
   chosen_.resize(rows);
   for (std::size_t k = 0; k < columns; ++k) {
     const float* const dense = &density[k * rows];
-    for (std::size_t i = 0; i < rows; ++i) chosen_[i] = dense[i] > least ? 1 : 0;
+    for (std::size_t i = 0; i < rows; ++i) chosen_[i] = dense[i] > min_density ? 1 : 0;
     request_chosen(separated_[k]);
   }
 }

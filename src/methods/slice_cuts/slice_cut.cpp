@@ -119,13 +119,13 @@ void SliceCut::contributions(const SliceCutSettings& settings, SliceEntries& ent
       above = p;
     const std::uint32_t begin = place(above),
                         end = begin + static_cast<std::uint32_t>(tree_.columns(above).size());
-    float greatest = 0;
+    float max_entry = 0;
     bool visible = !settings.sparse_visibility;
     float sampled = 0;
     const auto take = [&](std::size_t k) {
       const std::uint32_t at = place(clusters_[k].node);
       if (at < begin || at >= end) return false;
-      greatest = std::max(greatest, max_entry_[k]);
+      max_entry = std::max(max_entry, max_entry_[k]);
       visible |= entries.slot(clusters_[k].slot).any_visible || clusters_[k].lit > 0;
       ++sampled;
       return true;
@@ -134,7 +134,7 @@ void SliceCut::contributions(const SliceCutSettings& settings, SliceEntries& ent
     }
     for (std::size_t k = c; k > 0 && c - k < kReach && take(k - 1); --k) {
     }
-    contribution_[c] = greatest * power * (visible ? 1 : 1 / (sampled + 2));
+    contribution_[c] = max_entry * power * (visible ? 1 : 1 / (sampled + 2));
   }
 }
 

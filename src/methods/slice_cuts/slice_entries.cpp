@@ -27,14 +27,14 @@ void SliceEntries::start(std::span<const Index> slice, std::uint64_t key) {
   requests_.clear();
   first_layer_.resize(rows_.size());
   row_of_.resize(rows_.receivers().size());
-  std::uint32_t largest = 1;
+  std::uint32_t max_count = 1;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const std::uint32_t count = receivers_of(r);
     first_layer_[r] = static_cast<std::uint8_t>(mix64(key ^ mix64(r)) >> 56);
-    largest = std::max(largest, count);
+    max_count = std::max(max_count, count);
     for (std::uint32_t k = rows_.begin(r); k < rows_.end(r); ++k) row_of_[k] = static_cast<std::uint32_t>(r);
   }
-  layer_count_ = std::min<std::size_t>(largest, kLayers);
+  layer_count_ = std::min<std::size_t>(max_count, kLayers);
   while (layers_.size() < layer_count_) layers_.push_back(matrix_.reader());
   layer_receivers_.resize(rows_.size());
   for (std::size_t l = 0; l < layer_count_; ++l) {

@@ -42,13 +42,13 @@ void LightWalk::add(Node node) {
 
 void LightWalk::refine(std::size_t nodes, float threshold) {
   while (!heap_.empty() && size() < nodes) {
-    const Waiting most = heap_.front();
+    const Waiting top = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), later);
     heap_.pop_back();
-    if (most.bound > threshold) {
-      add(tree_.left(most.node)), add(tree_.right(most.node));
+    if (top.bound > threshold) {
+      add(tree_.left(top.node)), add(tree_.right(top.node));
     } else {
-      settled_.push_back(most.node);
+      settled_.push_back(top.node);
     }
   }
 }

@@ -162,16 +162,17 @@ class StochasticLightcuts final : public Method {
   static void write_costs(const WorkspacePool<WalkWorkspace>& pool, const matrix::LightingMatrix& matrix,
                           std::map<std::string, double>& numbers) {
     const auto rows = std::max(1.0, static_cast<double>(matrix.rows()));
-    double nodes = 0, most = 0, bounds = 0, entries = 0;
+    double nodes = 0, max_nodes = 0, bounds = 0, entries = 0;
     pool.for_each([&](const WalkWorkspace& w) {
-      nodes += static_cast<double>(w.nodes), most = std::max(most, static_cast<double>(w.max_nodes));
+      nodes += static_cast<double>(w.nodes),
+          max_nodes = std::max(max_nodes, static_cast<double>(w.max_nodes));
       bounds += static_cast<double>(w.walk.bounds_computed()), entries += static_cast<double>(w.evaluated);
       numbers["cpu_seconds.cuts"] += w.seconds_cuts;
       numbers["cpu_seconds.entries"] += w.seconds_entries;
     });
     numbers["rows"] = 0;
     numbers["columns"] = nodes / rows;
-    numbers["columns_max"] = most;
+    numbers["columns_max"] = max_nodes;
     numbers["bounds"] = bounds / rows;
     const auto columns = static_cast<double>(matrix.columns());
     numbers["sampling_rate"] = columns > 0 ? entries / rows / columns : 1.0;

@@ -13,7 +13,7 @@ namespace lumirank::scatter {
 // the greatest cosine with the mirror direction of wo.
 struct AngleRange {
   float cos_lo = 0, cos_hi = 1;
-  float tilt_sin = 0, tilt_cos = 1, most_tilt_sin = 1;
+  float tilt_sin = 0, tilt_cos = 1, max_tilt_sin = 1;
   float half_lo = 0;
   float cos_mirror = 1;
 };
@@ -42,7 +42,7 @@ struct ConeWidth {
 };
 
 // eval_f() answers above it.
-inline constexpr float kLeastCosine = 1e-6f;
+inline constexpr float kMinCosine = 1e-6f;
 
 // exp(-tan²/α²)/cos⁴ over all tilts.
 float gaussian_slopes(const AngleRange& range, float alpha);

@@ -99,9 +99,9 @@ SheenAlbedo sheen_albedo(float roughness, float cosine) {
   return {raw_albedo(roughness, cosine), std::min(1.0f, look_up(tables().held, roughness, cosine))};
 }
 
-float sheen_layer_factor(const SheenLayer& sheen_layer, float least_cosine) {
+float sheen_layer_factor(const SheenLayer& sheen_layer, float min_cosine) {
   return 1 -
-         sheen_layer.share_value() * std::min(1.0f, raw_albedo(sheen_layer.roughness_value(), least_cosine));
+         sheen_layer.share_value() * std::min(1.0f, raw_albedo(sheen_layer.roughness_value(), min_cosine));
 }
 
 namespace {
@@ -117,7 +117,7 @@ Rgb charlie_sheen_albedo(LobeView view, Vec3f wo) {
 }
 float charlie_sheen_importance(LobeView view, float cos_o) {
   const Lobe& lobe = view.lobe;
-  return mean(lobe.color) * std::max(kLeastImportance, sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).held);
+  return mean(lobe.color) * std::max(kMinImportance, sheen_albedo(std::sqrt(lobe.alpha_u), cos_o).held);
 }
 float charlie_sheen_factor(const Lobe& lobe, float cos_o, float) {
   // The albedo falls with the cosine, and the smaller one counts.
@@ -126,7 +126,7 @@ float charlie_sheen_factor(const Lobe& lobe, float cos_o, float) {
 }
 Rgb charlie_sheen_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
   const float cosine = factor == CosineFactor::cosine ? r.cos_hi : 1.0f;
-  const float d = std::pow(r.most_tilt_sin, 1 / t.lobe->alpha_u);
+  const float d = std::pow(r.max_tilt_sin, 1 / t.lobe->alpha_u);
   // c/(co + c - co·c) grows with c, and what is below it too.
   const float c = factor == CosineFactor::cosine ? r.cos_hi : r.cos_lo;
   return t.scale * (d * cosine / (4 * (t.cos_o + c - t.cos_o * c)));

@@ -26,6 +26,6 @@ struct SheenAlbedo {
 SheenAlbedo sheen_albedo(float roughness, float cosine);
 
 // What the sheen over a lobe leaves of it, given the smaller of the two cosines.
-float sheen_layer_factor(const SheenLayer& sheen_layer, float least_cosine);
+float sheen_layer_factor(const SheenLayer& sheen_layer, float min_cosine);
 
 }  // namespace lumirank::scatter

@@ -26,7 +26,7 @@ Rgb interfaced_albedo(LobeView view, Vec3f wo) {
 }
 float interfaced_importance(LobeView view, float cos_o) {
   const Lobe& lobe = view.lobe;
-  return mean(lobe.color) * std::max(kLeastImportance, interface_transmittance(lobe, cos_o)) * lobe.alpha_v;
+  return mean(lobe.color) * std::max(kMinImportance, interface_transmittance(lobe, cos_o)) * lobe.alpha_v;
 }
 float interfaced_factor(const Lobe& lobe, float cos_o, float) {
   return kInvPi * interface_transmittance(lobe, cos_o);

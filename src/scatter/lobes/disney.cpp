@@ -73,15 +73,15 @@ float disney_diffuse_shape(const LobeTerm& t, const AngleRange& r, CosineFactor 
     return (1 - 0.5f * fo) * (1 - 0.5f * fi) + rr * (fo + fi + fo * fi * (rr - 1));
   };
   const float cosine = factor == CosineFactor::cosine ? r.cos_hi : 1.0f;
-  float most = std::max(smooth(schlick_weight(r.cos_lo)), smooth(schlick_weight(r.cos_hi))) * cosine;
+  float max_shape = std::max(smooth(schlick_weight(r.cos_lo)), smooth(schlick_weight(r.cos_hi))) * cosine;
   if (t.lobe->extra > 0) {
     // ss·(1/(co + ci) - 1/2) + 1/2, where ss ≤ 1 and the bracket is not negative.
     const float ss = square(std::max(1.0f, 0.5f * rr));
     const float flat =
         factor == CosineFactor::cosine ? r.cos_hi / (t.cos_o + r.cos_hi) : 1 / (t.cos_o + r.cos_lo);
-    most = lerp(most, 1.25f * ss * flat, t.lobe->extra);
+    max_shape = lerp(max_shape, 1.25f * ss * flat, t.lobe->extra);
   }
-  return most;
+  return max_shape;
 }
 
 Rgb disney_diffuse_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
@@ -91,7 +91,7 @@ UnderCoat disney_under_coat(LobeView view) { return {UnderCoat::Sort::diffuse, v
 
 // Of sheen and clear coat: both are Fresnel's curve above all.
 float schlick_importance(LobeView view, float cos_o) {
-  return mean(view.lobe.color) * std::max(kLeastImportance, schlick_weight(cos_o));
+  return mean(view.lobe.color) * std::max(kMinImportance, schlick_weight(cos_o));
 }
 
 float sheen_factor(const Lobe&, float, float) { return 1; }

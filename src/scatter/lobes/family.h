@@ -49,7 +49,7 @@ struct Widening {
 
 // Microfacets may send light where the macroscopic surface does not: no lobe is chosen less often than by
 // this share of its color.
-inline constexpr float kLeastImportance = 0.05f;
+inline constexpr float kMinImportance = 0.05f;
 
 // The defaults of LobeFamily: what diffuse lobes do.
 float cosine_pdf(LobeView view, Vec3f wo, Vec3f wi);

@@ -23,10 +23,10 @@ namespace {
 constexpr float kInvPi2 = kInvPi * kInvPi;
 
 // c² never counts as less: f grows like 1/c².
-constexpr float kLeastSine2 = 1e-8f;
+constexpr float kMinSine2 = 1e-8f;
 
 // Not 1 - x²: near the fibre that difference has no digits left.
-float sine2(Vec3f w) { return std::max(kLeastSine2, w.y * w.y + w.z * w.z); }
+float sine2(Vec3f w) { return std::max(kMinSine2, w.y * w.y + w.z * w.z); }
 float latitude(Vec3f w) { return std::atan2(w.x, std::sqrt(w.y * w.y + w.z * w.z)); }
 
 // cos(φo + φi), at least 0.
@@ -100,22 +100,22 @@ bool hair_specular_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 float hair_diffuse_factor(const Lobe&, float, float) { return kInvPi * kInvPi; }
 float hair_specular_factor(const Lobe& lobe, float, float) { return lobe.alpha_v; }
 // Greatest sine of the angle to the fibre.
-float most_sine_of(float lo, float hi) {
+float max_sine_of(float lo, float hi) {
   return lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
 }
 Rgb hair_diffuse_bound(const LobeTerm& t, float, float lo, float hi, CosineFactor factor) {
-  return t.scale * (factor == CosineFactor::cosine ? most_sine_of(lo, hi) : 1.0f);
+  return t.scale * (factor == CosineFactor::cosine ? max_sine_of(lo, hi) : 1.0f);
 }
 Rgb hair_specular_bound(const LobeTerm& t, float latitude_o, float lo, float hi, CosineFactor factor) {
-  const float least_sine = std::min(std::cos(lo), std::cos(hi));  // of the angle to the fibre
-  const float most_sine = most_sine_of(lo, hi);
+  const float min_sine = std::min(std::cos(lo), std::cos(hi));  // of the angle to the fibre
+  const float max_sine = max_sine_of(lo, hi);
   const float from = latitude_o + lo, to = latitude_o + hi;
   const float off = from > 0 ? from : to < 0 ? -to : 0.0f;
   if (off >= kPi / 2) return Rgb(0);
   // c/max(co, c)² ≤ 1/max(co, c); the denominator does not count below 1e-8.
-  const float larger = std::max({t.cos_o, least_sine, 1e-4f});
+  const float larger = std::max({t.cos_o, min_sine, 1e-4f});
   const float share = factor == CosineFactor::cosine
-                          ? std::min(1 / larger, most_sine / square(std::max(t.cos_o, 1e-4f)))
+                          ? std::min(1 / larger, max_sine / square(std::max(t.cos_o, 1e-4f)))
                           : 1 / square(larger);
   return t.scale * (std::pow(std::cos(off), t.lobe->alpha_u) * share);
 }

@@ -157,7 +157,7 @@ void fit_draws(MeasuredTable& table) {
       all[k] += static_cast<double>(flux * angle);
     });
   }
-  double least = -1;
+  double min_moment = -1;
   for (const float glossy : {0.0f, 0.25f, 0.5f, 0.75f, 0.9f, 0.95f}) {
     for (float alpha = 0.006f; alpha < 1; alpha *= 1.5f) {
       double moment = 0;
@@ -167,7 +167,8 @@ void fit_draws(MeasuredTable& table) {
           moment += static_cast<double>(s.flux) * static_cast<double>(s.flux) * static_cast<double>(s.angle) /
                     (static_cast<double>(table.density(s.wo, s.wi, alpha, glossy)) * all[k] * all[k]);
       }
-      if (least < 0 || moment < least) least = moment, table.share = glossy, table.alpha = alpha;
+      if (min_moment < 0 || moment < min_moment)
+        min_moment = moment, table.share = glossy, table.alpha = alpha;
       if (glossy == 0) break;
     }
   }
@@ -180,14 +181,14 @@ void find_maxima(MeasuredTable& table) {
   table.max.resize(n_h * n_d);
   for (std::size_t h = n_h; h-- > 0;) {
     for (std::size_t d = 0; d < n_d; ++d) {
-      Rgb most(0);
+      Rgb max_value(0);
       const auto raise = [&](Rgb value) {
-        for (int c = 0; c < 3; ++c) most[c] = std::max(most[c], value[c]);
+        for (int c = 0; c < 3; ++c) max_value[c] = std::max(max_value[c], value[c]);
       };
       for (std::size_t p = 0; p < n_p; ++p) raise(table.cells[(h * n_d + d) * n_p + p]);
       if (h + 1 < n_h) raise(table.max[(h + 1) * n_d + d]);
       if (d > 0) raise(table.max[h * n_d + d - 1]);
-      table.max[h * n_d + d] = most;
+      table.max[h * n_d + d] = max_value;
     }
   }
 }
@@ -222,7 +223,7 @@ Rgb measured_albedo(LobeView view, Vec3f wo) {
 
 float measured_importance(LobeView view, float cos_o) {
   const Rgb color = view.lobe.color;
-  return std::max(kLeastImportance * mean(color),
+  return std::max(kMinImportance * mean(color),
                   mean(color * look_up_albedo(table_of(view.lobe).kept, cos_o)));
 }
 

@@ -126,16 +126,16 @@ Rgb reflect_albedo(LobeView view, Vec3f wo) {
 
 float reflect_importance(LobeView view, float cos_o) {
   const Lobe& lobe = view.lobe;
-  return std::max(kLeastImportance * mean(lobe.color), mean(lobe.color * lobe_fresnel(view, cos_o)));
+  return std::max(kMinImportance * mean(lobe.color), mean(lobe.color * lobe_fresnel(view, cos_o)));
 }
 float transmit_importance(LobeView view, float cos_o) {
-  return mean(view.lobe.color) * std::max(kLeastImportance, 1 - fresnel_dielectric(cos_o, view.eta));
+  return mean(view.lobe.color) * std::max(kMinImportance, 1 - fresnel_dielectric(cos_o, view.eta));
 }
 float thin_importance(LobeView view, float cos_o) {
-  return mean(view.lobe.color) * std::max(kLeastImportance, 1 - fresnel_dielectric(cos_o, view.lobe.eta));
+  return mean(view.lobe.color) * std::max(kMinImportance, 1 - fresnel_dielectric(cos_o, view.lobe.eta));
 }
 
-float least_alpha(const Lobe& lobe) { return std::min(lobe.alpha_u, lobe.alpha_v); }
+float min_alpha(const Lobe& lobe) { return std::min(lobe.alpha_u, lobe.alpha_v); }
 
 UnderCoat reflect_under_coat(LobeView view) {
   const Lobe& lobe = view.lobe;
@@ -204,7 +204,7 @@ constinit const LobeFamily microfacet_reflect_family{.value = microfacet_reflect
                                                      .importance = reflect_importance,
                                                      .factor_of_wo = reflect_factor,
                                                      .bound = reflect_bound,
-                                                     .roughness = least_alpha,
+                                                     .roughness = min_alpha,
                                                      .under_coat = reflect_under_coat,
                                                      .widen = widen_facets,
                                                      .fresnel = true,
@@ -218,7 +218,7 @@ constinit const LobeFamily microfacet_transmit_family{.value = microfacet_transm
                                                       .importance = transmit_importance,
                                                       .factor_of_wo = transmit_factor,
                                                       .bound = transmit_bound,
-                                                      .roughness = least_alpha,
+                                                      .roughness = min_alpha,
                                                       .refracts = true};
 
 constinit const LobeFamily thin_transmit_family{.value = thin_transmit_value,
@@ -227,7 +227,7 @@ constinit const LobeFamily thin_transmit_family{.value = thin_transmit_value,
                                                 .importance = thin_importance,
                                                 .factor_of_wo = reflect_factor,
                                                 .bound = transmit_bound,
-                                                .roughness = least_alpha,
+                                                .roughness = min_alpha,
                                                 .two_widths = true,
                                                 .lanes = LaneForm::thin_transmit};
 

@@ -34,9 +34,10 @@ void oren_nayar_parts(const LobeTerm& t, const AngleRange& r, CosineFactor facto
   const float s2 = square(t.lobe->alpha_u);
   const float c1 = 1 - 0.5f * s2 / (s2 + 0.33f), c2 = 0.45f * s2 / (s2 + 0.09f),
               c3 = 0.125f * s2 / (s2 + 0.09f);
-  const float lo = std::max(r.cos_lo, kLeastCosine);
+  const float lo = std::max(r.cos_lo, kMinCosine);
   // β is the smaller angle: its tangent is at most either's.
-  const float most = std::max(t.cos_o, lo), tan_beta = std::sqrt(std::max(0.0f, 1 - most * most)) / most;
+  const float max_cosine = std::max(t.cos_o, lo),
+              tan_beta = std::sqrt(std::max(0.0f, 1 - max_cosine * max_cosine)) / max_cosine;
   const float tan_half = 2 / (t.cos_o + r.cos_lo);
   const float cosine = factor == CosineFactor::cosine ? r.cos_hi : 1.0f;
   float across = c2 * tan_beta * cosine;

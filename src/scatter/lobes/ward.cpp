@@ -51,7 +51,7 @@ float ward_factor(const Lobe& lobe, float cos_o, float) {
   return 1 / (area * (lobe.variant == 0 ? 4 * std::sqrt(cos_o) : lobe.variant == 1 ? 4 * cos_o : 1.0f));
 }
 float ward_shape(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
-  const float lo = std::max(r.cos_lo, kLeastCosine);
+  const float lo = std::max(r.cos_lo, kMinCosine);
   if (t.lobe->variant == 2) {
     // |h|²·exp(-tan²/α²)/h_z⁴ = exp(-tan²/α²)/cos⁴ / |h|², |h| = 2·cos(d/2) and no less than h_z.
     const float len2 = std::max(square(2 * r.half_lo), square(t.cos_o + r.cos_lo));

@@ -40,8 +40,8 @@ T from_bytes(const char* at) {
 // section 3.6.2.2).
 template <typename T>
 T component(const char* at, int type, bool normalized) {
-  const auto scaled = [&](float value, float largest) {
-    return static_cast<T>(normalized ? std::max(value / largest, -1.0f) : value);
+  const auto scaled = [&](float value, float max_value) {
+    return static_cast<T>(normalized ? std::max(value / max_value, -1.0f) : value);
   };
   switch (type) {
     case kByte:
@@ -83,7 +83,7 @@ Strided strided(const Buffers::View& view, const Element& part, std::size_t offs
 
 std::size_t offset_of(const Element& part) {
   const auto offset = part.find("byteOffset");
-  return static_cast<std::size_t>(offset ? offset->integer(0, kMostBytes) : 0);
+  return static_cast<std::size_t>(offset ? offset->integer(0, kMaxBytes) : 0);
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ struct Accessors::Layout {
 };
 
 const Element& Accessors::find(const Element& user) const {
-  const std::int64_t index = user.integer(0, kMostBytes);
+  const std::int64_t index = user.integer(0, kMaxBytes);
   if (index >= static_cast<std::int64_t>(accessors_.size()))
     user.fail(
         "names accessor " + std::to_string(index) + ", and the file has " + std::to_string(accessors_.size()),
@@ -130,7 +130,7 @@ std::vector<T> Accessors::read(const Layout& layout) {
   const auto sparse = accessor.find("sparse");
   Strided from;
   if (index) {
-    const Buffers::View view = buffers_.view(index->integer(0, kMostBytes), *index);
+    const Buffers::View view = buffers_.view(index->integer(0, kMaxBytes), *index);
     from = strided(view, accessor, offset_of(accessor), layout.bytes, layout.count);
   } else if (layout.count > std::size_t{1} << 24) {
     // Zeros cost a file nothing.
@@ -160,7 +160,7 @@ void Accessors::replace_sparse(const Layout& layout, const Element& sparse, std:
   // Both are tightly packed.
   const auto packed = [&](const Element& part, std::size_t bytes) {
     const Element index = part.at("bufferView");
-    Buffers::View view = buffers_.view(index.integer(0, kMostBytes), index);
+    Buffers::View view = buffers_.view(index.integer(0, kMaxBytes), index);
     view.stride = 0;
     return strided(view, part, offset_of(part), bytes, count);
   };
@@ -176,12 +176,13 @@ void Accessors::replace_sparse(const Layout& layout, const Element& sparse, std:
   }
 }
 
-Numbers Accessors::floats(const Element& user, std::size_t least, std::size_t most) {
+Numbers Accessors::floats(const Element& user, std::size_t min_components, std::size_t max_components) {
   const Layout from = layout(user);
-  if (from.components < least || from.components > most)
+  if (from.components < min_components || from.components > max_components)
     user.fail("names " + from.element.path() + ", which has " + std::to_string(from.components) +
-                  " components where " + std::to_string(least) +
-                  (most > least ? " to " + std::to_string(most) : "") + " are wanted",
+                  " components where " + std::to_string(min_components) +
+                  (max_components > min_components ? " to " + std::to_string(max_components) : "") +
+                  " are wanted",
               "mend its \"type\"");
   return {from.components, from.count, read<float>(from)};
 }

@@ -20,7 +20,7 @@ class Accessors {
 
   // The accessor that `user` (an index in the file) names, as floats: normalised integers within [0, 1] or
   // [-1, 1], others by their value. InputError at `user` unless it has from `least` to `most` components.
-  Numbers floats(const Element& user, std::size_t least, std::size_t most);
+  Numbers floats(const Element& user, std::size_t min_components, std::size_t max_components);
   // Unsigned integers of one component (indices); with `most` = 4 also of four (joints).
   std::vector<std::uint32_t> integers(const Element& user, std::size_t components = 1);
   // How many elements it has, nothing decoded.

@@ -6,7 +6,7 @@ namespace lumirank::scenedesc::gltf {
 
 void Budget::take(double bytes, const Element& user) {
   taken_ += bytes;
-  if (taken_ > most_)
+  if (taken_ > max_)
     user.fail("brings what is to be decoded beyond any size that these files could mean",
               "let meshes share their data through nodes instead of repeating it");
 }
@@ -22,7 +22,7 @@ std::string_view Buffers::buffer(std::int64_t index, const Element& user) {
         "names buffer " + std::to_string(index) + ", and the file has " + std::to_string(buffers_.size()),
         "buffers are counted from 0");
   const Element& buffer = buffers_[static_cast<std::size_t>(index)];
-  const auto length = static_cast<std::size_t>(buffer.at("byteLength").integer(1, kMostBytes));
+  const auto length = static_cast<std::size_t>(buffer.at("byteLength").integer(1, kMaxBytes));
   const auto uri = buffer.find("uri");
   std::string_view bytes;
   if (uri) {
@@ -47,10 +47,10 @@ std::string_view Buffers::buffer(std::int64_t index, const Element& user) {
 
 std::string_view Buffers::range(const Element& part) {
   const Element index = part.at("buffer");
-  const auto length = static_cast<std::size_t>(part.at("byteLength").integer(1, kMostBytes));
+  const auto length = static_cast<std::size_t>(part.at("byteLength").integer(1, kMaxBytes));
   const auto at = part.find("byteOffset");
-  const auto offset = static_cast<std::size_t>(at ? at->integer(0, kMostBytes) : 0);
-  const std::string_view bytes = buffer(index.integer(0, kMostBytes), index);
+  const auto offset = static_cast<std::size_t>(at ? at->integer(0, kMaxBytes) : 0);
+  const std::string_view bytes = buffer(index.integer(0, kMaxBytes), index);
   if (offset + length > bytes.size())
     part.fail("reaches to byte " + std::to_string(offset + length) + " of a buffer of " +
                   std::to_string(bytes.size()) + " bytes",

@@ -16,11 +16,11 @@ namespace lumirank::scenedesc::gltf {
 // is decoded is counted, and there is an end to it: 2 GiB, and 64 times the size of all files read.
 class Budget {
  public:
-  void read(std::size_t bytes) { most_ += 64.0 * static_cast<double>(bytes); }
+  void read(std::size_t bytes) { max_ += 64.0 * static_cast<double>(bytes); }
   void take(double bytes, const Element& user);
 
  private:
-  double most_ = 2.0 * (1u << 30), taken_ = 0;
+  double max_ = 2.0 * (1u << 30), taken_ = 0;
 };
 
 class Buffers {
@@ -54,6 +54,6 @@ class Buffers {
 std::string decode_meshopt(const Element& extension, std::string_view packed, Budget& budget);
 
 // Sizes and offsets beyond this are no sizes; sums and products of a few of them fit into 64 bits.
-inline constexpr std::int64_t kMostBytes = std::int64_t{1} << 40;
+inline constexpr std::int64_t kMaxBytes = std::int64_t{1} << 40;
 
 }  // namespace lumirank::scenedesc::gltf

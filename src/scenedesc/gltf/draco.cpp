@@ -24,7 +24,7 @@ std::vector<float> values_of(const draco::PointAttribute& attribute, std::size_t
 
 void Reader::decode_draco(const Element& primitive, const Element& extension, int uv_set, MeshData& mesh) {
   const Element view = extension.at("bufferView"), attributes = extension.at("attributes");
-  const std::string_view packed = buffers_.view(view.integer(0, kMostBytes), view).bytes;
+  const std::string_view packed = buffers_.view(view.integer(0, kMaxBytes), view).bytes;
   const Element stated = primitive.at("attributes");
   const std::size_t vertices = accessors_.count(stated.at("POSITION"));
   // Draco takes memory by the counts in its own header; what glTF says of them comes first.

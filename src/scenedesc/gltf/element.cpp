@@ -72,13 +72,13 @@ float Element::real() const {
   return value;
 }
 
-std::int64_t Element::integer(std::int64_t least, std::int64_t most) const {
+std::int64_t Element::integer(std::int64_t min_value, std::int64_t max_value) const {
   const Json& json = expect(Json::Kind::number, "a number");
   // Some writers give integers a fraction of zero.
   if (json.number != std::floor(json.number)) fail("is not a whole number", "give an integer");
-  if (json.number < static_cast<double>(least) || json.number > static_cast<double>(most))
+  if (json.number < static_cast<double>(min_value) || json.number > static_cast<double>(max_value))
     fail("is " + shown(json.number),
-         "it must lie between " + std::to_string(least) + " and " + std::to_string(most));
+         "it must lie between " + std::to_string(min_value) + " and " + std::to_string(max_value));
   return static_cast<std::int64_t>(json.number);
 }
 
@@ -99,14 +99,15 @@ double Element::number(const std::string& key, double fallback) const {
   return found ? found->number() : fallback;
 }
 
-float Element::real(const std::string& key, float fallback, float least, float most) const {
+float Element::real(const std::string& key, float fallback, float min_value, float max_value) const {
   const auto found = find(key);
   if (!found) return fallback;
   const float value = found->real();
-  if (value < least || value > most)
-    found->fail("is " + shown(value), most < std::numeric_limits<float>::max()
-                                          ? "it must lie between " + shown(least) + " and " + shown(most)
-                                          : "it must be at least " + shown(least));
+  if (value < min_value || value > max_value)
+    found->fail("is " + shown(value),
+                max_value < std::numeric_limits<float>::max()
+                    ? "it must lie between " + shown(min_value) + " and " + shown(max_value)
+                    : "it must be at least " + shown(min_value));
   return value;
 }
 

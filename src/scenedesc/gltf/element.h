@@ -40,7 +40,7 @@ class Element {
 
   double number() const;
   float real() const;  // as a finite float
-  std::int64_t integer(std::int64_t least, std::int64_t most) const;
+  std::int64_t integer(std::int64_t min_value, std::int64_t max_value) const;
   bool flag() const;
   const std::string& text() const;
   std::vector<double> numbers(std::size_t count) const;
@@ -48,8 +48,8 @@ class Element {
   // The same for a member, with a default.
   double number(const std::string& key, double fallback) const;
   // Held to a range: InputError outside.
-  float real(const std::string& key, float fallback, float least = -std::numeric_limits<float>::max(),
-             float most = std::numeric_limits<float>::max()) const;
+  float real(const std::string& key, float fallback, float min_value = -std::numeric_limits<float>::max(),
+             float max_value = std::numeric_limits<float>::max()) const;
   bool flag(const std::string& key, bool fallback) const;
   std::string text(const std::string& key, const std::string& fallback) const;
 

@@ -15,10 +15,10 @@ int Reader::sheen_bsdf(const Element& material, const Surface& s, const Element&
   cloth.roughness =
       float_input(sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", TextureChannel::alpha);
   // The model has no limit at 0, which is the extension's default.
-  constexpr float least = 0.07f;
-  if (cloth.roughness.texture == kNone && cloth.roughness.value < least) {
+  constexpr float min_roughness = 0.07f;
+  if (cloth.roughness.texture == kNone && cloth.roughness.value < min_roughness) {
     warn(sheen, "sheen of a roughness below 0.07", "0.07");
-    cloth.roughness.value = least;
+    cloth.roughness.value = min_roughness;
   }
   cloth.nested = opaque_bsdf(material, s);
   return add_bsdf(sheen, cloth);

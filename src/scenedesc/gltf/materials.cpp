@@ -44,8 +44,8 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
     if (const auto specular = material.extension("KHR_materials_specular")) {
       weight = float_input(*specular, "specularFactor", 1, "specularTexture", TextureChannel::alpha);
       tint = color_input(*specular, "specularColorFactor", Rgb(1), "specularColorTexture");
-      const float most = max_component(tint.value);
-      if (tint.texture == kNone && most > 1) {
+      const float max_tint = max_component(tint.value);
+      if (tint.texture == kNone && max_tint > 1) {
         warn(specular->at("specularColorFactor"), "a specular colour above 1", "1");
         tint.value = clamp_below(tint.value, 1.0f);
       }

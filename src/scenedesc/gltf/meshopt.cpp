@@ -7,7 +7,7 @@ namespace lumirank::scenedesc::gltf {
 
 std::string decode_meshopt(const Element& extension, std::string_view packed, Budget& budget) {
   const auto stride = static_cast<std::size_t>(extension.at("byteStride").integer(1, 256));
-  const auto count = static_cast<std::size_t>(extension.at("count").integer(1, kMostBytes));
+  const auto count = static_cast<std::size_t>(extension.at("count").integer(1, kMaxBytes));
   const Element mode_element = extension.at("mode");
   const std::string& mode = mode_element.text();
   const std::string filter = extension.text("filter", "NONE");

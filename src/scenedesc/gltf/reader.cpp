@@ -68,7 +68,7 @@ void Reader::note(const Element& at, const std::string& what) {
 }
 
 std::size_t Reader::index_of(const Element& index, std::size_t count, const char* what) const {
-  const std::int64_t value = index.integer(0, kMostBytes);
+  const std::int64_t value = index.integer(0, kMaxBytes);
   if (value >= static_cast<std::int64_t>(count))
     index.fail("names " + std::string(what) + " " + std::to_string(value) + ", and the file has " +
                    std::to_string(count),
@@ -85,8 +85,8 @@ void Reader::check_asset() {
   const Element asset = root_.at("asset"), version = asset.at("version");
   if (!version.text().starts_with("2."))
     version.fail("is \"" + version.text() + "\"", "glTF 2.0 can be read: convert the file");
-  if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
-    least->fail("is \"" + least->text() + "\"", "glTF 2.0 can be read");
+  if (const auto min_version = asset.find("minVersion"); min_version && min_version->text() != "2.0")
+    min_version->fail("is \"" + min_version->text() + "\"", "glTF 2.0 can be read");
 }
 
 void Reader::check_extensions() {

@@ -101,7 +101,7 @@ class Reader {
   FloatInput squared(const Element& at, FloatInput input);
   int add_texture(const Element& at, decltype(TextureDesc::kind) kind);
   FloatInput float_input(const Element& object, const std::string& factor, float fallback,
-                         const std::string& texture, TextureChannel channel, float most = 1);
+                         const std::string& texture, TextureChannel channel, float max_value = 1);
   ColorInput color_input(const Element& object, const std::string& factor, Rgb fallback,
                          const std::string& texture);
 

@@ -74,7 +74,7 @@ int Reader::build_texture(const Element& info, bool raw, TextureChannel channel)
                    "give one of them");
     try {
       if (view) {
-        const std::string_view bytes = buffers_.view(view->integer(0, kMostBytes), *view).bytes;
+        const std::string_view bytes = buffers_.view(view->integer(0, kMaxBytes), *view).bytes;
         buffers_.budget().take(static_cast<double>(bytes.size()), *view);
         image->second.bytes = std::make_shared<const std::string>(bytes);
       } else {
@@ -138,8 +138,8 @@ FloatInput Reader::squared(const Element& at, FloatInput input) {
 }
 
 FloatInput Reader::float_input(const Element& object, const std::string& factor, float fallback,
-                               const std::string& texture, TextureChannel channel, float most) {
-  const float value = object.real(factor, fallback, 0, most);
+                               const std::string& texture, TextureChannel channel, float max_value) {
+  const float value = object.real(factor, fallback, 0, max_value);
   const auto info = object.find(texture);
   if (!info || value == 0) return {value};
   const int built = build_texture(*info, true, channel);

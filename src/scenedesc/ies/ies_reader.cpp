@@ -9,8 +9,8 @@
 namespace lumirank::scenedesc {
 namespace {
 
-constexpr int kMostAngles = 100000;
-constexpr float kLeastStep = 1e-3f;  // degrees
+constexpr int kMaxAngles = 100000;
+constexpr float kMinStep = 1e-3f;  // degrees
 constexpr float kMetresPerFoot = 0.3048f;
 
 struct Line {
@@ -64,15 +64,15 @@ std::vector<float> numbers(NumberStream& in, std::size_t count, const std::strin
   return out;
 }
 
-std::vector<float> ascending_angles(NumberStream& in, int count, const std::string& what, float least,
-                                    float most) {
+std::vector<float> ascending_angles(NumberStream& in, int count, const std::string& what, float min_value,
+                                    float max_value) {
   auto out = numbers(in, static_cast<std::size_t>(count), what);
   for (std::size_t k = 0; k < out.size(); ++k) {
-    if (!(out[k] >= least && out[k] <= most))
+    if (!(out[k] >= min_value && out[k] <= max_value))
       in.fail(what + " " + std::to_string(k + 1) + " is not between " +
-              std::to_string(static_cast<int>(least)) + " and " + std::to_string(static_cast<int>(most)) +
-              " degrees");
-    if (k > 0 && !(out[k] - out[k - 1] > kLeastStep))
+              std::to_string(static_cast<int>(min_value)) + " and " +
+              std::to_string(static_cast<int>(max_value)) + " degrees");
+    if (k > 0 && !(out[k] - out[k - 1] > kMinStep))
       in.fail(what + " " + std::to_string(k + 1) + " is not above the one before it");
   }
   return out;
@@ -80,7 +80,7 @@ std::vector<float> ascending_angles(NumberStream& in, int count, const std::stri
 
 void read_tilt(NumberStream& in, IesData& out) {
   in.count("the lamp-to-luminaire geometry", 1, 3);
-  const int pairs = in.count("the number of tilt angles", 1, kMostAngles);
+  const int pairs = in.count("the number of tilt angles", 1, kMaxAngles);
   out.tilt_angles = ascending_angles(in, pairs, "tilt angle", -180, 180);
   out.tilt_factors = numbers(in, out.tilt_angles.size(), "tilt factor");
   for (const float factor : out.tilt_factors)
@@ -89,11 +89,11 @@ void read_tilt(NumberStream& in, IesData& out) {
 
 // The ten numbers and the three, the angles and the table.
 void read_photometry(NumberStream& in, IesData& out) {
-  out.lamps = in.count("the number of lamps", 1, kMostAngles);
+  out.lamps = in.count("the number of lamps", 1, kMaxAngles);
   out.lumens_per_lamp = in.number("lumens per lamp");
   const float multiplier = in.positive("the candela multiplier");
-  const int verticals = in.count("the number of vertical angles", 2, kMostAngles);
-  const int horizontals = in.count("the number of horizontal angles", 1, kMostAngles);
+  const int verticals = in.count("the number of vertical angles", 2, kMaxAngles);
+  const int horizontals = in.count("the number of horizontal angles", 1, kMaxAngles);
   out.type = static_cast<IesData::Type>(in.count("the photometric type", 1, 3));
   const float unit = in.count("the type of units", 1, 2) == 1 ? kMetresPerFoot : 1.0f;
   for (int k = 0; k < 3; ++k) out.opening[k] = unit * in.number("the size of the luminous opening");

@@ -33,11 +33,12 @@ class NumberStream {
     at_ += token.size();
     return static_cast<float>(value);
   }
-  int count(const std::string& what, int least, int most) {
+  int count(const std::string& what, int min_value, int max_value) {
     const float value = number(what);
-    if (!(value >= static_cast<float>(least) && value <= static_cast<float>(most)) ||
+    if (!(value >= static_cast<float>(min_value) && value <= static_cast<float>(max_value)) ||
         value != std::floor(value))
-      fail(what + " is not a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+      fail(what + " is not a whole number from " + std::to_string(min_value) + " to " +
+           std::to_string(max_value));
     return static_cast<int>(value);
   }
   float positive(const std::string& what) {

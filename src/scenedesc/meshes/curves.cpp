@@ -112,10 +112,10 @@ class CurveParser {
   void finish_curve() {
     const std::size_t n = places_.size() - out_.first.back();
     if (n == 0) return;
-    const std::size_t least = out_.basis == CurvesDesc::Basis::linear ? 2 : 4;
-    if (n < least)
+    const std::size_t min_points = out_.basis == CurvesDesc::Basis::linear ? 2 : 4;
+    if (n < min_points)
       fail("the curve that ends here has " + std::to_string(n) + (n == 1 ? " point" : " points") +
-           "; it needs " + std::to_string(least) + " or more");
+           "; it needs " + std::to_string(min_points) + " or more");
     if (out_.basis == CurvesDesc::Basis::bezier && n % 3 != 1)
       fail("the bezier curve that ends here has " + std::to_string(n) + " points; 4, 7, 10, … are possible");
     out_.first.push_back(static_cast<std::uint32_t>(places_.size()));

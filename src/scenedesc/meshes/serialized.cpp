@@ -176,8 +176,8 @@ MeshData parse_serialized(const std::string& bytes, const std::string& filename,
     fail(filename, "the mesh has tangents, which this version of the format does not have");
   if (vertices > 0xffffffffu) fail(filename, "the mesh has more than 4,294,967,295 vertices");
   // DEFLATE shrinks to no less than 1/1032.
-  const std::uint64_t most = 1032 * static_cast<std::uint64_t>(part.end - part.begin);
-  if (vertices > most / 12 || triangles > most / 12)
+  const std::uint64_t max_bytes = 1032 * static_cast<std::uint64_t>(part.end - part.begin);
+  if (vertices > max_bytes / 12 || triangles > max_bytes / 12)
     fail(filename, "the mesh claims " + std::to_string(vertices) + " vertices and " +
                        std::to_string(triangles) + " triangles, but the file is too short for them");
   MeshData mesh;

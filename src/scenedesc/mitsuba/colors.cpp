@@ -11,7 +11,7 @@ namespace lumirank::scenedesc::mitsuba {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 100'000;  // of a spectrum
+constexpr std::size_t kMaxSamples = 100'000;  // of a spectrum
 
 // "#rrggbb" as fractions of 255; false if the text is no such thing.
 bool parse_hex(const std::string& text, Rgb& out) {
@@ -50,7 +50,7 @@ void add_sample(SampledSpectrum& spectrum, double wavelength, double value, cons
   if (!spectrum.wavelengths.empty() && !(static_cast<float>(wavelength) > spectrum.wavelengths.back()))
     throw InputError(
         where, "the wavelengths of the spectrum do not increase at " + std::to_string(wavelength) + " nm");
-  if (spectrum.wavelengths.size() >= kMostSamples)
+  if (spectrum.wavelengths.size() >= kMaxSamples)
     throw InputError(where, "the spectrum has more than 100,000 samples");
   spectrum.wavelengths.push_back(static_cast<float>(wavelength));
   spectrum.values.push_back(static_cast<float>(value));

@@ -178,7 +178,7 @@ class Loader {
     if (open_.size() > kIncludes)
       throw InputError(element.where, "includes are nested more than 32 deep: " + chain + filename);
     if (++files_ > kFiles) throw InputError(element.where, "more than 10,000 files are included");
-    const std::string text = read_file(filename, element.where, kLargestText);
+    const std::string text = read_file(filename, element.where, kMaxText);
     open_.push_back(filename);
     read_into(into, text, filename, false, depth);
     open_.pop_back();

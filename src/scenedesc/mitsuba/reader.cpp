@@ -156,7 +156,7 @@ SceneDesc parse_mitsuba(const std::string& text, const std::string& filename, co
 }
 
 SceneDesc read_mitsuba(const std::string& filename, const ReadOptions& options) {
-  return parse_mitsuba(read_file(filename, SourceLocation{}, kLargestText), filename, options);
+  return parse_mitsuba(read_file(filename, SourceLocation{}, kMaxText), filename, options);
 }
 
 }  // namespace lumirank::scenedesc

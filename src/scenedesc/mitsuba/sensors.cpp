@@ -8,7 +8,7 @@ namespace lumirank::scenedesc::mitsuba {
 
 namespace {
 
-constexpr int kLargestFilm = 65536;
+constexpr int kMaxFilm = 65536;
 
 FilterDesc filter(Reader& reader, const Element& element) {
   Plugin p(reader, element);
@@ -49,7 +49,7 @@ int film_size(Plugin& p, const std::string& name, int fallback) {
   if (value <= 0)
     throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is " + std::to_string(value),
                      "give a number of pixels above 0");
-  if (value > kLargestFilm)
+  if (value > kMaxFilm)
     throw InputError(p.where_of(name), "\"" + name + "\" of " + p.title() + " is " + std::to_string(value),
                      "65536 pixels is the most");
   return value;

@@ -41,12 +41,12 @@ float power_factor(Reader& reader, Params& p, const ShapeDesc& shape, const Area
   const std::size_t lights = light_count(p, mesh.triangle_count());
   const Transform to_world = is_quadric(p.title()) ? Transform{} : shape.to_world;
   double sum = 0;
-  float least = kInfinity, most = 0;
+  float min_area = kInfinity, max_area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const float area = area_of(mesh, t, to_world);
-    sum += area, least = std::min(least, area), most = std::max(most, area);
+    sum += area, min_area = std::min(min_area, area), max_area = std::max(max_area, area);
   }
-  if (lights == mesh.triangle_count() && most > 1.01f * least)
+  if (lights == mesh.triangle_count() && max_area > 1.01f * min_area)
     reader.warn(p.where(), "the same power for each of many triangles of different sizes (" + p.title() + ")",
                 "the same radiance for all, of the same power together");
   return static_cast<float>(static_cast<double>(lights) * light.power / (sides * kPi * sum));

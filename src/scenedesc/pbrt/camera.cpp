@@ -8,11 +8,11 @@ namespace lumirank::scenedesc::pbrt {
 
 namespace {
 
-constexpr int kLargestFilm = 65536;
+constexpr int kMaxFilm = 65536;
 
 int film_size(Params& p, const char* name, int fallback) {
   const int value = p.integer(name, fallback);
-  if (value < 1 || value > kLargestFilm)
+  if (value < 1 || value > kMaxFilm)
     p.fail(name, "is " + std::to_string(value), "give a number of pixels from 1 to 65536");
   return value;
 }

@@ -75,7 +75,7 @@ Reader::NamedFile Reader::named_file(const std::string& name, const Place& where
 }
 
 std::string Reader::file_text(const std::string& path, const Place& where) const {
-  return read_file(path, where, kLargestText);
+  return read_file(path, where, kMaxText);
 }
 
 int Reader::add_bsdf(const std::string& id, const Place& where, decltype(BsdfDesc::kind) kind) {
@@ -300,7 +300,7 @@ SceneDesc parse_pbrt(const std::string& text, const std::string& filename, const
 }
 
 SceneDesc read_pbrt(const std::string& filename, const ReadOptions& options) {
-  return parse_pbrt(read_file(filename, SourceLocation{}, kLargestText), filename, options);
+  return parse_pbrt(read_file(filename, SourceLocation{}, kMaxText), filename, options);
 }
 
 }  // namespace lumirank::scenedesc

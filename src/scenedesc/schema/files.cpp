@@ -38,11 +38,11 @@ std::string try_read_file(const std::string& filename, std::string& bytes) {
   return {};
 }
 
-std::string read_file(const std::string& filename, const SourceLocation& where, std::uintmax_t most) {
+std::string read_file(const std::string& filename, const SourceLocation& where, std::uintmax_t max_bytes) {
   const std::string name = where.file == filename ? "this file" : filename;
   std::error_code error;
-  if (const std::uintmax_t size = fs::file_size(filename, error); !error && size > most)
-    throw InputError(where, name + " is larger than " + std::to_string(most >> 20) + " MiB",
+  if (const std::uintmax_t size = fs::file_size(filename, error); !error && size > max_bytes)
+    throw InputError(where, name + " is larger than " + std::to_string(max_bytes >> 20) + " MiB",
                      "put geometry into mesh files beside the scene");
   std::string bytes;
   const std::string problem = try_read_file(filename, bytes);

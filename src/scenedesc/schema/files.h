@@ -18,7 +18,7 @@ std::string try_read_file(const std::string& filename, std::string& bytes);
 // The bytes of the file, or an InputError at `where`: missing, a folder, unreadable, larger than `most`
 // bytes.
 std::string read_file(const std::string& filename, const SourceLocation& where,
-                      std::uintmax_t most = UINTMAX_MAX);
+                      std::uintmax_t max_bytes = UINTMAX_MAX);
 
 // The names of all files that this thread reads by the functions above while it lives: what a scene consists
 // of, includes and tables too.
@@ -37,6 +37,6 @@ class FilesRead {
 };
 
 // A scene file as text, which has at most this size; geometry belongs into mesh files beside it.
-inline constexpr std::uintmax_t kLargestText = 256u << 20;
+inline constexpr std::uintmax_t kMaxText = 256u << 20;
 
 }  // namespace lumirank::scenedesc

@@ -173,8 +173,8 @@ struct PairBlockKernels {
   }
 };
 
-void PairBlock::require(Stage least, const char* call) const {
-  if (stage_ < least) throw InternalError(std::string("transport::PairBlock: too early for ") + call);
+void PairBlock::require(Stage min_stage, const char* call) const {
+  if (stage_ < min_stage) throw InternalError(std::string("transport::PairBlock: too early for ") + call);
 }
 
 void PairBlock::resize(std::size_t groups) {

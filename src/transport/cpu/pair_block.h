@@ -160,7 +160,7 @@ class PairBlock {
   };
   // What may be asked of the block, see above.
   enum class Stage : std::uint8_t { empty, tile, pairs, evaluated };
-  void require(Stage least, const char* call) const;
+  void require(Stage min_stage, const char* call) const;
 
   const PairContext& context_;
   BlockShape shape_ = BlockShape::column;

@@ -39,7 +39,7 @@ ColumnSet SceneMatrix::column_set(Index j) const {
       return set;
     case LightKind::spot: {
       const SpotShape& spot = lights.spots[lights.closure[j]];
-      if (spot.profile) set.intensity *= spot.profile->highest();
+      if (spot.profile) set.intensity *= spot.profile->max_value();
       return set;
     }
     case LightKind::directional:
@@ -60,8 +60,8 @@ ColumnSet SceneMatrix::column_set(Index j) const {
   const bool sphere = lights.spherical();
   if (!sphere && lights.area[j] > 0 && clamp < kInfinity) {
     // a·G·(π f_x)(π f_y) ≤ X with the largest channels of f_x and f_y.
-    const float most = 1.00001f * clamp * kInvPi * kInvPi / lights.area[j];
-    set.ceiling = set.intensity * most;
+    const float max_f2 = 1.00001f * clamp * kInvPi * kInvPi / lights.area[j];
+    set.ceiling = set.intensity * max_f2;
     if (matt && max_component(lights.albedo[j]) > 0)
       set.ceiling *= lights.albedo[j] * (1 / max_component(lights.albedo[j]));
   }

@@ -17,11 +17,11 @@ constexpr double kByImportance = 0.75;
 // A box is halved while it holds more than this part of the importance, enough observations to tell (fewer
 // if all of them are of paths that count), and room.
 constexpr double kSplitAbove = 1.0 / 512;
-constexpr std::size_t kFewest = 32, kFewestImportant = 8;
+constexpr std::size_t kMinObservations = 32, kMinImportantObservations = 8;
 // A box counts as if it held this many observations more, as strong as those of the box that it was cut from:
 // a few that brought nothing do not prove that nothing is there.
 constexpr double kPrior = 6;
-constexpr float kSmallest = 1.0f / 256;
+constexpr float kMinSize = 1.0f / 256;
 
 }  // namespace
 
@@ -80,7 +80,7 @@ struct EmissionGuide::Node {
     std::size_t best = 0;
     double best_score = -1;
     for (std::size_t axis = 0; axis < kStartDimensions; ++axis) {
-      if (box.size[axis] <= kSmallest) continue;
+      if (box.size[axis] <= kMinSize) continue;
       double up = 0;
       for (const Observation& o : inside) up += upper(o, axis) ? o.value : 0.0f;
       const double score = std::abs(2 * up - importance) / importance + 1e-3 * box.size[axis];
@@ -115,15 +115,16 @@ EmissionGuide EmissionGuide::fit(std::span<const Observation> observations, Spre
   const double total = root.importance;
   if (!(total > 0)) return guide;
 
-  const std::size_t fewest = spread == Spread::by_density ? kFewest : kFewestImportant;
+  const std::size_t min_observations =
+      spread == Spread::by_density ? kMinObservations : kMinImportantObservations;
   std::vector<Node> open, done;
   open.push_back(std::move(root));
   while (!open.empty()) {
     Node node = std::move(open.back());
     open.pop_back();
     const bool room =
-        std::any_of(node.box.size.begin(), node.box.size.end(), [](float s) { return s > kSmallest; });
-    if (!room || node.importance <= kSplitAbove * total || node.inside.size() < fewest) {
+        std::any_of(node.box.size.begin(), node.box.size.end(), [](float s) { return s > kMinSize; });
+    if (!room || node.importance <= kSplitAbove * total || node.inside.size() < min_observations) {
       done.push_back(std::move(node));
       continue;
     }

@@ -24,7 +24,7 @@ struct SampleNumbers {
 // No light leaves farther from the axis than where the table ends; rounding must not cut the edge off.
 SpotShape profile_shape(const emitters::ProfileEmitter& e) {
   SpotShape shape;
-  shape.cutoff = std::min(kPi, e.profile->greatest_theta() + 1e-3f);
+  shape.cutoff = std::min(kPi, e.profile->max_theta() + 1e-3f);
   shape.cos_cutoff = shape.cutoff < kPi ? std::cos(shape.cutoff) : -2.0f;
   shape.profile = e.profile;
   shape.frame = e.frame;
@@ -196,7 +196,7 @@ DirectNeed direct_need(const world::World& world, const EmitterChoice& choice) {
   DirectNeed need;
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const std::size_t n = fixed_count(world.emitters()[static_cast<std::size_t>(choice.emitter(k))]);
-    need.least += std::max<std::size_t>(n, 1);
+    need.min_count += std::max<std::size_t>(n, 1);
     need.sampled = need.sampled || n == 0;
   }
   return need;
@@ -207,7 +207,7 @@ LightBatch emitter_lights(const world::World& world, const EmitterChoice& choice
   LightBatch batch;
   if (choice.empty() || count == 0) return batch;
   const DirectNeed need = direct_need(world, choice);
-  if (need.least <= count && (!need.sampled || 2 * need.least <= count || choice.size() == 1)) {
+  if (need.min_count <= count && (!need.sampled || 2 * need.min_count <= count || choice.size() == 1)) {
     every_emitter(world, choice, seed, count, batch);
   } else {
     some_emitters(world, choice, seed, count, batch);

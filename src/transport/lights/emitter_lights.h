@@ -13,7 +13,7 @@ namespace lumirank::transport {
 // How many direct columns a world needs at least: one per emitter that shines (16 for a sun with a disc).
 // Area and environment light can use any number.
 struct DirectNeed {
-  std::size_t least = 0;
+  std::size_t min_count = 0;
   bool sampled = false;  // some emitter can use more
 };
 DirectNeed direct_need(const world::World& world, const EmitterChoice& choice);

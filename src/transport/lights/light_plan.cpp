@@ -15,20 +15,20 @@ constexpr std::size_t kPilotPaths = 4096, kRoulettePaths = 1 << 14;
 // Neither direct nor indirect light gets a smaller share of the lights than this, if there is any of it to
 // carry; direct light never more than half, because a column more costs it nothing in rank and indirect light
 // needs them.
-constexpr double kLeastShare = 0.1, kGreatestDirectShare = 0.5;
+constexpr double kMinShare = 0.1, kMaxDirectShare = 0.5;
 // Of emitter samples where nearly all direct light is traced.
-constexpr double kLeastDirectShare = 0.01;
+constexpr double kMinDirectShare = 0.01;
 // Where hardly any particle meets a surface, this many paths per light are the end of the search.
-constexpr double kMostPathsPerLight = 32;
+constexpr double kMaxPathsPerLight = 32;
 // More paths are traced until lights are worth this part of as many equal ones, or there are so many per
 // light.
-constexpr double kWorth = 0.7, kMostRoulettePaths = 16;
+constexpr double kWorth = 0.7, kMaxRoulettePaths = 16;
 // Where receivers see it, light is held to be of use between these many times a typical one's: what is of
 // little use to all together may be close to a few, and must not be heavy. The lower bound may add this part
 // to the use of all; and of all that is kept, about the unseen share is lights of places that the pilots
 // never saw, more where such lights would be so many times as strong as others and up to the most.
-constexpr double kLeastUse = 0.7, kGreatestUse = 3, kLowShare = 0.25, kUnseenShare = 0.1,
-                 kMostUnseenShare = 0.25, kStrongUnseen = 16;
+constexpr double kMinUse = 0.7, kMaxUse = 3, kLowShare = 0.25, kUnseenShare = 0.1, kMaxUnseenShare = 0.25,
+                 kStrongUnseen = 16;
 
 ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey& survey) {
   return {settings.seed,
@@ -89,12 +89,12 @@ Pilot run_pilot(const world::World& world, const EmitterChoice& choice, const Pa
 
 std::size_t emitter_sample_count(std::size_t count, const DirectNeed& need, double share, LightParts parts) {
   if (!parts.direct) return 0;
-  if (!parts.indirect) return need.sampled ? count : std::min(count, need.least);
-  const auto target = static_cast<double>(count), least = static_cast<double>(need.least);
+  if (!parts.indirect) return need.sampled ? count : std::min(count, need.min_count);
+  const auto target = static_cast<double>(count), min_count = static_cast<double>(need.min_count);
   double samples = share * target;
-  if (!need.sampled) samples = std::min(samples, least);
+  if (!need.sampled) samples = std::min(samples, min_count);
   // Many lamps: each its own column as long as that leaves half to indirect light.
-  samples = std::max(samples, std::min(least, 0.5 * target));
+  samples = std::max(samples, std::min(min_count, 0.5 * target));
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(samples)));
 }
 
@@ -102,16 +102,15 @@ std::size_t emitter_sample_count(std::size_t count, const DirectNeed& need, doub
 // to carry to the receivers.
 double emitter_share(const Pilot& pilot, const LightSettings& settings, const Aim& aim) {
   if (!settings.receivers || !(aim.direct + aim.indirect > 0)) {
-    return std::clamp(pilot.direct_share, kLeastShare, kGreatestDirectShare);
+    return std::clamp(pilot.direct_share, kMinShare, kMaxDirectShare);
   }
   const double share = aim.direct / (aim.direct + aim.indirect);
-  return std::clamp(share, settings.traced_direct_below > 0 ? kLeastDirectShare : kLeastShare,
-                    kGreatestDirectShare);
+  return std::clamp(share, settings.traced_direct_below > 0 ? kMinDirectShare : kMinShare, kMaxDirectShare);
 }
 
 std::size_t natural_paths(double wanted, double lights_per_path) {
-  const double per_light = lights_per_path > 0 ? 1 / lights_per_path : kMostPathsPerLight;
-  return even(static_cast<std::size_t>(std::ceil(wanted * std::min(per_light, kMostPathsPerLight))));
+  const double per_light = lights_per_path > 0 ? 1 / lights_per_path : kMaxPathsPerLight;
+  return even(static_cast<std::size_t>(std::ceil(wanted * std::min(per_light, kMaxPathsPerLight))));
 }
 
 // How far importance may differ between places, and the uses of the pilot's lights then. Nothing if no light
@@ -127,7 +126,7 @@ std::optional<LightImportance::Range> bounded_uses(const Pilot& pilot, std::vect
   if (!(use > 0)) return std::nullopt;
   // That of the place where an average use comes from, not of an average light: under a sky nearly all power
   // is where hardly anything is seen of it.
-  const double typical = use_of_importance / use, high = typical * kGreatestUse;
+  const double typical = use_of_importance / use, high = typical * kMaxUse;
   const auto use_with = [&](double low) {
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k)
@@ -136,7 +135,7 @@ std::optional<LightImportance::Range> bounded_uses(const Pilot& pilot, std::vect
     return sum;
   };
   const double bounded = use_with(0);
-  double low = 0, above = typical * kLeastUse;
+  double low = 0, above = typical * kMinUse;
   if (use_with(above) <= (1 + kLowShare) * bounded) low = above;
   for (int step = 0; step < 40 && low < above; ++step) {
     const double middle = 0.5 * (low + above);
@@ -147,7 +146,7 @@ std::optional<LightImportance::Range> bounded_uses(const Pilot& pilot, std::vect
     const double share = use_with(low) / unseen;
     range.unseen =
         std::min(range.low, static_cast<float>(std::clamp(typical / kStrongUnseen, kUnseenShare * share,
-                                                          kMostUnseenShare * share)));
+                                                          kMaxUnseenShare * share)));
   }
   for (std::size_t k = 0; k < n; ++k) {
     const float importance = pilot.importances[k];
@@ -179,7 +178,7 @@ RoulettePlan plan_roulette(std::vector<double> uses, std::size_t pilot_paths, do
   RoulettePlan plan{natural, 0};
   if (n == 0 || !(sum[n] > 0)) return plan;
   for (double more = 1;; more *= 1.5) {
-    plan.paths = std::max(natural, std::min(natural * more, kMostRoulettePaths * wanted));
+    plan.paths = std::max(natural, std::min(natural * more, kMaxRoulettePaths * wanted));
     double low = 0, high = uses[n - 1];
     if (plan.paths * kept(high) > wanted) high = plan.paths * sum[n] / all / wanted;
     for (int step = 0; step < 60; ++step) {
@@ -191,7 +190,7 @@ RoulettePlan plan_roulette(std::vector<double> uses, std::size_t pilot_paths, do
     const std::size_t k = below(plan.level);
     const double second = plan.level * sum[k] + squares[n] - squares[k];
     const double worth = plan.paths / all * sum[n] * sum[n] / second;
-    if (worth >= kWorth * wanted || plan.paths < natural * more || plan.paths >= kMostRoulettePaths * wanted)
+    if (worth >= kWorth * wanted || plan.paths < natural * more || plan.paths >= kMaxRoulettePaths * wanted)
       return plan;
   }
 }

@@ -25,11 +25,11 @@ class LightRoulette {
   double keep(double use) const { return use < level_ && use > 0 ? use / level_ : 1.0; }
   int parts(double use) const {
     if (!(level_ > 0) || use <= level_) return 1;
-    return use < kMostParts * level_ ? static_cast<int>(use / level_) + 1 : kMostParts;
+    return use < kMaxParts * level_ ? static_cast<int>(use / level_) + 1 : kMaxParts;
   }
 
  private:
-  static constexpr int kMostParts = 32;
+  static constexpr int kMaxParts = 32;
 
   const LightImportance& importance_;
   double level_;

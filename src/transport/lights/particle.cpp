@@ -18,7 +18,7 @@ using scatter::LobeKind;
 constexpr int kDeep = 32;
 constexpr float kDeepSurvival = 0.9f;
 // A path that waits in this many parts is split no further.
-constexpr std::size_t kMostPending = 256;
+constexpr std::size_t kMaxPending = 256;
 
 // Flux is measured through the geometric surface, but the closure's cosine is that of the shading normal:
 // this part of Veach's correction (1997, section 5.3) belongs to the light, the rest to the direction in
@@ -133,7 +133,7 @@ int ParticleTracer::leave(LightRecord& light, const Closure& shining, Visit& vis
       if (visit.rng.next_double() >= keep) return 1;
       light.power *= static_cast<float>(1 / keep);
     }
-    if (visit.pending.size() < kMostPending) copies = settings_.roulette->parts(use);
+    if (visit.pending.size() < kMaxPending) copies = settings_.roulette->parts(use);
   }
   if (!is_finite(light.power)) return copies;
   if (!shining.is_lambertian()) light.closure = visit.batch.closures.add(shining, light.normal);

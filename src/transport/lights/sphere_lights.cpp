@@ -61,13 +61,13 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
   const std::vector<Neighbour> found = neighbours(points, paths, kSphereNeighbour);
   const float scale =
       settings.radius_scale > 0 ? settings.radius_scale : automatic_radius_scale(which.size());
-  const float largest = world.bounds().radius();
+  const float max_radius = world.bounds().radius();
   parallel_for(which.size(), 1024, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t j = which[k];
       lights.radius[j] =
-          found[k].count > 0 ? sphere_radius(found[k].distance_squared, scale, largest) : largest;
+          found[k].count > 0 ? sphere_radius(found[k].distance_squared, scale, max_radius) : max_radius;
       if (lights.ng[j] == Vec3f{}) continue;  // a fibre has no tangent plane
       Rng rng(0, Stage::spheres, j);
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);

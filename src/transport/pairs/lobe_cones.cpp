@@ -19,17 +19,17 @@ LobeCone lobe_cone(std::span<const scatter::Lobe> lobes) {
   float sharpest = kBroad * kBroad, reach = 0;
   bool anywhere = false;
   for (const scatter::Lobe& lobe : lobes) {
-    const float least = scatter::lobe_roughness(lobe);
-    if (least >= kBroad) continue;
+    const float min_width = scatter::lobe_roughness(lobe);
+    if (min_width >= kBroad) continue;
     const bool two_widths = scatter::family_of(lobe.kind).two_widths && !scatter::shines_through(lobe.kind);
     const float wider = lobe.coat ? lobe.coat.bend : 1.0f;  // refraction into the open
-    const float most = two_widths ? wider * std::max(lobe.alpha_u, lobe.alpha_v) : least;
-    if (least * most < sharpest) {
-      sharpest = least * most;
+    const float max_width = two_widths ? wider * std::max(lobe.alpha_u, lobe.alpha_v) : min_width;
+    if (min_width * max_width < sharpest) {
+      sharpest = min_width * max_width;
       const bool along_u = two_widths && lobe.alpha_u > lobe.alpha_v;
-      cone.alpha_u = along_u ? most : least, cone.alpha_v = along_u ? least : most;
+      cone.alpha_u = along_u ? max_width : min_width, cone.alpha_v = along_u ? min_width : max_width;
     }
-    reach = std::max(reach, std::min(kPi, kReach * most));
+    reach = std::max(reach, std::min(kPi, kReach * max_width));
     anywhere = anywhere || scatter::shines_through(lobe.kind) || scatter::is_hair(lobe.kind);
   }
   if (anywhere) reach = kPi;

@@ -35,9 +35,9 @@ struct PairResult {
 // Notes E and which lanes have any. Libraries may leave some threads flushing denormal numbers to zero and
 // others not; here all do, well above them.
 inline void note_values(PairResult& out, const Lane3& e, LaneMask alive) {
-  const Lane zero{}, least = splat(1e-35f);
-  out.e = {select(alive & (e.x > least), e.x, zero), select(alive & (e.y > least), e.y, zero),
-           select(alive & (e.z > least), e.z, zero)};
+  const Lane zero{}, min_value = splat(1e-35f);
+  out.e = {select(alive & (e.x > min_value), e.x, zero), select(alive & (e.y > min_value), e.y, zero),
+           select(alive & (e.z > min_value), e.z, zero)};
   out.alive = bits(alive & (max_component(out.e) > zero));
 }
 

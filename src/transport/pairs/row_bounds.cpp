@@ -37,7 +37,7 @@ Differences differences(const Bounds3f& rows, const Bounds3f& lights) {
 // z of at most that of the box, and is off the axis by at least, or where all z are negative by at most, what
 // the box is in the direction across in which its centre lies. If all z are negative and `front`, no more is
 // said.
-float greatest_cosine(Vec3f axis, const Differences& d, bool front) {
+float max_cosine(Vec3f axis, const Differences& d, bool front) {
   const auto extent = [&](Vec3f v) {
     return std::abs(v.x) * d.half.x + std::abs(v.y) * d.half.y + std::abs(v.z) * d.half.z;
   };
@@ -48,11 +48,11 @@ float greatest_cosine(Vec3f axis, const Differences& d, bool front) {
   const Vec3f across = d.center - axis * z;
   const float off2 = length_squared(across);
   if (top > 0) {
-    const float least = off2 - extent(across);  // times off
-    return least > 0 ? top / std::sqrt(top * top + least * least / off2) : 1.0f;
+    const float min_off = off2 - extent(across);  // times off
+    return min_off > 0 ? top / std::sqrt(top * top + min_off * min_off / off2) : 1.0f;
   }
-  const float most = std::sqrt(off2) + length(d.half);
-  return most > 0 ? top / std::sqrt(top * top + most * most) : -1.0f;
+  const float max_off = std::sqrt(off2) + length(d.half);
+  return max_off > 0 ? top / std::sqrt(top * top + max_off * max_off) : -1.0f;
 }
 
 // cos(max(0, angle - spread)).
@@ -83,7 +83,7 @@ scatter::ClosureBound SceneRowBounds::closure_bound(Index i) const {
 
 void SceneRowBounds::set_rows(std::span<const Index> rows) {
   box_ = {};
-  matt_ = most_ = max_direct_ = Rgb(0);
+  matt_ = max_f_ = max_direct_ = Rgb(0);
   closures_.clear();
   behind_ = sharp_ = false;
   std::size_t closures = 0;
@@ -94,7 +94,7 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
     axis += dot(n, receivers_.wo[i]) < 0 ? -n : n;
     closures += receivers_.closure[i] != Receivers::kLambertian;
   }
-  many_ = closures > kMostClosures;
+  many_ = closures > kMaxClosures;
   const float size = length(axis);
   normals_ = {size > 0 ? axis / size : Vec3f{0, 0, 1}, size > 0 ? 1.0f : -1.0f};
   for (const Index i : rows) {
@@ -117,7 +117,7 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
     }
     if (many_) {
       const scatter::ClosureBound bound = closure_bound(i);
-      most_ = greater(most_, bound.anywhere(CosineFactor::cosine));
+      max_f_ = greater(max_f_, bound.anywhere(CosineFactor::cosine));
       max_direct_ = greater(max_direct_, bound.anywhere(CosineFactor::cosine, rules_.traced_direct_below));
     } else {
       closures_.push_back(closure_bound(i));
@@ -128,11 +128,12 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
 
 // f times the cosine for light from a cone of directions that make at most this cosine with a normal.
 Rgb SceneRowBounds::scattered(const DirectionCone& cone, float cosine, bool direct) const {
-  Rgb most = cosine > 0 ? matt_ * cosine : Rgb(0);
-  if (many_) return cosine > 0 || behind_ ? greater(most, direct ? max_direct_ : most_) : most;
+  Rgb max_f = cosine > 0 ? matt_ * cosine : Rgb(0);
+  if (many_) return cosine > 0 || behind_ ? greater(max_f, direct ? max_direct_ : max_f_) : max_f;
   for (const scatter::ClosureBound& closure : closures_)
-    most = greater(most, closure.within(cone, CosineFactor::cosine, direct ? rules_.traced_direct_below : 0));
-  return most;
+    max_f =
+        greater(max_f, closure.within(cone, CosineFactor::cosine, direct ? rules_.traced_direct_below : 0));
+  return max_f;
 }
 
 matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
@@ -155,7 +156,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     parts.far = 1 / std::max({length_squared(farthest), d.distance2, 1e-30f});
     // A sphere sends light from all of its box.
     if (set.spherical) d.half += Vec3f{set.radius, set.radius, set.radius};
-    cosine = towards(greatest_cosine(normals_.axis, d, normals_.cosine >= 1), normals_.cosine, normals_sine_);
+    cosine = towards(max_cosine(normals_.axis, d, normals_.cosine >= 1), normals_.cosine, normals_sine_);
     if (cosine <= 0 && closures_.empty() && !behind_) return {Rgb(0)};
     if (!closures_.empty()) {
       const float radius = length(d.half), far = length(d.center);
@@ -176,7 +177,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     }
     if (has_cosine) {
       d.center = -d.center;
-      const float cos_y = towards(greatest_cosine(set.cone.axis, d, set.cone.cosine >= 1), set.cone.cosine,
+      const float cos_y = towards(max_cosine(set.cone.axis, d, set.cone.cosine >= 1), set.cone.cosine,
                                   sine_of(set.cone.cosine));
       if (cos_y <= 0) return {Rgb(0)};
       factor *= cos_y;

@@ -30,7 +30,7 @@ class SceneRowBounds final : public matrix::RowBounds {
 
  private:
   // Rows with more closures than that know only their greatest values.
-  static constexpr std::size_t kMostClosures = 8;
+  static constexpr std::size_t kMaxClosures = 8;
 
   scatter::ClosureBound closure_bound(matrix::Index row) const;
   Rgb scattered(const scatter::DirectionCone& cone, float cosine, bool direct) const;
@@ -43,7 +43,7 @@ class SceneRowBounds final : public matrix::RowBounds {
   Rgb matt_;  // greatest albedo/π
   std::vector<scatter::ClosureBound> closures_;
   bool many_ = false, behind_ = false;  // more closures; some answer light from behind
-  Rgb most_, max_direct_;               // of many closures, f times the cosine
+  Rgb max_f_, max_direct_;              // of many closures, f times the cosine
   bool sharp_ = false;                  // of spherical lights, integrals may follow a lobe
 };
 

@@ -9,8 +9,8 @@
 namespace lumirank::transport {
 
 // Where the cone's own size decides, a hemisphere gets kSamplesOfDisc; a lobe's width kSamplesPerWidth.
-// Beyond kMostWidths, lobes are followed.
-inline constexpr float kSamplesOfDisc = 32, kLeastOfDisc = 4, kSamplesPerWidth = 2, kMostWidths = 4;
+// Beyond kMaxWidths, lobes are followed.
+inline constexpr float kSamplesOfDisc = 32, kMinOfDisc = 4, kSamplesPerWidth = 2, kMaxWidths = 4;
 
 // v / f; 0 where both are.
 inline Rgb without(Rgb v, Rgb f) {
@@ -48,7 +48,7 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
   LaneMask apart{};
   Lane3 value{zero, zero, zero};
   if constexpr (!scattering_row && !scattering_column) {
-    count = max(count, splat(kLeastOfDisc));
+    count = max(count, splat(kMinOfDisc));
     const LaneMask closed = ~at.disc & ~at.inside & (dot(r.n, at.w) > c.radius) &
                             (dot(r.ng, at.w) > c.radius) & (dot(c.ng, at.w) < -c.radius) &
                             (dot(c.n, at.w) < -c.radius);
@@ -67,8 +67,8 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
                              lobe_widths(lobe, axis * splat(-1), cosine, sine, solid_angle));
     }
     const Lane widths = row_widths + column_widths;
-    count = max(select(at.disc, max(count, splat(kLeastOfDisc)), one), widths * splat(kSamplesPerWidth));
-    if (all) apart = alive & (widths > splat(kMostWidths));
+    count = max(select(at.disc, max(count, splat(kMinOfDisc)), one), widths * splat(kSamplesPerWidth));
+    if (all) apart = alive & (widths > splat(kMaxWidths));
   }
   count = select(count > zero, floor(max(min(count, splat(kSamplesInHemisphere)), one) + splat(0.5f)), zero);
   SphereCounts counts{count, zero, zero, {}};

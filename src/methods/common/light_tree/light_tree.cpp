@@ -31,7 +31,7 @@ ColumnSet LightTree::set(Node node) const {
   set.emission = static_cast<matrix::Emission>(n.emission);
   set.spherical = n.spherical, set.direct = n.direct;
   set.box = n.box, set.cone = n.cone, set.intensity = n.intensity, set.ceiling = n.ceiling;
-  if (n.spherical) set.radius = radii_[node].greatest, set.min_radius = radii_[node].least;
+  if (n.spherical) set.radius = radii_[node].max, set.min_radius = radii_[node].min;
   return set;
 }
 Rgb LightTree::emitted(Node node) const {

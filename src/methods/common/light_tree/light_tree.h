@@ -82,7 +82,7 @@ class LightTree {
     matrix::Index representative;
   };
   struct Radii {
-    float greatest = 0, least = 0;
+    float max = 0, min = 0;
   };
   struct Builder;
 

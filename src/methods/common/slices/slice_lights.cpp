@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
 constexpr float kMinEntry = 1e-17f;          // its square is a number still
 constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no colour to scale
-constexpr float kLargestSliceGain = 4;       // of a channel over the scalar factor
+constexpr float kMaxSliceGain = 4;           // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
   if (projection == 0 || slices <= projection) return {columns, slices, false};
@@ -196,12 +196,12 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
         w.splitter.begin_cluster();
         ++cluster;
       }
-      float most = 0;
+      float max_entry = 0;
       for (std::size_t r = 0; r < rows; ++r) {
         w.point[r] = w.entries[r * kSliceStretch + k] / static_cast<float>(r + 1);
-        most = std::max(most, w.point[r]);
+        max_entry = std::max(max_entry, w.point[r]);
       }
-      if (most > kMinEntry)
+      if (max_entry > kMinEntry)
         w.splitter.add(initial_.order[begin + k], w.point.data());
       else
         w.zero.push_back(initial_.order[begin + k]);
@@ -244,7 +244,7 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
       const float own = norms_[members[chosen]].channel[c];
       if (own > kNoSliceColor)
         column.scale[static_cast<int>(c)] *=
-            std::min(static_cast<float>(channels[c] / energy) / own, kLargestSliceGain);
+            std::min(static_cast<float>(channels[c] / energy) / own, kMaxSliceGain);
     }
   return column;
 }
@@ -256,10 +256,10 @@ void SliceLights::set_turn(std::size_t columns, std::uint64_t turn) {
 
 void SliceLights::choose(std::size_t slice, Workspace& w) const {
   w.chosen.clear();
-  float greatest = 0;
+  float max_sum = 0;
   for (std::size_t r = 0; r < neighbour_count_; ++r)
-    greatest = std::max(greatest, norm2(known().rows()[neighbours_[slice * neighbour_count_ + r]].sum));
-  w.max_added = static_cast<float>(settings_.max_sum_share) * greatest;
+    max_sum = std::max(max_sum, norm2(known().rows()[neighbours_[slice * neighbour_count_ + r]].sum));
+  w.max_added = static_cast<float>(settings_.max_sum_share) * max_sum;
   if (settings_.columns >= matrix_.columns()) {
     for (std::size_t j = 0; j < matrix_.columns(); ++j) w.chosen.push_back({static_cast<Index>(j)});
     return;

@@ -48,7 +48,7 @@ class SlicePass {
     const auto own = static_cast<double>(std::max<std::size_t>(columns, 1));
     TurnMethod method{.entries_per_row = own};
     if (options_.time_seconds > 0) {
-      method.least = std::min(1.0, static_cast<double>(lights_.min_columns()) / own);
+      method.min_quality = std::min(1.0, static_cast<double>(lights_.min_columns()) / own);
       method.exact_from = static_cast<double>(matrix_.columns()) / own;
       method.of_own = own / static_cast<double>(std::max<std::size_t>(given_columns_, 1));
       method.prepare = [&, columns](const Turn& turn) {
