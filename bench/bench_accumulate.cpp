@@ -116,7 +116,7 @@ BareResult trace_tile(const BareScene& bare, const BareReceivers& r, const BareL
     const LaneMask inside = kLaneNumbers < static_cast<int>(count - at);
     std::memcpy(valid, &inside, sizeof inside);
     geometry::embree::Context context;
-    geometry::embree::initialise(context);
+    geometry::embree::initialize(context);
     geometry::embree::occluded16(valid, bare.scene.get(), context, rays, true);
     const std::uint32_t open = bits(inside & (load(rays.tfar) >= Lane{}));
     result.visible += static_cast<std::uint64_t>(__builtin_popcount(open));

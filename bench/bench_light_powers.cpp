@@ -1,4 +1,4 @@
-// How unevenly the light of a scene is shared out among its virtual lights: single heavy ones make coloured
+// How unevenly the light of a scene is shared out among its virtual lights: single heavy ones make colored
 // glows where they stand near a surface.
 //
 //   bench_light_powers scene [--size 320x180] [--lights 100000] [--seed 1] [--receivers 512]

@@ -5,7 +5,7 @@
 //   inspect_recovery scene folder [--size 400x300] [--lights 20000] [--spp 4] [--seed 1] [--threads 0]
 //                      [--set key=value …, of sampling-recovery]
 //
-// Writes results.json and pictures as PFM with numbers in place of colours:
+// Writes results.json and pictures as PFM with numbers in place of colors:
 //   image                      what the method renders
 //   wrong_P, wrong_equal_P     share of the entries not sampled whose drawn prediction is wrong; P:
 //   nearest,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the example scenes (Mitsuba 3 XML) into this folder. The XML files are committed; run this after changing a scene.
 
-Units are metres, +y is up. Everything is made of the format's own shapes, so a scene is one small text file.
+Units are meters, +y is up. Everything is made of the format's own shapes, so a scene is one small text file.
 """
 import math
 import pathlib
@@ -178,7 +178,7 @@ def interior():
 
 
 def lamps():
-    s = Scene("A hall under garlands: 2,000 small lamps of many colours, each an emitter of its own.",
+    s = Scene("A hall under garlands: 2,000 small lamps of many colors, each an emitter of its own.",
               ((0, 1.7, 7.4), (0, 1.45, 0), 62), depth=12)
     s.diffuse("wall", 0.62, 0.60, 0.58)
     s.rough_plastic("floor", 0.25, 0.22, 0.20, 0.3)
@@ -200,7 +200,7 @@ def lamps():
         for x in (-4.6, 4.6):
             s.cylinder("wall", (x, 0, z), (x, 4.5, z), 0.22)
     rng = random.Random(3)
-    colours = [(1, 0.75, 0.42), (1, 0.55, 0.25), (0.95, 0.3, 0.25), (0.35, 0.6, 1), (0.5, 0.95, 0.45)]
+    colors = [(1, 0.75, 0.42), (1, 0.55, 0.25), (0.95, 0.3, 0.25), (0.35, 0.6, 1), (0.5, 0.95, 0.45)]
     count = 0
     for strand in range(40):
         z = -7.6 + strand * 15.2 / 39
@@ -209,7 +209,7 @@ def lamps():
             t = (k + 0.5) / 50
             x = -4.7 + 9.4 * t
             y = 4.2 - sag * 4 * t * (1 - t) + 0.03 * rng.random()
-            c = colours[rng.choice([0, 0, 0, 1, 2, 3, 4])]
+            c = colors[rng.choice([0, 0, 0, 1, 2, 3, 4])]
             power = 55 * rng.uniform(0.6, 1.4)
             s.rect("lamp", (x, y, z + 0.04 * rng.random()), (0.012, 0, 0), (0, 0, 0.012), emit=[power * v for v in c],
                    name=f"strand_{strand}_{k}")
@@ -230,7 +230,7 @@ def courtyard():
     s.add('<emitter type="sunsky"><float name="turbidity" value="3"/><float name="scale" value="5"/><vector name="sun_direction" value="0.62, 0.66, 0.12"/>'
           '<transform name="to_world"><rotate x="1" angle="-90"/></transform></emitter>')
     s.rect("paving", (0, 0, 0), (30, 0, 0), (0, 0, -30))
-    # Four wings around the court [-6, 6] × [-6, 6]; each has a gallery of pillars, a back wall, a ceiling and a storey above.
+    # Four wings around the court [-6, 6] × [-6, 6]; each has a gallery of pillars, a back wall, a ceiling and a story above.
     for turn in range(4):
         def place(lo, hi, bsdf):
             half = [(h - l) / 2 for l, h in zip(lo, hi)]

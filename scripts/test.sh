@@ -41,7 +41,7 @@ export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
 # Neither render nor cli: their statistical tests take minutes there, over code that the other rooms' tests reach.
 checked=(transport methods scenedesc scatter world linalg geometry emitters image film matrix base)
-step "Build with the address and undefined-behaviour sanitizers"
+step "Build with the address and undefined-behavior sanitizers"
 quiet_build asan -t fuzzers $(printf -- '-t test_%s ' "${checked[@]}")
 step "The rooms' tests under these sanitizers"
 sanitized asan "${checked[@]}"

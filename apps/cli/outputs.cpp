@@ -65,7 +65,7 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
       {"none", "reinhard", "agx"}, "for PNG: none, reinhard or agx (default none)");
   command.add_option_function<std::string>(
       "--illuminance-range", [&outputs](const std::string& text) { read_range(text, outputs.display); },
-      "LOW:HIGH, lux: the scale of the false colours of --aov illuminance (default: 0 to a round number)");
+      "LOW:HIGH, lux: the scale of the false colors of --aov illuminance (default: 0 to a round number)");
 }
 
 void check_outputs(const OutputOptions& outputs, const RenderSettings& settings) {

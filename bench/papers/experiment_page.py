@@ -57,7 +57,7 @@ NOTHING = bytes((112, 112, 112))
 
 
 def colors_of(values, low, high, colors, nothing=math.isnan):
-    """The first of every three numbers, painted by the colors from low to high; grey where there is nothing."""
+    """The first of every three numbers, painted by the colors from low to high; gray where there is nothing."""
     scale = len(colors) / (high - low)
     return b"".join(NOTHING if nothing(v) else colors[min(len(colors) - 1, max(0, int((v - low) * scale)))] for v in values[::3])
 

@@ -6,7 +6,7 @@
   trees  some trees with tens of thousands of small leaves on a lawn, under sun and sky
   fur    a rounded animal with long ears in tens of thousands of fibres, under sun and sky and one lamp
 
-Neighbouring pixels see other leaves or hairs in other shadows: the rows of the matrix, and its columns, are of high frequency.
+Neighboring pixels see other leaves or hairs in other shadows: the rows of the matrix, and its columns, are of high frequency.
 The fur has the BSDF "kajiyakay", which Mitsuba does not have; --mitsuba-hair writes its "hair" instead.
 """
 import argparse

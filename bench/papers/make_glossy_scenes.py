@@ -364,11 +364,11 @@ def box():
 
 def glossy_box():
     scene = Scene("A box of which all surfaces are glossy; a narrow spot shines on its left wall.", ((0, 1, 3.7), (0, 1, 0)), 39, (512, 512), 3)
-    grey = scene.material("grey", ward((0.25, 0.25, 0.25), (0.4, 0.4, 0.4), 0.03))
+    gray = scene.material("gray", ward((0.25, 0.25, 0.25), (0.4, 0.4, 0.4), 0.03))
     red = scene.material("red", ward((0.3, 0.06, 0.05), (0.4, 0.4, 0.4), 0.03))
     green = scene.material("green", ward((0.08, 0.25, 0.07), (0.4, 0.4, 0.4), 0.03))
-    walls(grey, red, green)
-    grey.box((0.05, 0, -0.5), (0.55, 0.6, 0.0), turn=-16)
+    walls(gray, red, green)
+    gray.box((0.05, 0, -0.5), (0.55, 0.6, 0.0), turn=-16)
     scene.spot((0.9, 1.2, 0.2), (-1, 0.8, -0.2), (60, 56, 50), 1, 0.8)
     return scene
 

@@ -156,18 +156,18 @@ def fair(out):
             lamp((x - 1.2 * w + 2.4 * w * (s + 0.5) / 12, h - 0.06, z + d * 1.28), 0.35, (warm, red, cold, warm)[(k + s) % 4])
         lamp((x, h - 0.15, z), 1.6, warm)
     # A big wheel.
-    centre, radius = (0, 7.2, -9), 6.2
+    center, radius = (0, 7.2, -9), 6.2
     for side in (-0.6, 0.6):
-        ring = [add(centre, (radius * math.cos(a), radius * math.sin(a), side)) for a in (2 * math.pi * k / 48 for k in range(48))]
+        ring = [add(center, (radius * math.cos(a), radius * math.sin(a), side)) for a in (2 * math.pi * k / 48 for k in range(48))]
         steel.tube(ring, 0.07, 6, closed=True)
         for k in range(24):
-            steel.tube([add(centre, (0, 0, side)), ring[2 * k]], 0.03, 5)
+            steel.tube([add(center, (0, 0, side)), ring[2 * k]], 0.03, 5)
             lamp(add(ring[2 * k], (0, 0, 0.15 if side > 0 else -0.15)), 1.2, (red, blue, warm)[k % 3])
-            lamp(add(centre, mul(add(ring[2 * k], mul(centre, -1)), 0.6)), 0.6, cold)
-        steel.tube([(-3.6, 0, centre[2] + side * 2), add(centre, (0, 0, side)), (3.6, 0, centre[2] + side * 2)], 0.14, 8)
+            lamp(add(center, mul(add(ring[2 * k], mul(center, -1)), 0.6)), 0.6, cold)
+        steel.tube([(-3.6, 0, center[2] + side * 2), add(center, (0, 0, side)), (3.6, 0, center[2] + side * 2)], 0.14, 8)
     for k in range(12):
         a = 2 * math.pi * k / 12
-        p = add(centre, (radius * math.cos(a), radius * math.sin(a) - 0.9, 0))
+        p = add(center, (radius * math.cos(a), radius * math.sin(a) - 0.9, 0))
         roofs[k % 4].box(add(p, (-0.5, -0.4, -0.5)), add(p, (0.5, 0.1, 0.5)), 0.05)
         roofs[(k + 1) % 4].box(add(p, (-0.55, 0.7, -0.55)), add(p, (0.55, 0.78, 0.55)), 0.02)
         for px in (-0.45, 0.45):
@@ -261,8 +261,8 @@ def arcade(out):
     floor.patch((-12, 0, 5.5), (24, 0, 0), (0, 0, -11), 8, 8)
     for sign in (-1, 1):
         xs = [-11 + 2.2 * k for k in range(11)]
-        for storey in (0, 1):
-            y = 4.1 * storey
+        for story in (0, 1):
+            y = 4.1 * story
             z = sign * 2.3 - 0.25
             for c in xs:
                 column(stone, (c, y, sign * 2.3), 2.5, 0.22)

@@ -39,10 +39,10 @@ TRACED = "slice-cuts"
 LADDERS = {
     "lightcuts": ("max-nodes", (100, 300, 1000)),
     "multidimensional-lightcuts": ("max-pairs", (60, 250, 500, 1000)),
-    "lightslice": ("columns:slice-rows:neighbours", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
+    "lightslice": ("columns:slice-rows:neighbors", ("100:16384:8", "200:16384:8", "200:8192:8", "400:8192:8", "800:8192:8", "400:4096:16")),
     "stochastic-lightcuts": ("nodes", (8, 16, 64)),
     "row-column-sampling": ("rows:columns", ("30:90", "100:300", "300:900", "600:2400")),
-    "visibility-completion": ("columns:slice-rows:neighbours", ("100:16384:8", "300:16384:8", "300:8192:8", "600:8192:8")),
+    "visibility-completion": ("columns:slice-rows:neighbors", ("100:16384:8", "300:16384:8", "300:8192:8", "600:8192:8")),
     "power-sampling": ("columns", (100, 300, 1000)),
     "instant-radiosity": ("lights", (100, 300, 1000)),
     OURS: ("initial-columns:alpha", ("100:0.02", "250:0.008", "500:0.003", "1000:0.001")),
@@ -235,7 +235,7 @@ class Experiments:
     def matrices(self):
         page = self.page
         page.heading("Figure 7: matrices of two slices")
-        page.say("Columns along the light tree, rows along Hilbert's curve through the slice; grey where the light does not reach (E = 0). The slices stand at 25 % and 90 % of all by how mixed "
+        page.say("Columns along the light tree, rows along Hilbert's curve through the slice; gray where the light does not reach (E = 0). The slices stand at 25 % and 90 % of all by how mixed "
                  "their columns are. What is separated is visibility, 0 or 1.")
         for scene in self.scenes:
             found, folder = self.inspect(scene)

@@ -1,6 +1,6 @@
 """Meshes and Mitsuba 3 XML for the scene generators beside it. Only the standard library; the same input writes the same bytes.
 
-Units are metres, +y is up. Every mesh has texture coordinates, because the direction of brushing of an anisotropic metal is that of u.
+Units are meters, +y is up. Every mesh has texture coordinates, because the direction of brushing of an anisotropic metal is that of u.
 """
 import argparse
 import math

@@ -3,7 +3,7 @@
 
     bench/strangers/make_hard_scenes.py OUT [atrium shades blinds mirror gloss]
 
-  atrium  four storeys of galleries around a court under a glazed roof: sun and sky come in from above
+  atrium  four stories of galleries around a court under a glazed roof: sun and sky come in from above
   shades  a living room at night: six lamps, each inside a shade that is open above and below
   blinds  a room behind a window with slats: stripes of sun on the floor, everything else by bounces
   mirror  a room whose light is seen and thrown by a large mirror, with a polished metal ball
@@ -46,14 +46,14 @@ def furniture(rng, woods, cloths, around, count):
 
 def atrium(out):
     rng = random.Random(1)
-    scene = Scene("Four storeys around a court under a roof of glass.", ((2.9, 1.7, 9.2), (-1.2, 5.2, -3)), 74, (640, 360))
+    scene = Scene("Four stories around a court under a roof of glass.", ((2.9, 1.7, 9.2), (-1.2, 5.2, -3)), 74, (640, 360))
     stone, floor = scene.material("stone", diffuse((0.7, 0.68, 0.63))), scene.material("floor", diffuse((0.45, 0.42, 0.4)))
     rails, woods = scene.material("rails", diffuse((0.2, 0.2, 0.22))), [scene.material("wood", diffuse((0.4, 0.25, 0.13)))]
     cloths = [scene.material("red", diffuse((0.6, 0.08, 0.06))), scene.material("green", diffuse((0.12, 0.4, 0.15)))]
-    x, z, storey = 7.0, 10.0, 3.6
-    room(stone, floor, None, (x, z), 4 * storey)
+    x, z, story = 7.0, 10.0, 3.6
+    room(stone, floor, None, (x, z), 4 * story)
     for s in range(1, 4):
-        y = storey * s
+        y = story * s
         for lo, hi in (((-x, -z), (-4, z)), ((4, -z), (x, z)), ((-4, -z), (4, -6.5)), ((-4, 6.5), (4, z))):
             stone.box((lo[0], y - 0.3, lo[1]), (hi[0], y, hi[1]))
         for side in (-4.0, 4.0):
@@ -63,13 +63,13 @@ def atrium(out):
         for cx in (-4.0, 4.0):
             for k in range(5):
                 cz = -6.5 + 13 * k / 4
-                stone.revolve((cx, y - storey, cz), [(0.22, 0), (0.2, 0.2), (0.18, storey - 0.3)], 20, 2)
+                stone.revolve((cx, y - story, cz), [(0.22, 0), (0.2, 0.2), (0.18, story - 0.3)], 20, 2)
     for k in range(9):  # beams of the roof
         zz = -z + 2 * z * k / 8
-        rails.box((-x, 4 * storey, zz - 0.08), (x, 4 * storey + 0.3, zz + 0.08))
+        rails.box((-x, 4 * story, zz - 0.08), (x, 4 * story + 0.3, zz + 0.08))
     for k in range(6):
         xx = -x + 2 * x * k / 5
-        rails.box((xx - 0.05, 4 * storey, -z), (xx + 0.05, 4 * storey + 0.2, z))
+        rails.box((xx - 0.05, 4 * story, -z), (xx + 0.05, 4 * story + 0.2, z))
     furniture(rng, woods, cloths, (3.2, 5.5), 14)
     scene.sun_and_sky((0.35, 0.85, 0.2), 1)
     return scene, out / "atrium"

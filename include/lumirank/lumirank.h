@@ -47,12 +47,12 @@ class LUMIRANK_API Scene {
 
 // Linear RGB, three floats per pixel, row 0 at the top.
 struct Plane {
-  std::string name;  // "" for the picture's colours, else the AOV
+  std::string name;  // "" for the picture's colors, else the AOV
   std::vector<float> rgb;
 };
 struct Picture {
   int width = 0, height = 0;
-  std::vector<Plane> planes;  // planes[0] is the colour
+  std::vector<Plane> planes;  // planes[0] is the color
 };
 
 struct RenderResult {
@@ -78,7 +78,7 @@ LUMIRANK_API RenderResult reference(const Scene& scene, const RenderSettings& se
 LUMIRANK_API void write_picture(const std::string& filename, const Picture& picture,
                                 const DisplaySettings& display = {});
 LUMIRANK_API void check_writable(const std::string& filename);
-// The plane "illuminance" in false colours with a scale in lux, as PNG. Throws InputError if there is none.
+// The plane "illuminance" in false colors with a scale in lux, as PNG. Throws InputError if there is none.
 LUMIRANK_API void write_illuminance(const std::string& filename, const Picture& picture,
                                     const DisplaySettings& display = {});
 // A small text file (report, settings), written to a temporary name and renamed.

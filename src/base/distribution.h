@@ -25,7 +25,7 @@ class Distribution1D {
   std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
 
  private:
-  std::vector<double> cdf_;  // size + 1 entries, not normalised
+  std::vector<double> cdf_;  // size + 1 entries, not normalized
 };
 
 }  // namespace lumirank

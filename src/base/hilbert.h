@@ -1,4 +1,4 @@
-// Hilbert's curve through the plane: an order in which neighbours are near each other.
+// Hilbert's curve through the plane: an order in which neighbors are near each other.
 #pragma once
 
 #include <cstdint>

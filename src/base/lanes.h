@@ -1,7 +1,7 @@
 // Sixteen floats at a time, by the compilers' vector extensions: AVX-512 where the build has it, narrower
 // registers otherwise, the same results everywhere (every operation here is exactly rounded, and the build
 // does not contract products and sums). All kernels are written in these lanes, so an entry has one value
-// whether its fifteen neighbours are other receivers, other lights or copies of itself.
+// whether its fifteen neighbors are other receivers, other lights or copies of itself.
 #pragma once
 
 #include <cmath>

@@ -17,8 +17,8 @@ struct Bounds3d {
   double radius() const;  // of the sphere around center() that holds the box
 };
 
-// Zero along every axis on which the box's centre is at most `far` of its radii away; along the others the
-// centre, rounded to a multiple of the greatest power of two that is no more than the radius: so round
+// Zero along every axis on which the box's center is at most `far` of its radii away; along the others the
+// center, rounded to a multiple of the greatest power of two that is no more than the radius: so round
 // numbers stay round when it is subtracted.
 Vec3d near_origin(const Bounds3d& box, double far);
 

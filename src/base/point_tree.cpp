@@ -30,7 +30,7 @@ float PointTree::kth_distance_squared(Vec3f p, int k) const {
   return kth_of_others(p, kNoGroup, k).distance_squared;
 }
 
-Neighbour PointTree::kth_of_others(Vec3f p, std::uint32_t group, int k) const {
+Neighbor PointTree::kth_of_others(Vec3f p, std::uint32_t group, int k) const {
   Query q{p, static_cast<std::size_t>(k), group, {}};
   q.heap.reserve(q.wanted);
   visit(0, 0, 0, Vec3f{}, q);

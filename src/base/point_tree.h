@@ -1,4 +1,4 @@
-// Neighbours among many points.
+// Neighbors among many points.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/neighbour_distance.h"
+#include "base/neighbor_distance.h"
 #include "base/vec.h"
 
 namespace lumirank {
@@ -22,7 +22,7 @@ class PointTree {
   // The k-th smallest squared distance from `p` to a point (k ≥ 1, at most the number of points), exact.
   float kth_distance_squared(Vec3f p, int k) const;
   // The same among the points of other groups; the farthest of these if they are fewer.
-  Neighbour kth_of_others(Vec3f p, std::uint32_t group, int k) const;
+  Neighbor kth_of_others(Vec3f p, std::uint32_t group, int k) const;
 
  private:
   struct Query {

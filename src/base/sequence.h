@@ -1,4 +1,4 @@
-// Evenly spread points: the additive recurrence on the generalised golden ratio (Roberts 2018), shifted at
+// Evenly spread points: the additive recurrence on the generalized golden ratio (Roberts 2018), shifted at
 // random modulo 1 so that each point by itself is uniform. In integers, so that no precision is lost however
 // long the sequence.
 #pragma once

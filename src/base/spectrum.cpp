@@ -8,7 +8,7 @@ namespace lumirank {
 
 namespace {
 
-// CIE 1931 2° colour matching functions and the relative power of D65 (CIE 15), from 380 nm in steps of 5 nm.
+// CIE 1931 2° color matching functions and the relative power of D65 (CIE 15), from 380 nm in steps of 5 nm.
 struct Observer {
   float x, y, z, d65;
 };

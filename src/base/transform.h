@@ -38,7 +38,7 @@ struct Transform {
     return {m[i], m[4 + i], m[8 + i]};
   }
   Vec3f vector(Vec3f v) const;  // linear part only
-  // A normal under *this*, given the inverse of this transform; not normalised.
+  // A normal under *this*, given the inverse of this transform; not normalized.
   static Vec3f normal(const Transform& inverse, Vec3f n);
 };
 

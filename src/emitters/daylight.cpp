@@ -35,7 +35,7 @@ double cie_z(double nm) {
 }
 
 // Table 2 of the paper, every 20 nm from 380: the sun's radiance above the atmosphere in W·m⁻²·sr⁻¹·nm⁻¹ and
-// the absorption of ozone and water vapour in 1/cm. Mixed gases absorb near 760 nm only.
+// the absorption of ozone and water vapor in 1/cm. Mixed gases absorb near 760 nm only.
 constexpr double kFirst = 380, kStep = 20;
 constexpr int kCount = 20;
 constexpr double kSun[kCount] = {16559, 21127, 25829, 26760, 30545, 30663, 28712, 27100, 26361, 25060,

@@ -38,7 +38,7 @@ class PreethamSky {
 };
 
 // Mean radiance of the sun's disc at the ground (appendix A.1 of the paper: extinction by Rayleigh and
-// aerosol scattering, ozone, mixed gases and water vapour), for a sun at the zenith angle `theta` (radians,
+// aerosol scattering, ozone, mixed gases and water vapor), for a sun at the zenith angle `theta` (radians,
 // below π/2).
 Rgb sun_radiance(float turbidity, float theta);
 

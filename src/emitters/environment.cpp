@@ -1,4 +1,4 @@
-// Environment light. Radiance is interpolated bilinearly between texel centres (periodic in longitude, held
+// Environment light. Radiance is interpolated bilinearly between texel centers (periodic in longitude, held
 // at the poles), and the sampling density is constant over each texel's solid angle, in proportion to the
 // exact integral of the interpolated luminance there. So the density is zero only where the radiance is, and
 // every estimator stays unbiased.

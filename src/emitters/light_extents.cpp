@@ -37,7 +37,7 @@ LightExtents::LightExtents() : radius2_(Lane{} + 1) {}
 void LightExtents::set(int k, const LightBound& bound) {
   const Vec3f center = bound.bounds.center();
   center_x_[k] = center.x, center_y_[k] = center.y, center_z_[k] = center.z;
-  // Wide enough for the rounding of the centre, and never so small that 1/d² loses all measure.
+  // Wide enough for the rounding of the center, and never so small that 1/d² loses all measure.
   const float rounding = 1e-6f * std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
   radius2_[k] = std::max(1e-16f, square(bound.bounds.radius() + rounding));
   axis_x_[k] = bound.axis.x, axis_y_[k] = bound.axis.y, axis_z_[k] = bound.axis.z;

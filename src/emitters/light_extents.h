@@ -14,8 +14,8 @@ class LightExtents {
   LightExtents();
   void set(int slot, const LightBound& bound);
 
-  // Of each slot, the irradiance that arrives at the point as if all its light came from the sphere's centre,
-  // with the most favourable cosines that the sphere and the cone of normals leave possible. 0 only where no
+  // Of each slot, the irradiance that arrives at the point as if all its light came from the sphere's center,
+  // with the most favorable cosines that the sphere and the cone of normals leave possible. 0 only where no
   // light can arrive; rounding is on the safe side: what is seen by a grazing 10⁻³ stays possible.
   void importance(const LitPoint& at, float out[kCount]) const;
 

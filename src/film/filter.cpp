@@ -43,7 +43,7 @@ float Filter::eval(float x) const {
   return 0;
 }
 
-// It lies between 0.5 and k + 0.5 from the centres of the pixels k beside its own, both open: within the
+// It lies between 0.5 and k + 0.5 from the centers of the pixels k beside its own, both open: within the
 // radius for k ≤ ceil(radius − 0.5) only.
 int Filter::reach() const { return std::max(0, static_cast<int>(std::ceil(radius - 0.5f))); }
 

@@ -18,7 +18,7 @@ struct Filter {
   float radius = 0.5f;
   float stddev = 0.5f, b = 1.0f / 3, c = 1.0f / 3;
   int lobes = 3;
-  float eval(float x) const;  // 1-D profile of (sample - pixel centre); 0 beyond the radius
+  float eval(float x) const;  // 1-D profile of (sample - pixel center); 0 beyond the radius
   // A sample in pixel p counts for pixels p ± reach() at most.
   int reach() const;
   static Filter standard(FilterKind kind);  // with the radius that suits the kind

@@ -14,7 +14,7 @@ class FilterSampler {
   explicit FilterSampler(const Filter& filter);
 
   struct Sample {
-    Vec2f offset;  // from the pixel's centre, in pixels
+    Vec2f offset;  // from the pixel's center, in pixels
     float weight;  // expectation 1
   };
   Sample sample(Vec2f u) const;

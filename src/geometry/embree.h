@@ -16,7 +16,7 @@ namespace lumirank::geometry::embree {
 #if RTC_VERSION_MAJOR >= 4
 using Context = RTCRayQueryContext;
 
-inline void initialise(Context& context) { rtcInitRayQueryContext(&context); }
+inline void initialize(Context& context) { rtcInitRayQueryContext(&context); }
 
 inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
   RTCIntersectArguments arguments;
@@ -44,7 +44,7 @@ inline void occluded16(const int* valid, RTCScene scene, Context& context, RTCRa
 #else
 using Context = RTCIntersectContext;
 
-inline void initialise(Context& context) { rtcInitIntersectContext(&context); }
+inline void initialize(Context& context) { rtcInitIntersectContext(&context); }
 
 inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
   rtcIntersect1(scene, &context, &ray);

@@ -58,7 +58,7 @@ Ray segment(const ShadowPacket& p, int k) {
 
 QueryContext context_for(const RayScene::Impl& scene) {
   QueryContext context;
-  embree::initialise(context.embree);
+  embree::initialize(context.embree);
   context.callbacks = &scene.callbacks;
   context.scene = &scene;
   return context;
@@ -84,7 +84,7 @@ float across(const Fibres& fibres, const Transform& to_world, const Hit& hit, co
 // Shortens `best` to the closest hit in `scene` before it.
 void closest(RTCScene scene, RTCRayHit& best) {
   embree::Context context;
-  embree::initialise(context);
+  embree::initialize(context);
   embree::intersect1(scene, context, best);
 }
 

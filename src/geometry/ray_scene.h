@@ -35,7 +35,7 @@ struct Hit {
 enum class Blocking : std::uint8_t {
   opaque,  // always blocks: no callback
   cutout,  // blocks with a probability that the callback gives (binary, decided by a hash of the ray's key)
-  smooth,  // never blocks; attenuates by a colour that the callback gives
+  smooth,  // never blocks; attenuates by a color that the callback gives
 };
 
 // One placement of a mesh in the world. Meshes placed once with the identity cost nothing extra.
@@ -99,7 +99,7 @@ class RayScene {
   // Product of the smooth placements' transmittances along the ray (1 if none); ignores everything else.
   Rgb transmittance(const Ray& ray) const;
 
-  // Bit k of the result: segment k is traced (valid) and unblocked. Neighbouring segments should be alike.
+  // Bit k of the result: segment k is traced (valid) and unblocked. Neighboring segments should be alike.
   std::uint16_t visible16(const ShadowPacket& packet) const;
   // Transmittance of the smooth placements for 16 segments; only worth calling if has_smooth().
   void transmittance16(const ShadowPacket& packet, Rgb out[16]) const;

@@ -81,7 +81,7 @@ TriangleMesh make_disk(int segments) {
     mesh.positions.push_back(to_vec3f(rim[j].x, rim[j].y, 0));
     mesh.uvs.push_back({1, fraction(j, segments)});
   }
-  // The centre once per segment: its angle, and so its v, is that of the segment.
+  // The center once per segment: its angle, and so its v, is that of the segment.
   for (int j = 0; j < segments; ++j) {
     mesh.positions.push_back({0, 0, 0});
     mesh.uvs.push_back({0, fraction(j + 0.5, segments)});

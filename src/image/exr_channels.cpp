@@ -22,7 +22,7 @@ bool is_exr_alpha(const ExrChannelName& name) {
   return last == "a" || last == "alpha";
 }
 
-// Colours before luminance before alpha before depth; what has none of these names comes last. A layer of
+// Colors before luminance before alpha before depth; what has none of these names comes last. A layer of
 // positions or normals goes x, y, z.
 std::size_t exr_rank(const std::string& last, bool coordinates) {
   static const std::vector<std::string> kColors{"r",    "red",  "g",  "green", "b",     "blue", "y",
@@ -73,7 +73,7 @@ ExrChannels choose_exr_channels(const std::vector<std::string>& names) {
   std::vector<std::string> others;
   for (const ExrChannelName& name : sorted)
     if (name.whole != chosen.alpha) others.push_back(name.whole);
-  if (others.empty()) others.push_back(chosen.alpha);  // a file of nothing but alpha is read as grey
+  if (others.empty()) others.push_back(chosen.alpha);  // a file of nothing but alpha is read as gray
   const std::size_t step = others.size() >= 3 ? 1 : 0;
   for (std::size_t c = 0; c < 3; ++c) chosen.color[c] = others[c * step];
   return chosen;

@@ -1,4 +1,4 @@
-// Which channels of an OpenEXR file become colour and alpha.
+// Which channels of an OpenEXR file become color and alpha.
 #pragma once
 
 #include <array>

@@ -45,7 +45,7 @@ Image color_bar(int width, int height) {
 
 Image false_color_error(const Image& image, const Image& reference, float full) {
   if (image.width != reference.width || image.height != reference.height)
-    throw InputError("a false-colour error needs an image and a reference of one size");
+    throw InputError("a false-color error needs an image and a reference of one size");
   const double total = parallel_sum(reference.pixels.size(), 1 << 14, 0.0, [&](std::size_t b, std::size_t e) {
     double s = 0;
     for (std::size_t i = b; i < e; ++i) s += mean(reference.pixels[i]);

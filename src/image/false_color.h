@@ -1,11 +1,11 @@
-// Numbers as colours.
+// Numbers as colors.
 #pragma once
 
 #include "image/image.h"
 
 namespace lumirank::image {
 
-// The colour, linear, of t in [0, 1] (clamped; NaN is magenta): dark blue over teal to yellow. Perceptually
+// The color, linear, of t in [0, 1] (clamped; NaN is magenta): dark blue over teal to yellow. Perceptually
 // uniform by construction: lightness in Oklab (Ottosson 2020) is linear in t, hue turns at a constant rate,
 // chroma stays inside sRGB.
 Rgb false_color(float t);

@@ -1,4 +1,4 @@
-// Some decoders are too kind to truncated files: libjpeg paints the missing part grey. So the skeleton of
+// Some decoders are too kind to truncated files: libjpeg paints the missing part gray. So the skeleton of
 // JPEG and PNG files is walked before they are decoded.
 #pragma once
 

@@ -21,7 +21,7 @@ struct Image {
   const Rgb& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
-// A picture with named layers besides its colours: layer "direct" becomes the EXR channels direct.R,
+// A picture with named layers besides its colors: layer "direct" becomes the EXR channels direct.R,
 // direct.G, direct.B.
 struct LayeredImage {
   Image color;

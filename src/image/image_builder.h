@@ -11,7 +11,7 @@ namespace lumirank::image {
 
 class ImageBuilder final : public PixelSink {
  public:
-  // `name`: of the file, for messages. `raw`: colours stay as they are stored; otherwise encoded ones are
+  // `name`: of the file, for messages. `raw`: colors stay as they are stored; otherwise encoded ones are
   // decoded. Alpha is coverage and never decoded.
   ImageBuilder(std::string name, bool raw, std::size_t max_pixels);
 
@@ -31,7 +31,7 @@ class ImageBuilder final : public PixelSink {
   const bool raw_;
   const std::size_t max_pixels_;
   PixelLayout layout_;
-  std::array<float, 256> of_byte_{};  // what a byte of colour stands for
+  std::array<float, 256> of_byte_{};  // what a byte of color stands for
   LoadedImage image_;
 };
 

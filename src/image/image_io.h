@@ -13,7 +13,7 @@ struct DisplayOptions {
   ToneMap tonemap = ToneMap::none;
 };
 
-// By extension: .exr (all layers, 32-bit float), .pfm (colour only), .png (8-bit sRGB after exposure and tone
+// By extension: .exr (all layers, 32-bit float), .pfm (color only), .png (8-bit sRGB after exposure and tone
 // map). Throws InputError for an unknown extension or an unwritable path.
 void write_image(const std::string& filename, const LayeredImage& image, const DisplayOptions& display = {});
 // An OpenEXR file in memory, of floats of 16 or 32 bits.

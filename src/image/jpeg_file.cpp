@@ -45,7 +45,7 @@ template <typename Step>
   return true;
 }
 
-// Four inks as Adobe's programs store them, 255 standing for none, to colours.
+// Four inks as Adobe's programs store them, 255 standing for none, to colors.
 void inks_to_colors(const unsigned char* inks, std::size_t pixels, unsigned char* colors) {
   for (std::size_t i = 0; i < pixels; ++i) {
     const float paper = static_cast<float>(inks[4 * i + 3]) * (1 / 255.0f);

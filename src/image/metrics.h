@@ -16,7 +16,7 @@ struct ErrorMetrics {
 // Throws InputError if sizes differ or either image has NaN or infinite pixels (the message says how many).
 ErrorMetrics compare(const Image& image, const Image& reference);
 
-// |I-R| relative to the reference's mean, in false colour (dark blue 0 … yellow `full` and more).
+// |I-R| relative to the reference's mean, in false color (dark blue 0 … yellow `full` and more).
 Image false_color_error(const Image& image, const Image& reference, float full = 0.5f);
 
 }  // namespace lumirank::image

@@ -12,7 +12,7 @@ namespace lumirank::image {
 // written whole.
 void write_pfm(const std::string& filename, const Image& image);
 
-// Colour ("PF") and grey ("Pf"), either byte order; the values as stored (the header's scale only tells the
+// Color ("PF") and gray ("Pf"), either byte order; the values as stored (the header's scale only tells the
 // byte order). Throws InputError: not a PFM file, sizes that are not positive or above max_pixels, fewer
 // bytes than the header says.
 Image read_pfm(const std::string& filename, std::size_t max_pixels);

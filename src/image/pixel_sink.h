@@ -18,7 +18,7 @@ struct PixelLayout {
   bool encoded = true;                // as sRGB says; false: proportional to light
 };
 
-// Grey, grey with alpha, RGB, RGB with alpha: what most formats know.
+// Gray, gray with alpha, RGB, RGB with alpha: what most formats know.
 inline PixelLayout usual_layout(int width, int height, int channels) {
   return {width,
           height,

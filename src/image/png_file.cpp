@@ -129,7 +129,7 @@ class PngReader {
     int compression = 0, filter = 0;
     png_get_IHDR(png_, info_, &width_, &height_, &depth_, &color_, &interlace_, &compression, &filter);
     transparent_ = png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
-    png_set_expand(png_);  // to 8 bits at least, palettes to colours, transparent colours to alpha
+    png_set_expand(png_);  // to 8 bits at least, palettes to colors, transparent colors to alpha
     if (std::endian::native == std::endian::little) png_set_swap(png_);
   }
 

@@ -114,7 +114,7 @@ void read_component_runs(RadianceBytes& in, std::vector<Rgbe>& line) {
     }
 }
 
-// Whole pixels; three mantissas of 1, which no normalized colour has, repeat the one before. Several of them
+// Whole pixels; three mantissas of 1, which no normalized color has, repeat the one before. Several of them
 // in a row are the digits of a count, the lowest first.
 void read_pixels_in_a_row(RadianceBytes& in, std::vector<Rgbe>& line) {
   std::size_t shift = 0;

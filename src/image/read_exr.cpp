@@ -56,7 +56,7 @@ class ExrReader {
   }
 
  private:
-  // Each channel once, even if it is read as grey.
+  // Each channel once, even if it is read as gray.
   int sample(const std::string& name, const Imf::ChannelList& channels) {
     for (std::size_t k = 0; k < samples_.size(); ++k)
       if (samples_[k].name == name) return static_cast<int>(k);

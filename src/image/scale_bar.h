@@ -1,4 +1,4 @@
-// False-colour pictures of a quantity, with a legend that says how much.
+// False-color pictures of a quantity, with a legend that says how much.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace lumirank::image {
 
-// Both ends of a scale; the greater one shows as the brightest colour.
+// Both ends of a scale; the greater one shows as the brightest color.
 struct Range {
   float low = 0, high = 1;
 };
@@ -15,7 +15,7 @@ struct Range {
 // channel). 0 to 1 where nothing is above 0.
 Range round_range(const Image& values);
 
-// The first channel as false colours, and below it a colour bar with five or six numbers and the unit. Taller
+// The first channel as false colors, and below it a color bar with five or six numbers and the unit. Taller
 // than the picture by the legend's height; as wide. Linear RGB, for write_image without exposure or tone map.
 // Letters known: digits, '.', and those of "lux", "k" and "M".
 Image with_scale(const Image& values, Range range, const std::string& unit);

@@ -19,9 +19,9 @@ Rgb without_negatives(Rgb c) {
 Rgb reinhard(Rgb c) { return std::isfinite(luminance(c)) ? c / (1 + luminance(c)) : Rgb(1); }
 
 // AgX, Troy Sobotka's display transform, in the published fit of Benjamin Wrensch ("Minimal AgX
-// Implementation", 2023): into a wider-primaries space, log2 over 16.5 stops around middle grey, a
+// Implementation", 2023): into a wider-primaries space, log2 over 16.5 stops around middle gray, a
 // sixth-order polynomial for the contrast curve, and back. The result is meant for a display of exponent 2.2,
-// so it is linearised by that exponent here.
+// so it is linearized by that exponent here.
 Rgb agx(Rgb c) {
   constexpr float min_ev = -12.47393f, max_ev = 4.026069f;
   const Rgb inset{0.842479062253094f * c.r + 0.0784335999999992f * c.g + 0.0792237451477643f * c.b,

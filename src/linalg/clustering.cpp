@@ -7,7 +7,7 @@
 namespace lumirank::linalg {
 
 namespace {
-// Two thirds of few clusters, as in the paper, and two fifths of many: sampling costs points × centres,
+// Two thirds of few clusters, as in the paper, and two fifths of many: sampling costs points × centers,
 // splitting hardly anything, and from a thousand clusters on the costs of the clusterings are equal.
 std::size_t sampled_of(std::size_t clusters) {
   constexpr std::size_t kFew = 400;
@@ -22,8 +22,8 @@ Splitter cluster(const Points& points, std::span<const double> norms, std::span<
   if (settings.algorithm == ClusteringAlgorithm::sampling) sampled = settings.clusters;
   if (settings.algorithm == ClusteringAlgorithm::combined) sampled = sampled_of(settings.clusters);
   if (sampled > start.clusters()) {
-    const Centres centres = draw_centres(edge_costs(points, norms, start), sampled, settings.seed);
-    start = assign_to_centres(points, norms, start, centres);
+    const Centers centers = draw_centers(edge_costs(points, norms, start), sampled, settings.seed);
+    start = assign_to_centers(points, norms, start, centers);
   }
   Splitter splitter(points, norms, std::move(start), settings.seed);
   if (settings.algorithm != ClusteringAlgorithm::sampling) splitter.split_to(settings.clusters);

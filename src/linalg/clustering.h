@@ -22,7 +22,7 @@ struct ClusteringSettings {
 };
 
 // Clusters `members` without ever joining two groups (groups: one per point, or empty). There are at least as
-// many clusters as groups, and fewer than asked for only when all costs are zero or, by sampling, centres
+// many clusters as groups, and fewer than asked for only when all costs are zero or, by sampling, centers
 // coincide. The result can be split on. References to points and norms must outlive it.
 Splitter cluster(const Points& points, std::span<const double> norms, std::span<const std::uint32_t> members,
                  std::span<const std::uint16_t> groups, const ClusteringSettings& settings);

@@ -43,7 +43,7 @@ std::vector<double> edge_costs(const Points& points, std::span<const double> nor
   return alpha;
 }
 
-Centres draw_centres(std::span<const double> alpha, std::size_t count, std::uint64_t seed) {
+Centers draw_centers(std::span<const double> alpha, std::size_t count, std::uint64_t seed) {
   std::vector<double> cdf(alpha.size() + 1, 0.0);
   std::size_t candidates = 0;
   for (std::size_t k = 0; k < alpha.size(); ++k) {
@@ -51,8 +51,8 @@ Centres draw_centres(std::span<const double> alpha, std::size_t count, std::uint
     candidates += alpha[k] > 0;
   }
   count = std::min(count, candidates);
-  Centres centres;
-  if (count == 0) return centres;
+  Centers centers;
+  if (count == 0) return centers;
   Rng rng(seed, Stage::clustering, 0);
   std::map<std::uint32_t, double> multiset;
   for (std::size_t draw = 0; multiset.size() < count && draw < 64 * count; ++draw) {
@@ -64,28 +64,28 @@ Centres draw_centres(std::span<const double> alpha, std::size_t count, std::uint
     multiset[k] += cdf.back() / alpha[k];
   }
   for (const auto& [position, weight] : multiset) {
-    centres.position.push_back(position);
-    centres.weight.push_back(weight);
+    centers.position.push_back(position);
+    centers.weight.push_back(weight);
   }
-  return centres;
+  return centers;
 }
 
 namespace {
 
-constexpr std::size_t kPointBlock = 256, kCentreBlock = 256;
+constexpr std::size_t kPointBlock = 256, kCenterBlock = 256;
 // Cosines nearer to 1 than this differ only by rounding, of single precision or of 16-bit points.
 constexpr float kSameDirection = 1e-6f;
-// Centres of one direction have equal scales (1/p falls with the length), so distances to them differ by
+// Centers of one direction have equal scales (1/p falls with the length), so distances to them differ by
 // rounding; so little nearer is not nearer, or parallel points would be torn apart.
 constexpr float kNearer = 1 - 1e-4f;
 
-// label[k] = nearest of the centres (unit vectors in rows, scales w‖k‖) for the members [begin, end).
-void nearest_centres(const Points& points, std::span<const double> norms,
+// label[k] = nearest of the centers (unit vectors in rows, scales w‖k‖) for the members [begin, end).
+void nearest_centers(const Points& points, std::span<const double> norms,
                      std::span<const std::uint32_t> members, std::span<const float> units,
                      std::span<const float> scales, std::uint32_t* label) {
   const std::size_t dim = points.dimension;
   const PointReader reader(points);
-  std::vector<float> block(kPointBlock * dim), cosine(kPointBlock * kCentreBlock), best(kPointBlock);
+  std::vector<float> block(kPointBlock * dim), cosine(kPointBlock * kCenterBlock), best(kPointBlock);
   for (std::size_t p = 0; p < members.size(); p += kPointBlock) {
     const std::size_t count = std::min(kPointBlock, members.size() - p);
     for (std::size_t a = 0; a < count; ++a) {
@@ -96,12 +96,12 @@ void nearest_centres(const Points& points, std::span<const double> norms,
     }
     std::uint32_t* at = label + p;
     float* min_distances = best.data();
-    for (std::size_t q = 0; q < scales.size(); q += kCentreBlock) {
-      const std::size_t centres = std::min(kCentreBlock, scales.size() - q);
-      gemm({centres, count, dim, false, true}, units.data() + q * dim, dim, block.data(), dim, cosine.data(),
+    for (std::size_t q = 0; q < scales.size(); q += kCenterBlock) {
+      const std::size_t centers = std::min(kCenterBlock, scales.size() - q);
+      gemm({centers, count, dim, false, true}, units.data() + q * dim, dim, block.data(), dim, cosine.data(),
            kPointBlock);
-      // Points side by side, centres one after the other.
-      for (std::size_t k = 0; k < centres; ++k) {
+      // Points side by side, centers one after the other.
+      for (std::size_t k = 0; k < centers; ++k) {
         const float* row = cosine.data() + k * kPointBlock;
         const float scale = scales[q + k];
         const auto number = static_cast<std::uint32_t>(q + k);
@@ -119,13 +119,13 @@ void nearest_centres(const Points& points, std::span<const double> norms,
 
 }  // namespace
 
-Partition assign_to_centres(const Points& points, std::span<const double> norms, const Partition& groups,
-                            const Centres& centres) {
+Partition assign_to_centers(const Points& points, std::span<const double> norms, const Partition& groups,
+                            const Centers& centers) {
   const std::size_t dim = points.dimension;
   // Scales only matter by their ratios; the largest is made 1 to stay within single precision.
   double max_scale = 0;
-  for (std::size_t k = 0; k < centres.position.size(); ++k)
-    max_scale = std::max(max_scale, centres.weight[k] * norms[groups.order[centres.position[k]]]);
+  for (std::size_t k = 0; k < centers.position.size(); ++k)
+    max_scale = std::max(max_scale, centers.weight[k] * norms[groups.order[centers.position[k]]]);
 
   Partition result;
   result.order.reserve(groups.order.size());
@@ -134,19 +134,19 @@ Partition assign_to_centres(const Points& points, std::span<const double> norms,
   for (std::size_t g = 0; g < groups.clusters(); ++g) {
     const auto members = groups.members(g);
     const std::size_t first = next;
-    while (next < centres.position.size() && centres.position[next] < groups.starts[g + 1]) ++next;
+    while (next < centers.position.size() && centers.position[next] < groups.starts[g + 1]) ++next;
     const std::size_t count = next - first;
     std::vector<std::uint32_t> label(members.size(), 0);
     if (count > 1) {
       std::vector<float> units(count * dim), scales(count);
       const PointReader reader(points);
       for (std::size_t k = 0; k < count; ++k) {
-        const std::uint32_t j = groups.order[centres.position[first + k]];
-        scales[k] = static_cast<float>(centres.weight[first + k] * norms[j] / max_scale);
+        const std::uint32_t j = groups.order[centers.position[first + k]];
+        scales[k] = static_cast<float>(centers.weight[first + k] * norms[j] / max_scale);
         reader.read(j, units.data() + k * dim, static_cast<float>(1 / norms[j]));
       }
       parallel_for(members.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        nearest_centres(points, norms, members.subspan(begin, end - begin), units, scales,
+        nearest_centers(points, norms, members.subspan(begin, end - begin), units, scales,
                         label.data() + begin);
       });
     }

@@ -1,5 +1,5 @@
-// Clustering by sampling (Hašan 2007, section 3.5): centres drawn in proportion to the cost of their edges,
-// then every point to the nearest centre.
+// Clustering by sampling (Hašan 2007, section 3.5): centers drawn in proportion to the cost of their edges,
+// then every point to the nearest center.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,18 @@ namespace lumirank::linalg {
 std::vector<double> edge_costs(const Points& points, std::span<const double> norms, const Partition& groups);
 
 // Distinct points (positions in groups.order, ascending) with their multiset weights Σ 1/p.
-struct Centres {
+struct Centers {
   std::vector<std::uint32_t> position;
   std::vector<double> weight;
 };
 // Draws until `count` are distinct, or no more can be found: when all α are 0, when no undrawn α remains, or
 // after 64·count draws (what is left is then so improbable that splitting finds it cheaper).
-Centres draw_centres(std::span<const double> alpha, std::size_t count, std::uint64_t seed);
+Centers draw_centers(std::span<const double> alpha, std::size_t count, std::uint64_t seed);
 
-// Every point goes to the centre k of its own group with the least w_k·(‖k‖‖x‖ − k·x); of equals, the first.
-// A group without a centre stays one cluster; centres that get no point (their direction is another centre's)
+// Every point goes to the center k of its own group with the least w_k·(‖k‖‖x‖ − k·x); of equals, the first.
+// A group without a center stays one cluster; centers that get no point (their direction is another center's)
 // make none.
-Partition assign_to_centres(const Points& points, std::span<const double> norms, const Partition& groups,
-                            const Centres& centres);
+Partition assign_to_centers(const Points& points, std::span<const double> norms, const Partition& groups,
+                            const Centers& centers);
 
 }  // namespace lumirank::linalg

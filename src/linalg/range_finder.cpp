@@ -1,6 +1,6 @@
 #include "linalg/range_finder.h"
 
-// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialised variables.
+// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialized variables.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -26,7 +26,7 @@ Vector vector(float* v, std::size_t n) { return {v, static_cast<Eigen::Index>(n)
 
 }  // namespace
 
-void orthonormalise(std::span<float> vectors, std::size_t k, std::size_t n) {
+void orthonormalize(std::span<float> vectors, std::size_t k, std::size_t n) {
   for (std::size_t a = 0; a < k; ++a) {
     float* const at = &vectors[a * n];
     Vector va = vector(at, n);
@@ -60,7 +60,7 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
   }
   found.norm = std::sqrt(energy);
   if (!(energy > 0)) return found;
-  orthonormalise(space.x, s, m);
+  orthonormalize(space.x, s, m);
 
   Small gram = Small::Zero(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(s));
   float* const gathered = space.gathered.data();
@@ -101,7 +101,7 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
                                                     squares.size() - 1 - static_cast<Eigen::Index>(a))) *
             vector(gathered + b * m, m);
   }
-  orthonormalise(space.x, found.rank, m);
+  orthonormalize(space.x, found.rank, m);
   return found;
 }
 

@@ -21,7 +21,7 @@ struct RangeFound {
   double norm = 0;         // Frobenius
 };
 
-// Randomised range (Halko, Martinsson and Tropp 2011, algorithm 4.4 with one power step) from a sparse
+// Randomized range (Halko, Martinsson and Tropp 2011, algorithm 4.4 with one power step) from a sparse
 // embedding: every column is added, with a random sign, to one of `most` sums. A singular value counts if it
 // is above what noise with the energy of all that lies outside the range would reach
 // (σ²(√rows + √columns)², the edge of Marchenko and Pastur's law).
@@ -31,6 +31,6 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
 
 // k vectors of length n, one after the other: Gram and Schmidt twice. A vector that depends on those before
 // it becomes zero.
-void orthonormalise(std::span<float> vectors, std::size_t k, std::size_t n);
+void orthonormalize(std::span<float> vectors, std::size_t k, std::size_t n);
 
 }  // namespace lumirank::linalg

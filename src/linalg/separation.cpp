@@ -124,7 +124,7 @@ double Separation::iterate(const CorruptedMatrix& matrix, const SeparationSettin
   // The norm that H had in this pass stretches it in the next.
   if (sphere > 0) stretch_ = std::clamp(static_cast<float>(std::sqrt(support / sphere)), 0.5f, 2.0f);
   std::swap(x_, gathered_);
-  orthonormalise(x_, k, m);
+  orthonormalize(x_, k, m);
   return std::sqrt(residual);
 }
 

@@ -1,6 +1,6 @@
 #include "linalg/svd.h"
 
-// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialised variables.
+// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialized variables.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif

@@ -28,7 +28,7 @@ struct TruncatedSvd {
 };
 
 // Halko, Martinsson, Tropp 2011, "Finding structure with randomness", algorithms 4.4 and 5.1: orthonormal
-// range of the matrix times a Gaussian one, power steps with orthonormalisation between, then the SVD of what
+// range of the matrix times a Gaussian one, power steps with orthonormalization between, then the SVD of what
 // is left in that range. rank is reduced to min(rows, columns) where it is larger.
 TruncatedSvd randomized_svd(std::span<const float> matrix, std::size_t rows, std::size_t columns,
                             const RandomizedSvdSettings& settings);

@@ -14,7 +14,7 @@ namespace lumirank::matrix {
 class EntryReader {
  public:
   virtual ~EntryReader() = default;
-  // The rows of the following columns, in any order; best neighbours. Copied.
+  // The rows of the following columns, in any order; best neighbors. Copied.
   virtual void set_rows(std::span<const Index> rows) = 0;
   // out[a] = A(rows[a], j).
   virtual Cost column(Index j, std::span<Rgb> out, Part part = Part::value) = 0;

@@ -25,7 +25,7 @@ float image_width(const std::vector<Vec2f>& pixel) {
 
 float log_uniform(Rng& rng, float low, float high) { return low * std::pow(high / low, rng.next_float()); }
 
-Rgb bright_colour(Rng& rng) {
+Rgb bright_color(Rng& rng) {
   const float r = rng.next_float(), g = rng.next_float(), b = rng.next_float();
   return {0.5f + r, 0.5f + g, 0.5f + b};
 }
@@ -41,11 +41,11 @@ DenseMatrix clustered_matrix(const SyntheticSize& size, std::size_t clusters) {
   }
   for (std::size_t k = 0; k < clusters; ++k) {
     Rng rng(size.seed, Stage::test, 2, k);
-    const Rgb colour = bright_colour(rng);
+    const Rgb color = bright_color(rng);
     for (std::size_t i = 0; i < size.rows; ++i) {
       const float v = rng.next_float();
       for (std::size_t j = k; j < size.columns; j += clusters)
-        entries[i * size.columns + j] = colour * (v * scale[j]);
+        entries[i * size.columns + j] = color * (v * scale[j]);
     }
   }
   DenseMatrix m(size.rows, size.columns, std::move(entries));
@@ -59,20 +59,20 @@ DenseMatrix low_rank_matrix(const SyntheticSize& size, std::size_t rank, std::si
   const float width = image_width(pixel);
   std::vector<Rgb> entries(size.rows * size.columns);
   std::vector<float> power(size.columns);
-  std::vector<Rgb> colour(size.columns);
+  std::vector<Rgb> color(size.columns);
   for (std::size_t j = 0; j < size.columns; ++j) {
     Rng rng(size.seed, Stage::test, 3, j);
     power[j] = log_uniform(rng, 0.2f, 5.0f);
-    colour[j] = bright_colour(rng) * (power[j] * (0.5f + rng.next_float()));
+    color[j] = bright_color(rng) * (power[j] * (0.5f + rng.next_float()));
   }
   for (std::size_t k = 0; k < rank; ++k) {
     Rng rng(size.seed, Stage::test, 4, k);
-    const float cx = rng.next_float(), cy = rng.next_float(), centre = rng.next_float();
+    const float cx = rng.next_float(), cy = rng.next_float(), center = rng.next_float();
     const float radius = log_uniform(rng, 0.1f, 0.5f), spread = log_uniform(rng, 0.05f, 0.3f);
     std::vector<Rgb> over_columns(size.columns);
     for (std::size_t j = 0; j < size.columns; ++j) {
-      const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(size.columns) - centre;
-      over_columns[j] = colour[j] * std::exp(-t * t / (2 * spread * spread));
+      const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(size.columns) - center;
+      over_columns[j] = color[j] * std::exp(-t * t / (2 * spread * spread));
     }
     for (std::size_t i = 0; i < size.rows; ++i) {
       const float dx = pixel[i].x / width - cx, dy = pixel[i].y / width - cy;
@@ -98,12 +98,12 @@ DenseMatrix sparse_matrix(const SyntheticSize& size, double share) {
   const auto patch = static_cast<std::size_t>(share * static_cast<double>(size.rows)) + 1;
   for (std::size_t j = 0; j < size.columns; ++j) {
     Rng rng(size.seed, Stage::test, 5, j);
-    const Rgb colour = bright_colour(rng) * log_uniform(rng, 0.2f, 5.0f);
+    const Rgb color = bright_color(rng) * log_uniform(rng, 0.2f, 5.0f);
     const std::size_t start = rng.next_below(size.rows);
     if (j % 17 == 0) continue;  // no power, no light
-    power[j] = norm2(colour);
+    power[j] = norm2(color);
     for (std::size_t i = 0; i < size.rows; ++i) {
-      entries[i * size.columns + j] = colour * (0.2f + rng.next_float());
+      entries[i * size.columns + j] = color * (0.2f + rng.next_float());
       const bool in_patch = (i + size.rows - start) % size.rows < patch;
       visible[i * size.columns + j] = in_patch && j % 13 != 0 ? 1.0f : 0.0f;
     }
@@ -149,14 +149,14 @@ DenseMatrix recess_matrix(const SyntheticSize& size) {
 
 namespace {
 struct Occluder {
-  Vec3f centre;
+  Vec3f center;
   float radius;
   bool round;
 };
 
 bool blocks(const Occluder& o, Vec3f from, Vec3f to) {
-  const float t = (o.centre.z - from.z) / (to.z - from.z);
-  const float x = from.x + t * (to.x - from.x) - o.centre.x, y = from.y + t * (to.y - from.y) - o.centre.y;
+  const float t = (o.center.z - from.z) / (to.z - from.z);
+  const float x = from.x + t * (to.x - from.x) - o.center.x, y = from.y + t * (to.y - from.y) - o.center.y;
   return o.round ? x * x + y * y < o.radius * o.radius : std::max(std::abs(x), std::abs(y)) < o.radius;
 }
 }  // namespace
@@ -165,7 +165,7 @@ DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
   const auto pixel = square_pixels(size.rows);
   const float width = image_width(pixel);
   std::vector<Vec3f> receivers(size.rows), lamps(size.columns);
-  std::vector<Rgb> colour(size.columns);
+  std::vector<Rgb> color(size.columns);
   std::vector<float> power(size.columns);
   for (std::size_t i = 0; i < size.rows; ++i) {
     Rng rng(size.seed, Stage::test, 7, i);
@@ -176,8 +176,8 @@ DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
     Rng rng(size.seed, Stage::test, 8, j);
     const Vec2f place = rng.next_2d();
     lamps[j] = {place.x, place.y, 1};
-    colour[j] = bright_colour(rng) * log_uniform(rng, 0.5f, 2.0f);
-    power[j] = luminance(colour[j]);
+    color[j] = bright_color(rng) * log_uniform(rng, 0.5f, 2.0f);
+    power[j] = luminance(color[j]);
   }
   std::vector<Occluder> in_the_way;
   for (std::size_t k = 0; k < occluders; ++k) {
@@ -192,7 +192,7 @@ DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
     for (std::size_t j = 0; j < size.columns; ++j) {
       const Vec3f to = lamps[j] - receivers[i];
       const float d2 = length_squared(to);
-      entries[i * size.columns + j] = colour[j] * (to.z * to.z / (d2 * d2) * kInvPi);
+      entries[i * size.columns + j] = color[j] * (to.z * to.z / (d2 * d2) * kInvPi);
       bool seen = true;
       for (const Occluder& o : in_the_way) seen = seen && !blocks(o, receivers[i], lamps[j]);
       visible[i * size.columns + j] = seen ? 1.0f : 0.0f;
@@ -204,7 +204,7 @@ DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders) {
   m.column_position = lamps;
   m.column_normal.assign(size.columns, {0, 0, -1});
   m.power = power;
-  m.emitted = colour;
+  m.emitted = color;
   return m;
 }
 

@@ -14,12 +14,12 @@ struct SyntheticSize {
   std::uint64_t seed = 1;
 };
 
-// `clusters` directions; every column is a multiple (of widely varying size and the same colour) of one of
+// `clusters` directions; every column is a multiple (of widely varying size and the same color) of one of
 // them. The feature `indirect` is not set; direction of column j is j mod clusters.
 DenseMatrix clustered_matrix(const SyntheticSize& size, std::size_t clusters);
 
 // A sum of `rank` products of positive factors that vary smoothly over a square image and over the columns,
-// coloured lights, 2 receivers per pixel. Powers are the columns' emitted power, with noise. With `groups` >
+// colored lights, 2 receivers per pixel. Powers are the columns' emitted power, with noise. With `groups` >
 // 1 columns are dealt out to groups in turn.
 DenseMatrix low_rank_matrix(const SyntheticSize& size, std::size_t rank, std::size_t groups = 1);
 
@@ -37,7 +37,7 @@ DenseMatrix recess_matrix(const SyntheticSize& size);
 
 // A room with shadows: receivers on the floor of a unit cube (2 per pixel of a square image), small lamps on
 // its ceiling that shine downwards, between them `occluders` horizontal discs and squares in mid-air.
-// Visibility is apart from the unoccluded part; rows and columns have places, normals, powers and colours.
+// Visibility is apart from the unoccluded part; rows and columns have places, normals, powers and colors.
 DenseMatrix occluded_matrix(const SyntheticSize& size, std::size_t occluders);
 
 }  // namespace lumirank::matrix

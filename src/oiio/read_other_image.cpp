@@ -16,7 +16,7 @@ struct ReadFailure {
   std::string why;
 };
 
-// A run of channels that holds colour and alpha, and the layout of what is read of it.
+// A run of channels that holds color and alpha, and the layout of what is read of it.
 struct ChannelRange {
   int begin = 0, end = 0;
   PixelLayout layout;
@@ -38,7 +38,7 @@ ChannelRange choose_channels(const OIIO::ImageSpec& spec) {
     std::vector<int> others;
     for (int c = 0; c < spec.nchannels; ++c)
       if (c != layout.alpha) others.push_back(c);
-    if (others.empty()) others.push_back(layout.alpha);  // a file of nothing but alpha is read as grey
+    if (others.empty()) others.push_back(layout.alpha);  // a file of nothing but alpha is read as gray
     const std::size_t step = others.size() >= 3 ? 1 : 0;
     layout.color = {others[0], others[step], others[2 * step]};
   }
@@ -60,7 +60,7 @@ std::unique_ptr<OIIO::ImageInput> open(const std::string& filename) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   OIIO::ImageSpec wishes;
-  wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
+  wishes.attribute("oiio:UnassociatedAlpha", 1);  // colors as stored, not multiplied by alpha
   return OIIO::ImageInput::open(filename, &wishes);
 }
 

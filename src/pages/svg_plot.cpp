@@ -21,7 +21,7 @@ std::string coordinate(double value) {
 
 std::string series_class(std::size_t k) { return "series s" + std::to_string(k % kPlotColors); }
 
-// Colours repeat after eight; the marks then differ.
+// Colors repeat after eight; the marks then differ.
 std::string marker(std::size_t series, double x, double y, const std::string& tip) {
   const std::string label = tip.empty() ? "" : "<title>" + escape_html(tip) + "</title>";
   const auto at = [&](double dx, double dy) { return coordinate(x + dx) + "," + coordinate(y + dy) + " "; };

@@ -1,4 +1,4 @@
-// Line plots as SVG text. Colours and fonts come from the page's style sheet, by class: series k is in class
+// Line plots as SVG text. Colors and fonts come from the page's style sheet, by class: series k is in class
 // "s<k mod 8>".
 #pragma once
 
@@ -42,7 +42,7 @@ struct Plot {
 inline constexpr int kPlotColors = 8;
 
 // One <svg> element. Points that a log axis cannot hold (not positive) or that are not finite are left out,
-// and a line of text in the plot says how many. Series without points take no room but keep their colour.
+// and a line of text in the plot says how many. Series without points take no room but keep their color.
 std::string svg_plot(const Plot& plot);
 
 // The mark of series k as an <svg> of its own, for a legend.

@@ -21,7 +21,7 @@ struct PathTracer::Walk {
   bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
   float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
   emitters::LitPoint from{};    // that vertex
-  float travelled = 0;          // since the last vertex
+  float traveled = 0;           // since the last vertex
   float receiver_term = 0;      // π f_x·cosθx of the step away from the receiver
   const Reach* near = nullptr;  // what may come next after the receiver, see Departure
   float eta_scale = 1;          // undoes refraction's scaling for Russian roulette
@@ -70,7 +70,7 @@ void PathTracer::finish(Walk& walk) const {
   constexpr int kMaxSteps = 4096;
   for (int step = 0; step < kMaxSteps; ++step) {
     const auto hit = world_.intersect(walk.ray);
-    if (hit) walk.travelled += hit->hit.t;
+    if (hit) walk.traveled += hit->hit.t;
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit) break;
     if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
@@ -91,7 +91,7 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
     if (hit->emitter < 0) return;
     emitted = world_.emitted(*hit, -direction);
     if (!walk.specular && !is_black(emitted))
-      light_pdf = lights_.pdf_hit(walk.from, *hit, direction, walk.travelled);
+      light_pdf = lights_.pdf_hit(walk.from, *hit, direction, walk.traveled);
   } else {
     if (world_.environment() >= 0) {
       emitted = world_.background(direction);
@@ -158,7 +158,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     connection = walk.receiver_term *
                  (closure.is_fibre() ? closure.cosine(walk.ray.direction)
                                      : std::abs(dot(hit.point.ng, walk.ray.direction))) /
-                 square(walk.travelled);
+                 square(walk.traveled);
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_smooth() && may_continue) {
     // The vertex itself is non-specular for light that is found here.
@@ -175,7 +175,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   if (!pass) {
     if (!may_continue) return false;
     ++walk.segments;
-    walk.travelled = 0;
+    walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;
     walk.specular = next->delta;
     walk.bsdf_pdf = next->pdf;

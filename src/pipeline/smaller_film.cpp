@@ -27,7 +27,7 @@ View smaller(const View& view, int divisor) {
 Picture enlarged(const Picture& picture, int width, int height) {
   Picture larger;
   larger.width = width, larger.height = height;
-  // The two pixels around a centre of the larger picture, and how near it is to the second.
+  // The two pixels around a center of the larger picture, and how near it is to the second.
   struct Between {
     std::size_t first, second;
     float part;

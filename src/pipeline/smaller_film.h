@@ -14,7 +14,7 @@ bool is_whole_film(const View& view);
 // The same view on a film of a divisor-th of the width and height, at least one pixel. Needs the whole film.
 View smaller(const View& view, int divisor);
 
-// The picture at another size, linearly interpolated between centres of pixels.
+// The picture at another size, linearly interpolated between centers of pixels.
 Picture enlarged(const Picture& picture, int width, int height);
 
 }  // namespace lumirank::pipeline

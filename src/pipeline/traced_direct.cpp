@@ -20,17 +20,17 @@ Met emission_along(const world::World& world, const pathtrace::LightSampler& lig
                    pathtrace::SampleStream& random) {
   constexpr int kMaxPasses = 64;
   Rgb through{1};
-  float travelled = 0;
+  float traveled = 0;
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const auto hit = world.intersect({origin, direction});
     if (!hit) {
       if (world.environment() < 0) return {};
       return {through * world.background(direction), lights.pdf_background(from, direction)};
     }
-    travelled += hit->hit.t;
+    traveled += hit->hit.t;
     if (hit->emitter >= 0) {
       const Rgb emitted = world.emitted(*hit, -direction);
-      if (!is_black(emitted)) return {through * emitted, lights.pdf_hit(from, *hit, direction, travelled)};
+      if (!is_black(emitted)) return {through * emitted, lights.pdf_hit(from, *hit, direction, traveled)};
     }
     using Passage = scatter::MaterialSet::Passage;
     const Passage passage = world.materials().passage(hit->material);

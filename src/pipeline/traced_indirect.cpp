@@ -68,7 +68,7 @@ class Tracing {
   pathtrace::Reach reach_;
 };
 
-// Neighbours on the film that share their number of paths.
+// Neighbors on the film that share their number of paths.
 constexpr std::size_t kGroup = 64;
 // Of the paths, what finds out where they are needed, and what is spread evenly.
 constexpr float kPilot = 0.125f, kEven = 0.25f;

@@ -68,7 +68,7 @@ bool follow_delta(const Closure& c, const Incident& in, const Lobe& lobe, Vec3f 
   return sides_agree(c, out.wi, local.z);
 }
 
-// Probabilities (not normalised) of the lobes for one wo, and the delta directions on the way.
+// Probabilities (not normalized) of the lobes for one wo, and the delta directions on the way.
 struct Selection {
   float weight[kMaxLobes];
   float total = 0;

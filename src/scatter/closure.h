@@ -67,7 +67,7 @@ enum class LobeSort : std::uint8_t {
   KIND(thin_transmit, shines_through)                                                                           \
   /* color/π² */                                                                                                \
   KIND(hair_diffuse, fibre)                                                                                     \
-  /* Kajiya and Kay's, normalised; alpha_u = exponent, alpha_v = hair_specular_scale() */                       \
+  /* Kajiya and Kay's, normalized; alpha_u = exponent, alpha_v = hair_specular_scale() */                       \
   KIND(hair_specular, fibre)                                                                                    \
   /* color · F by `fresnel`; variant kThinSlab: 2F/(1 + F) */                                                   \
   KIND(delta_reflect, delta_reflects)                                                                           \
@@ -109,7 +109,7 @@ struct Coat {
 
 // Sheen over a lobe (charlie_sheen.h), in 65535ths to be small; the share is rounded up.
 struct SheenLayer {
-  std::uint16_t share = 0;  // the largest channel of the sheen's colour; 0: there is no sheen
+  std::uint16_t share = 0;  // the largest channel of the sheen's color; 0: there is no sheen
   std::uint16_t roughness = 0;
   SheenLayer() = default;
   SheenLayer(float share_, float roughness_)
@@ -153,7 +153,7 @@ struct Closure {
   int count = 0;
   Lobe lobes[kMaxLobes];
 
-  void add(const Lobe& lobe);  // ignored if its colour is black; throws InternalError when full
+  void add(const Lobe& lobe);  // ignored if its color is black; throws InternalError when full
   bool empty() const { return count == 0; }
   bool has_smooth() const;  // any lobe that is not delta
   bool has_delta() const;

@@ -56,7 +56,7 @@ Rgb coating_passage(const TextureSet& textures, const CoatingMaterial& m, const 
 
 // Makes room in a full closure (merge_lobes.cpp).
 void merge_lobes(Closure& closure, const Lobe& extra);
-// Adds `lobe`'s colour to a lobe that is equal but for its colour, if there is one.
+// Adds `lobe`'s color to a lobe that is equal but for its color, if there is one.
 bool absorb(Closure& closure, const Lobe& lobe);
 
 }  // namespace lumirank::scatter

@@ -16,10 +16,10 @@ std::uint32_t encode(Vec3f v) {
     y = (1 - std::abs(x)) * sign_of(y);
     x = folded;
   }
-  const auto quantise = [](float t) {
+  const auto quantize = [](float t) {
     return static_cast<std::uint32_t>(std::lround((std::min(1.0f, std::max(-1.0f, t)) + 1) * 32767.0f));
   };
-  return quantise(x) | quantise(y) << 16;
+  return quantize(x) | quantize(y) << 16;
 }
 
 Vec3f decode(std::uint32_t bits) {

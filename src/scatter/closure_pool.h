@@ -1,7 +1,7 @@
 // Closures of many points in little memory. Points of one material share one list of lobes without their
-// colours (a "recipe"), and points of one colour the list of colours; what else differs from point to point
+// colors (a "recipe"), and points of one color the list of colors; what else differs from point to point
 // is only the frame, of which the owner keeps the normals anyway. So a closure costs 12 bytes here (24 to 36
-// with a colour of its own) instead of about 500, and points of one recipe can be evaluated together.
+// with a color of its own) instead of about 500, and points of one recipe can be evaluated together.
 #pragma once
 
 #include <cstdint>
@@ -33,9 +33,9 @@ class ClosurePool {
   std::size_t recipes() const { return recipes_.size(); }
   // Which lobe list closure i uses, below recipes().
   std::uint32_t recipe(std::uint32_t i) const { return entries_[i].recipe_and_side >> 1; }
-  // The lobes of a recipe, all with colour 1.
+  // The lobes of a recipe, all with color 1.
   std::span<const scatter::Lobe> lobes(std::uint32_t recipe_index) const { return recipes_[recipe_index]; }
-  // Colours of the lobes of closure i, one per lobe of its recipe.
+  // Colors of the lobes of closure i, one per lobe of its recipe.
   std::span<const Rgb> colors(std::uint32_t i) const { return palettes_[entries_[i].palette]; }
   // 1, or -1 where the closure's frame.n is the opposite of the normal that the owner keeps (a rough
   // dielectric seen from inside). The same holds for ng.

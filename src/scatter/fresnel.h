@@ -1,5 +1,5 @@
-// Fresnel reflectances of smooth interfaces, for unpolarised light. Inline and free of branches that a
-// vectorised copy could not follow; see also fresnel.cpp for hemispherical means.
+// Fresnel reflectances of smooth interfaces, for unpolarized light. Inline and free of branches that a
+// vectorized copy could not follow; see also fresnel.cpp for hemispherical means.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline float fresnel_dielectric(float cos_i, float eta, float* cos_t_out = nullp
   const float cos_t2 = 1 - (1 - c * c) / (eta * eta);
   const float cos_t = std::sqrt(std::max(cos_t2, 0.0f));
   if (cos_t_out) *cos_t_out = cos_t;
-  // The two polarisations; the tiny term keeps 0/0 away for eta = 1 at exactly grazing light.
+  // The two polarizations; the tiny term keeps 0/0 away for eta = 1 at exactly grazing light.
   const float parallel = (eta * c - cos_t) / (eta * c + cos_t + 1e-20f);
   const float perpendicular = (c - eta * cos_t) / (c + eta * cos_t + 1e-20f);
   const float r = 0.5f * (parallel * parallel + perpendicular * perpendicular);

@@ -34,8 +34,8 @@ struct InterfaceCoefficients {
 // alpha = 0: smooth. Thread-safe; the same numbers whoever asks first.
 InterfaceCoefficients interface_coefficients(NormalDistribution distribution, float alpha, float eta);
 
-// Plastic's base: color/π·T(wi)·T(wo)/(eta²·(1 - r)), r the internal reflectance, times the colour if
-// nonlinear. All that does not depend on directions is folded into the lobe's colour.
+// Plastic's base: color/π·T(wi)·T(wo)/(eta²·(1 - r)), r the internal reflectance, times the color if
+// nonlinear. All that does not depend on directions is folded into the lobe's color.
 Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
                              bool nonlinear);
 // A base that gets all that the layer does not reflect: color/π·L(wi)·L(wo)/(2∫L(μ)μ dμ), L = 1 - R. With the

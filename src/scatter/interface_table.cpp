@@ -97,7 +97,7 @@ void fit(const Rule& rule, float eta, const std::array<double, kRuleCosines>& t,
       m[i][kTerms] += rule.w[k] * power[i] * (t[k] - s);
     }
   }
-  // A whiff of regularisation: near eta = 1 all s are 1 and the powers cannot be told apart.
+  // A whiff of regularization: near eta = 1 all s are 1 and the powers cannot be told apart.
   for (int i = 0; i < kTerms; ++i) m[i][i] += 1e-9;
   const std::array<double, kTerms> x = solve(m);
   for (int i = 0; i < kTerms; ++i) out[i] = static_cast<float>(x[i] + (i == 1 ? 1.0 : 0.0));
@@ -112,7 +112,7 @@ double out_again(const Rule& rule, float eta, double mu,
   const auto smooth = [&](double c) { return 1.0 - fresnel_dielectric(static_cast<float>(c), 1 / eta); };
   const auto difference = [&](std::size_t k) { return inside[k].transmittance - smooth(rule.x[k]); };
   const double c = std::sqrt(1 - sin2);
-  // The rule's cosines fall or rise; either way a neighbour pair encloses c, or c lies beyond the last.
+  // The rule's cosines fall or rise; either way a neighbor pair encloses c, or c lies beyond the last.
   double found = difference(rule.x[0] > rule.x[kRuleCosines - 1] ? 0 : kRuleCosines - 1);
   for (std::size_t k = 0; k + 1 < kRuleCosines; ++k) {
     const double f = (c - rule.x[k]) / (rule.x[k + 1] - rule.x[k]);

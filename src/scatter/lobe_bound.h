@@ -29,7 +29,7 @@ struct ConeWidth;  // lobes/bound_terms.h
 struct LobeTerm {
   const Lobe* lobe;
   Rgb scale;      // what does not depend on w
-  Rgb at_normal;  // microfacets: Fresnel reflectance at right angles; oren_nayar: the other colour
+  Rgb at_normal;  // microfacets: Fresnel reflectance at right angles; oren_nayar: the other color
   Vec3f wo;
   float cos_o, eta, roughness;
   float widest, narrowest;  // of alpha_u and alpha_v

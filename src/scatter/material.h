@@ -220,7 +220,7 @@ struct MaterialSet {
     opaque,
     smooth,
     cutout
-  };  // smooth: coloured transmittance (goes into E); cutout: binary (into V)
+  };  // smooth: colored transmittance (goes into E); cutout: binary (into V)
   Passage passage(int material) const;
   // Straight-through transmittance along w (pointing away from the surface, to the side that decides for
   // two-sided materials): the coefficients of all delta_pass lobes, so thin dielectrics, null surfaces and 1

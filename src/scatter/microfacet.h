@@ -2,7 +2,7 @@
 // Walter et al. 2007 (Beckmann and GGX), Heitz 2014 (anisotropic Smith masking).
 //
 // Everything is in the local frame (z is the normal). D and G1 are inline, branch-free and without library
-// tables, so that the vectorised kernels can be written after them line by line.
+// tables, so that the vectorized kernels can be written after them line by line.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The principled material (Burley 2012, 2015; weights as in Mitsuba 3): up to seven lobes. The blended
 // Fresnel term is a sum of three, so it becomes three lobes over the same microfacets, of which mostly one or
-// two have a colour.
+// two have a color.
 #include "scatter/closure_builder.h"
 #include "scatter/fresnel.h"
 
@@ -13,7 +13,7 @@ void set_roughness(Lobe& lobe, float roughness, float anisotropic) {
   lobe.alpha_v = std::max(1e-3f, alpha * aspect);
 }
 
-// The hue of a colour at luminance 1.
+// The hue of a color at luminance 1.
 Rgb tint_of(Rgb base) {
   const float brightness = luminance(base);
   return brightness > 0 ? base / brightness : Rgb(1);
@@ -84,8 +84,8 @@ void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePo
   out.push(coat, at, weight);
 }
 
-// The share spec_trans of the sheet is a rough window, which reflects colourless light and tints what it lets
-// through; the rest is matt and sends diff_trans/2 of its colour to the other side.
+// The share spec_trans of the sheet is a rough window, which reflects colorless light and tints what it lets
+// through; the rest is matt and sends diff_trans/2 of its color to the other side.
 void add_lobes(const PrincipledThinMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
   const TextureSet& textures = out.textures();
   const auto input = [&](const FloatInput& f) { return fraction(textures, f, at.uv); };

@@ -62,7 +62,7 @@ Rgb bitmap_at(const BitmapTexture& t, Vec2f uv) {
               ay);
 }
 
-// Mitsuba's: colour 0 where both halves agree, so on [0, ½)² of each unit square.
+// Mitsuba's: color 0 where both halves agree, so on [0, ½)² of each unit square.
 bool checker_first(const CheckerboardTexture& t, Vec2f mesh_uv) {
   const Vec2f uv = finite(transform(t.to_uv, finite(mesh_uv)));
   return (uv.x - std::floor(uv.x) > 0.5f) == (uv.y - std::floor(uv.y) > 0.5f);
@@ -161,7 +161,7 @@ struct MeanVisitor {
   Rgb operator()(const ScaleTexture& t) const { return set.mean(t.input) * t.scale; }
   // Exact where one of the two is constant.
   Rgb operator()(const ProductTexture& t) const { return set.mean(t.a) * set.mean(t.b); }
-  // Exact where the amount is constant, or both colours are.
+  // Exact where the amount is constant, or both colors are.
   Rgb operator()(const MixTexture& t) const {
     return mixed(set.mean(t.a), set.mean(t.b), set.mean(t.amount));
   }

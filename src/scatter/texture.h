@@ -1,7 +1,7 @@
 // Prepared textures: pixels in memory, looked up at a uv.
 //
 // Orientation: v = 0 is the bottom edge of the picture, v = 1 its top; TexturePixels keeps the top row first.
-// So texel (column, row) has its centre at u = (column + ½)/width, v = 1 - (row + ½)/height. Readers of file
+// So texel (column, row) has its center at u = (column + ½)/width, v = 1 - (row + ½)/height. Readers of file
 // formats that count otherwise flip the uv or the transform; nothing here knows of it. Coordinates that are
 // not finite read as 0.
 #pragma once
@@ -33,7 +33,7 @@ struct ConstantTexture {
   Rgb value;
 };
 struct BitmapTexture {
-  std::shared_ptr<const TexturePixels> pixels;  // shared by all textures of the same file and colour space
+  std::shared_ptr<const TexturePixels> pixels;  // shared by all textures of the same file and color space
   TexFilter filter = TexFilter::bilinear;
   TexWrap wrap_u = TexWrap::repeat, wrap_v = TexWrap::repeat;
   float to_uv[6] = {1, 0, 0, 0, 1, 0};
@@ -68,7 +68,7 @@ using Texture = std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture
 struct TextureSet {
   std::vector<Texture> textures;
   Rgb lookup(int texture, const SurfaceUv& at) const;
-  // Scalar inputs read the luminance of colour textures (Mitsuba does the same).
+  // Scalar inputs read the luminance of color textures (Mitsuba does the same).
   float lookup_float(int texture, const SurfaceUv& at) const;
   // ∂(lookup_float)/∂u and /∂v by central differences of one texel; for bump maps.
   Vec2f gradient(int texture, const SurfaceUv& at) const;

@@ -30,7 +30,7 @@ Frame axes_of(const Transform& to_world, const SourceLocation& where) {
 }
 
 // P. Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008: a direction's place in the
-// unit square. Its distance from the square's centre along the diagonals tells the polar angle.
+// unit square. Its distance from the square's center along the diagonals tells the polar angle.
 Vec2f octahedral_place(double theta, double phi) {
   const double quarter = 0.5 * 3.14159265358979323846;
   const double z = std::cos(theta);

@@ -12,7 +12,7 @@ namespace lumirank::world {
 // have one bright side). Zero for a degenerate triangle.
 Vec3f outside_normal(const geometry::TriangleMesh& mesh, std::size_t triangle);
 
-// Interpolated texture coordinates and colour; without uv in the mesh the barycentric coordinates serve.
+// Interpolated texture coordinates and color; without uv in the mesh the barycentric coordinates serve.
 scatter::SurfaceUv interpolate_uv(const geometry::TriangleMesh& mesh, std::uint32_t triangle,
                                   Vec2f barycentric);
 

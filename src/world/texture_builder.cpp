@@ -35,7 +35,7 @@ void check_uv(const scenedesc::UvTransform& to_uv, const SourceLocation& where) 
       throw InputError(where, "the texture's uv transform is not finite", "give finite numbers");
 }
 
-// The pixels of `image`, or one channel of it as grey.
+// The pixels of `image`, or one channel of it as gray.
 std::vector<Rgb> take_pixels(image::LoadedImage& image, scenedesc::TextureChannel channel,
                              bool alpha_may_lack) {
   using enum scenedesc::TextureChannel;
@@ -155,9 +155,9 @@ int TextureBuilder::use(int texture, const SourceLocation& user) {
 
 scatter::ColorInput TextureBuilder::color(const scenedesc::ColorInput& input, const SourceLocation& user) {
   if (input.texture != scenedesc::kNone) return {input.value, use(input.texture, user)};
-  if (!is_finite(input.value)) throw InputError(user, "a colour is not finite", "give finite numbers");
+  if (!is_finite(input.value)) throw InputError(user, "a color is not finite", "give finite numbers");
   if (input.value.r < 0 || input.value.g < 0 || input.value.b < 0)
-    throw InputError(user, "a colour has a negative component", "give numbers of 0 or more");
+    throw InputError(user, "a color has a negative component", "give numbers of 0 or more");
   return {input.value, -1};
 }
 

@@ -22,7 +22,7 @@ class TextureBuilder {
   void needed_by(const scenedesc::ShapeDesc& shape) { shape_ = &shape; }
   // Index in the finished set. InputError at `user` for an index out of range, at the texture for a cycle.
   int use(int texture, const SourceLocation& user);
-  // The value is checked: finite and not negative. Squares of magenta and grey stand in for a picture whose
+  // The value is checked: finite and not negative. Squares of magenta and gray stand in for a picture whose
   // file is missing, and `stand_in` where a number is wanted of it.
   scatter::ColorInput color(const scenedesc::ColorInput& input, const SourceLocation& user);
   scatter::FloatInput number(const scenedesc::FloatInput& input, const SourceLocation& user,

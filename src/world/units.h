@@ -13,9 +13,9 @@ class Units {
  public:
   Units() = default;  // the file's own
   // For a scene within `box`, in the file's units. Most scenes keep theirs, and with them every bit:
-  // - An axis along which the box's centre is more than kFar radii away from the origin is counted from the
-  //   centre. The step by which rays leave a surface, 5·10⁻⁵ of its coordinates, then is at most 9 times
-  //   that of the centred scene: 5·10⁻⁴ of the radius. (What was measured far away: +8 % light at 5,800
+  // - An axis along which the box's center is more than kFar radii away from the origin is counted from the
+  //   center. The step by which rays leave a surface, 5·10⁻⁵ of its coordinates, then is at most 9 times
+  //   that of the centered scene: 5·10⁻⁴ of the radius. (What was measured far away: +8 % light at 5,800
   //   radii.)
   // - A radius below 2⁻⁵ is made 1 to 2: under 0.02 that step no longer shrinks with the scene.
   // - A radius above 2²⁴ is made 2²³ to 2²⁴, so that fourth powers of lengths, with powers of lights beside

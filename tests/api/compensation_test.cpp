@@ -10,7 +10,7 @@
 namespace lumirank {
 namespace {
 
-using test::mean_colour;
+using test::mean_color;
 using test::mean_of;
 using test::student_quantile;
 
@@ -64,10 +64,10 @@ void expect_whole(const std::string& light_type) {
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + k;
     settings.traced.compensate = 0;
-    const auto a = mean_colour(render(scene, settings).picture);
+    const auto a = mean_color(render(scene, settings).picture);
     settings.traced.compensate = 256;
-    const auto b = mean_colour(render(scene, settings).picture);
-    const auto c = mean_colour(reference(scene, settings, how).picture);
+    const auto b = mean_color(render(scene, settings).picture);
+    const auto c = mean_color(reference(scene, settings, how).picture);
     for (std::size_t i = 0; i < 3; ++i)
       clamped[i].push_back(a[i]), whole[i].push_back(b[i]), paths[i].push_back(c[i]);
   }

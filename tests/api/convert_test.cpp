@@ -48,10 +48,10 @@ WorldBegin
 LightSource "point" "point3 from" [ 0 0 1 ] "rgb I" [ 4 3 2 ]
 Texture "a" "spectrum" "imagemap" "string filename" "a.exr" "string filter" "point"
 Texture "b" "spectrum" "imagemap" "string filename" "b.exr" "string filter" "point"
-Texture "grey" "float" "imagemap" "string filename" "b.exr" "string filter" "point"
+Texture "gray" "float" "imagemap" "string filename" "b.exr" "string filter" "point"
 Texture "twice" "spectrum" "scale" "texture tex" "a" "rgb scale" [ 0.5 0.7 1.1 ]
 Texture "both" "spectrum" "scale" "texture tex" "twice" "texture scale" "b"
-Texture "mixed" "spectrum" "mix" "texture tex1" "a" "rgb tex2" [ 0.2 0.3 0.4 ] "texture amount" "grey"
+Texture "mixed" "spectrum" "mix" "texture tex1" "a" "rgb tex2" [ 0.2 0.3 0.4 ] "texture amount" "gray"
 Material "diffuse" "texture reflectance" "both"
 Shape "bilinearmesh" "point3 P" [ -2 -2 3  0 -2 3  -2 2 3  0 2 3 ]
 Material "diffuse" "texture reflectance" "mixed"

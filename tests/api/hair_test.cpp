@@ -13,7 +13,7 @@
 namespace lumirank {
 namespace {
 
-using test::mean_colour;
+using test::mean_color;
 using test::mean_of;
 using test::student_quantile;
 
@@ -150,8 +150,8 @@ TEST(HairUnbiased, LightThatOneHairSendsToAWallIsThatOfTheFormula) {
   std::vector<double> lights, paths;
   for (int k = 0; k < kSeeds; ++k) {
     settings.seed = 500 + static_cast<std::uint64_t>(k);
-    lights.push_back(mean_colour(render(scene, settings).picture)[1]);
-    paths.push_back(mean_colour(reference(scene, settings, how).picture)[1]);
+    lights.push_back(mean_color(render(scene, settings).picture)[1]);
+    paths.push_back(mean_color(reference(scene, settings, how).picture)[1]);
   }
   for (const auto& values : {lights, paths}) {
     const auto got = mean_of(values);
@@ -180,11 +180,11 @@ TEST(Hair, RadianceOfOneThreadIsThatOfTheFormula) {
   settings.method.name = "brute-force";
   settings.lights.count = 64;
   const double expected = 0.8 / (3.14159265 * 3.14159265) * 100 * 0.16 / 25;
-  const auto seen = mean_colour(render(scene, settings).picture);
+  const auto seen = mean_color(render(scene, settings).picture);
   EXPECT_NEAR(seen[1], expected, 0.005 * expected);
   ReferenceSettings how;
   how.spp = 64;
-  EXPECT_NEAR(mean_colour(reference(scene, settings, how).picture)[1], expected, 0.01 * expected);
+  EXPECT_NEAR(mean_color(reference(scene, settings, how).picture)[1], expected, 0.01 * expected);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The layer "illuminance" against closed forms and the path tracer, and its false colours.
+// The layer "illuminance" against closed forms and the path tracer, and its false colors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(Illuminance, InverseSquareAndThirdPowerOfTheCosineBelowAnIesLight) {
     }
 }
 
-TEST(Illuminance, ColoursKeepTheLuxAndTheScaleDims) {
+TEST(Illuminance, ColorsKeepTheLuxAndTheScaleDims) {
   const auto mean_lux = [](const char* more) {
     const Scene scene = load_text(point_camera("0,3,1", "0,0,0", 2, 0.01) +
                                   "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" "
@@ -86,9 +86,9 @@ TEST(Illuminance, UnderAnEvenSky) {
   for (const float l : lux) EXPECT_NEAR(l / (3.14159265358979 * 0.5 * kLumensPerUnit), 1, 0.01);
 }
 
-// A room of one grey: π · radiance / reflectance is the irradiance, by columns to the rounding, by the path
+// A room of one gray: π · radiance / reflectance is the irradiance, by columns to the rounding, by the path
 // tracer in the mean.
-TEST(Illuminance, AgreesWithThePathTracerInAGreyRoom) {
+TEST(Illuminance, AgreesWithThePathTracerInAGrayRoom) {
   const Scene scene = load_text(
       point_camera("-0.8,0.9,-0.5", "1,0.9,0.3", 8, 30) +
       "<shape type=\"cube\"><boolean name=\"flip_normals\" value=\"true\"/><transform name=\"to_world\">"
@@ -129,7 +129,7 @@ TEST(Illuminance, AgreesWithThePathTracerInAGreyRoom) {
   EXPECT_LT(allowed, 0.02 * b.mean) << "the test has lost its teeth";
 }
 
-TEST(Illuminance, RoundRangesAndTheirColours) {
+TEST(Illuminance, RoundRangesAndTheirColors) {
   image::Image values(1000, 10);
   for (std::size_t k = 0; k < values.pixels.size(); ++k)
     values.pixels[k] = Rgb(270.0f * static_cast<float>(k % 1000) / 1000);
@@ -141,7 +141,7 @@ TEST(Illuminance, RoundRangesAndTheirColours) {
   const image::Image shown = image::with_scale(values, {0, 300}, "lux");
   EXPECT_EQ(shown.width, 1000);
   EXPECT_GT(shown.height, 10);
-  // The bar below the picture has the colours of the picture: 150 lux in its middle.
+  // The bar below the picture has the colors of the picture: 150 lux in its middle.
   int same = 0;
   for (int y = 10; y < shown.height; ++y)
     same +=

@@ -76,7 +76,7 @@ TEST(LocalCompensation, SharpLobesTakeAllTheirLightFromPaths) {
 }
 
 // Spheres of a hundredth of the usual size are nearly points: without compensation the edge would have
-// infinite variance, with it no light is closer than half the distance of its tenth neighbour, or twice.
+// infinite variance, with it no light is closer than half the distance of its tenth neighbor, or twice.
 TEST(LocalCompensation, PathsAndColumnsShareTheLightByDistance) {
   const Scene scene = corner(kMatt, "0,0.1,-0.45");
   RenderSettings settings = brute_force("sphere");

@@ -96,7 +96,7 @@ TEST(Reference, DiffusePlaneUnderTheSky) {
 }
 
 // Irradiance over π of a rectangle [-a,a]×[-b,b] of unit radiance at height h above the point below its
-// centre: four times the corner form factor between a differential element and a parallel rectangle.
+// center: four times the corner form factor between a differential element and a parallel rectangle.
 double parallel_rectangle(double a, double b, double h) {
   const double x = a / h, y = b / h, sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
   return 4 / (2 * M_PI) * (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy));

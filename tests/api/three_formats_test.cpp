@@ -169,7 +169,7 @@ TEST(ThreeFormats, OneSceneGivesTheSamePicture) {
   const TemporaryFolder folder;
   const auto mitsuba = picture(mitsuba_file(folder), 1), pbrt = picture(pbrt_file(folder), 2),
              gltf = picture(gltf_file(folder), 3);
-  // 10⁻⁴ is left to numbers with six decimals. A lamp twice as bright, a colour or a place mixed up would be
+  // 10⁻⁴ is left to numbers with six decimals. A lamp twice as bright, a color or a place mixed up would be
   // seen.
   const SamePictures how{.width = kWidth, .height = kHeight, .pairs = 3, .slack = 1e-4, .noise_below = 0.35};
   expect_same_pictures(mitsuba, pbrt, how, "mitsuba and pbrt");

@@ -11,7 +11,7 @@
 namespace lumirank {
 namespace {
 
-using test::mean_colour;
+using test::mean_color;
 using test::mean_of;
 using test::normal_quantile;
 using test::student_quantile;
@@ -77,7 +77,7 @@ TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
   std::vector<double> truth;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 500 + k;
-    truth.push_back(mean_colour(reference(scene, settings, how).picture)[1]);
+    truth.push_back(mean_color(reference(scene, settings, how).picture)[1]);
   }
   const auto expected = mean_of(truth);
   for (const char* direct : {"matrix", "auto", "traced"}) {
@@ -85,7 +85,7 @@ TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {
     std::vector<double> means;
     for (std::uint64_t k = 0; k < kSeeds; ++k) {
       settings.seed = 500 + k;
-      means.push_back(mean_colour(render(scene, settings).picture)[1]);
+      means.push_back(mean_color(render(scene, settings).picture)[1]);
     }
     const auto m = mean_of(means);
     const double error = std::hypot(m.standard_error, expected.standard_error);

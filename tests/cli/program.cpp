@@ -197,7 +197,7 @@ Pixels read_pfm_pixels(const std::string& file) {
   std::string magic, scale;
   in >> magic >> pixels.width >> pixels.height >> scale;
   in.get();
-  EXPECT_EQ(magic + " " + scale, "PF -1.0") << file << ": not a little-endian colour PFM";
+  EXPECT_EQ(magic + " " + scale, "PF -1.0") << file << ": not a little-endian color PFM";
   const auto width = static_cast<std::size_t>(pixels.width), height = static_cast<std::size_t>(pixels.height);
   std::vector<float> data(3 * width * height);
   in.read(reinterpret_cast<char*>(data.data()), static_cast<std::streamsize>(data.size() * sizeof(float)));

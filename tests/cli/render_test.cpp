@@ -48,7 +48,7 @@ TEST_F(Render, EveryFormatInOneRun) {
   EXPECT_EQ(files_in(folder_ / "").size(), 4u) << "no temporary file is left";
 }
 
-TEST_F(Render, IlluminanceHasAFalseColourPictureBesideEachPng) {
+TEST_F(Render, IlluminanceHasAFalseColorPictureBesideEachPng) {
   const Outcome outcome =
       lumirank(render_small(scene_, folder_ / "a.exr") +
                Arguments{"-o", folder_ / "a.png", "--aov", "illuminance", "--illuminance-range", "0:2e6"});
@@ -223,7 +223,7 @@ TEST_F(Render, ACropIsAWindowOfTheWhole) {
   const Arguments eye = {"--aov", "albedo,normal,depth,position,samples,emission"};
   const Pixels whole = render(eye), window = render(eye + Arguments{"--crop", "6,2,5,4"});
   for (const auto& [channel, values] : whole.channels)
-    if (channel.size() > 1) expect_window(whole, window, channel);  // all but the colours
+    if (channel.size() > 1) expect_window(whole, window, channel);  // all but the colors
 
   // Brute force has the same columns, and the same sums of them, also where filters reach beyond the window.
   const std::string ball =

@@ -125,7 +125,7 @@ TEST(Environment, DensityOfASampleAgreesWithPdf) {
     EXPECT_EQ(s.radiance, e.eval(s.direction));
     if (std::abs(e.pdf(s.direction) / s.pdf - 1) > 1e-4f) ++differ;
   }
-  // Only samples within rounding (some 10⁻⁶ of a texel's width) of an edge may be read as the neighbour's.
+  // Only samples within rounding (some 10⁻⁶ of a texel's width) of an edge may be read as the neighbor's.
   EXPECT_LE(differ, 3);
 }
 

@@ -215,10 +215,10 @@ def images():
         chunks = [(b"IHDR", head), *more, (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
         write("images", name, b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*c) for c in chunks))
 
-    png("colour.png", 8, 2, 0, b"\0abcdefghi" b"\1ihgfedcba")
+    png("color.png", 8, 2, 0, b"\0abcdefghi" b"\1ihgfedcba")
     png("deep_alpha.png", 16, 6, 0, (b"\0" + bytes(range(24))) * 2)
     png("palette.png", 2, 3, 0, b"\0\x1b" * 2, (b"PLTE", bytes(range(12))), (b"tRNS", b"\0\x80"))
-    png("interlaced_grey.png", 8, 0, 1, b"\0a\0b\0cc\0dd\0eee", (b"gAMA", struct.pack(">I", 45455)))
+    png("interlaced_gray.png", 8, 0, 1, b"\0a\0b\0cc\0dd\0eee", (b"gAMA", struct.pack(">I", 45455)))
 
     head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n\n"
     write("images", "flat.hdr", head + b"+X 2 -Y 2\n" + bytes([9, 8, 128, 129]) * 4)

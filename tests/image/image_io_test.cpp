@@ -115,7 +115,7 @@ TEST(Display, EncodesSrgb) {
   EXPECT_EQ(to_display(Image(1, 1, Rgb(0.72f)), {.exposure = -2})[0], 118);
 }
 
-// Grey 1 → 1/(1+1) = 0.5 → 188. Red L·(r,0,0) with r = 1: L = 0.2126, 1/1.2126 = 0.82467 → 233.9 → 234.
+// Gray 1 → 1/(1+1) = 0.5 → 188. Red L·(r,0,0) with r = 1: L = 0.2126, 1/1.2126 = 0.82467 → 233.9 → 234.
 TEST(Display, Reinhard) {
   const DisplayOptions options{.exposure = 0, .tonemap = ToneMap::reinhard};
   EXPECT_EQ(to_display(Image(1, 1, Rgb(1)), options)[0], 188);
@@ -126,12 +126,12 @@ TEST(Display, AgxIsMonotoneFromBlackToWhite) {
   const DisplayOptions options{.exposure = 0, .tonemap = ToneMap::agx};
   int previous = -1;
   for (float stops = -12; stops <= 6; stops += 0.5f) {
-    const auto grey = to_display(Image(1, 1, Rgb(std::exp2(stops))), options);
-    // The matrices' rows sum to one within 1e-7, so that grey stays grey.
-    EXPECT_EQ(grey[0], grey[1]);
-    EXPECT_EQ(grey[0], grey[2]);
-    EXPECT_GE(grey[0], previous) << stops;
-    previous = grey[0];
+    const auto gray = to_display(Image(1, 1, Rgb(std::exp2(stops))), options);
+    // The matrices' rows sum to one within 1e-7, so that gray stays gray.
+    EXPECT_EQ(gray[0], gray[1]);
+    EXPECT_EQ(gray[0], gray[2]);
+    EXPECT_GE(gray[0], previous) << stops;
+    previous = gray[0];
   }
   EXPECT_GE(previous, 250);
   EXPECT_EQ(to_display(Image(1, 1), options)[0], 0);
@@ -188,11 +188,11 @@ TEST_F(ImageIo, OneToFourChannels) {
   const LoadedImage exr = read_image(path("4.exr"));
   EXPECT_EQ(exr.color.at(0, 0), Rgb(1, 2, 3));
   EXPECT_EQ(exr.alpha, std::vector<float>{4});
-  // Alpha is coverage, never a colour: it is not decoded.
+  // Alpha is coverage, never a color: it is not decoded.
   EXPECT_EQ(read_image(path("4.png")).alpha, std::vector<float>{fifth});
 }
 
-TEST_F(ImageIo, GreyPfmAndBigEndianPfm) {
+TEST_F(ImageIo, GrayPfmAndBigEndianPfm) {
   const auto big_endian = [](float v) {
     const std::uint32_t bits = __builtin_bswap32(std::bit_cast<std::uint32_t>(v));
     return std::string(reinterpret_cast<const char*>(&bits), 4);

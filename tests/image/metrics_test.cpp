@@ -95,7 +95,7 @@ float oklab_lightness(Rgb c) {
   return 0.2104542553f * std::cbrt(l) + 0.7936177850f * std::cbrt(m) - 0.0040720468f * std::cbrt(s);
 }
 
-// The lightness only comes out linear if no colour of the map had to be clipped into the gamut.
+// The lightness only comes out linear if no color of the map had to be clipped into the gamut.
 TEST(FalseColor, LightnessIsLinearAndInsideTheGamut) {
   for (int i = 0; i <= 100; ++i) {
     const float t = static_cast<float>(i) / 100;

@@ -245,7 +245,7 @@ TEST(ExrWriter, AFullDiskIsAnErrorAtEveryByte) {
   EXPECT_GT(room, static_cast<std::streamsize>(whole.size()));
 }
 
-TEST(ExrChannelNames, WhichBecomeColour) {
+TEST(ExrChannelNames, WhichBecomeColor) {
   const auto color_of = [](const std::vector<std::string>& names) {
     const ExrChannels chosen = choose_exr_channels(names);
     return chosen.color[0] + " " + chosen.color[1] + " " + chosen.color[2] + "/" + chosen.alpha;

@@ -9,13 +9,13 @@ namespace lumirank::image {
 struct PngKind {
   int width = 9, height = 7;
   int depth = 8;  // bits
-  int color = 2;  // as the format counts: 0 grey, 2 colour, 3 palette, 4 grey with alpha, 6 colour with alpha
+  int color = 2;  // as the format counts: 0 gray, 2 color, 3 palette, 4 gray with alpha, 6 color with alpha
   bool interlaced = false, transparent_color = false;
 };
 // `samples`: bytes as they lie in a row, two for 16 bits (the higher first); empty: some pattern.
 void write_sample_png(const std::string& file, const PngKind& kind, std::vector<unsigned char> samples = {});
 
-enum class JpegColors { grey, luma_chroma, rgb, inks, luma_chroma_ink };
+enum class JpegColors { gray, luma_chroma, rgb, inks, luma_chroma_ink };
 struct JpegKind {
   int width = 9, height = 7;
   JpegColors colors = JpegColors::luma_chroma;

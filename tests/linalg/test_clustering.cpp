@@ -116,7 +116,7 @@ TEST(MultisetSampling, DrawsInProportionToEdgeCosts) {
   std::vector<double> seen(5, 0.0);
   const int trials = 4000;
   for (int t = 0; t < trials; ++t)
-    seen[draw_centres(alpha, 1, static_cast<std::uint64_t>(t)).position[0]] += 1;
+    seen[draw_centers(alpha, 1, static_cast<std::uint64_t>(t)).position[0]] += 1;
   EXPECT_EQ(seen[1], 0);
   double chi = 0;
   for (std::size_t k : {0u, 2u, 3u, 4u}) {
@@ -127,44 +127,44 @@ TEST(MultisetSampling, DrawsInProportionToEdgeCosts) {
 }
 
 TEST(MultisetSampling, EndsWhenCandidatesRunOut) {
-  EXPECT_TRUE(draw_centres(std::vector<double>{0, 0, 0}, 2, 1).position.empty());
-  const Centres all = draw_centres(std::vector<double>{0, 5, 1}, 10, 1);
+  EXPECT_TRUE(draw_centers(std::vector<double>{0, 0, 0}, 2, 1).position.empty());
+  const Centers all = draw_centers(std::vector<double>{0, 5, 1}, 10, 1);
   EXPECT_EQ(all.position, (std::vector<std::uint32_t>{1, 2}));
   // Every draw of k adds 1/p_k: 10 draws at least one of each, so weights are multiples of 6/5 and of 6.
   EXPECT_NEAR(std::remainder(all.weight[0], 1.2), 0, 1e-9);
   EXPECT_NEAR(std::remainder(all.weight[1], 6.0), 0, 1e-9);
 }
 
-TEST(MultisetSampling, AssignsToTheNearestWeightedCentre) {
+TEST(MultisetSampling, AssignsToTheNearestWeightedCenter) {
   const PointCloud cloud = random_cloud(2000, 10, 9);
   const auto norms = own_norms(cloud.points());
   const Partition whole = partition_by_group(all_of(cloud), {});
-  const Centres centres = draw_centres(edge_costs(cloud.points(), norms, whole), 300, 1);
+  const Centers centers = draw_centers(edge_costs(cloud.points(), norms, whole), 300, 1);
   const auto distance = [&](std::size_t k, std::uint32_t j) {
-    const std::uint32_t i = centres.position[k];
+    const std::uint32_t i = centers.position[k];
     double dot = 0;
     for (std::size_t d = 0; d < 10; ++d)
       dot += static_cast<double>(cloud[i][d]) * static_cast<double>(cloud[j][d]);
-    return centres.weight[k] * (norms[i] * norms[j] - dot);
+    return centers.weight[k] * (norms[i] * norms[j] - dot);
   };
-  const Partition p = assign_to_centres(cloud.points(), norms, whole, centres);
+  const Partition p = assign_to_centers(cloud.points(), norms, whole, centers);
   for (std::size_t c = 0; c < p.clusters(); ++c) {
-    // The cluster's centre is the one member that is a centre.
-    std::size_t own = centres.position.size();
+    // The cluster's center is the one member that is a center.
+    std::size_t own = centers.position.size();
     for (std::uint32_t j : p.members(c)) {
-      const auto it = std::lower_bound(centres.position.begin(), centres.position.end(), j);
-      if (it != centres.position.end() && *it == j)
-        own = static_cast<std::size_t>(it - centres.position.begin());
+      const auto it = std::lower_bound(centers.position.begin(), centers.position.end(), j);
+      if (it != centers.position.end() && *it == j)
+        own = static_cast<std::size_t>(it - centers.position.begin());
     }
-    ASSERT_LT(own, centres.position.size());
+    ASSERT_LT(own, centers.position.size());
     for (std::uint32_t j : p.members(c)) {
       double min_distance = INFINITY;
-      for (std::size_t k = 0; k < centres.position.size(); ++k)
+      for (std::size_t k = 0; k < centers.position.size(); ++k)
         min_distance = std::min(min_distance, distance(k, j));
       // Cosines are compared in single precision (2⁻²⁴ each of ten products and of 1 − cos).
-      const double rounding = 20 * 0x1p-24 * centres.weight[own] * norms[centres.position[own]] * norms[j];
+      const double rounding = 20 * 0x1p-24 * centers.weight[own] * norms[centers.position[own]] * norms[j];
       EXPECT_LE(distance(own, j), min_distance + rounding +
-                                      1e-6 * centres.weight[own] * norms[centres.position[own]] * norms[j] +
+                                      1e-6 * centers.weight[own] * norms[centers.position[own]] * norms[j] +
                                       1.001e-4 * min_distance);
     }
   }

@@ -1,4 +1,4 @@
-// Points from coarse to fine: sizes of levels, and that neighbours are the nearest.
+// Points from coarse to fine: sizes of levels, and that neighbors are the nearest.
 #include "linalg/nested_levels.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(NestedLevels, HoldEveryPointOnceAndDouble) {
   }
 }
 
-TEST(NestedLevels, NeighboursAreTheNearestCoarserPoints) {
+TEST(NestedLevels, NeighborsAreTheNearestCoarserPoints) {
   const auto points = random_points(300);
   NestedLevels levels;
   levels.build(points, 10, 4);

@@ -42,8 +42,8 @@ TEST(LightSlice, ConvergesToAllColumns) {
 // Columns within a slice of a smooth matrix are nearly parallel where those of the whole matrix are not.
 TEST(LightSlice, AdaptsToSlices) {
   const auto m = matrix::low_rank_matrix({800, 400, 1}, 12);
-  const double whole = mean_error(m, {{"slice-rows", "800"}, {"neighbours", "1"}, {"columns", "20"}});
-  const double sliced = mean_error(m, {{"slice-rows", "50"}, {"neighbours", "4"}, {"columns", "20"}});
+  const double whole = mean_error(m, {{"slice-rows", "800"}, {"neighbors", "1"}, {"columns", "20"}});
+  const double sliced = mean_error(m, {{"slice-rows", "50"}, {"neighbors", "4"}, {"columns", "20"}});
   EXPECT_LT(sliced, 0.5 * whole);
 }
 
@@ -56,7 +56,7 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
       t.add(run(m,
                 {{"columns", "40"},
                  {"slice-rows", "40"},
-                 {"neighbours", "3"},
+                 {"neighbors", "3"},
                  {"color", "scalar"},
                  {"max-sum-share", "0"},
                  {"zero-columns", "sample"},

@@ -42,17 +42,17 @@ TEST(Hilbert, TangentCoordinatesKeepDistancesInThePlane) {
   EXPECT_NEAR(dx * dx + dy * dy, 4 + 16, 1e-4);
 }
 
-// Three curves with three predecessors and successors each find nearly all nearest neighbours. How many is
+// Three curves with three predecessors and successors each find nearly all nearest neighbors. How many is
 // measured: over 1000 points and 50 samples 95 % of the nearest and 85 % of the three nearest is far below
 // what any seed gives (99 % and 95 %), far above chance (2 %).
-TEST(Hilbert, FindsNearestNeighbours) {
+TEST(Hilbert, FindsNearestNeighbors) {
   const auto points = scattered(1000);
   HilbertCurves curves;
   curves.build(points);
   std::vector<std::uint8_t> sampled(points.size());
   for (std::size_t i = 0; i < points.size(); i += 20) sampled[i] = 1;
-  SampledNeighbours neighbours;
-  neighbours.find(curves, sampled);
+  SampledNeighbors neighbors;
+  neighbors.find(curves, sampled);
   std::size_t first = 0, all = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::vector<std::pair<float, std::uint32_t>> exact;
@@ -60,7 +60,7 @@ TEST(Hilbert, FindsNearestNeighbours) {
       if (sampled[s])
         exact.emplace_back(square(points[s].x - points[i].x) + square(points[s].y - points[i].y), s);
     std::sort(exact.begin(), exact.end());
-    const auto& found = neighbours.of()[i];
+    const auto& found = neighbors.of()[i];
     first += found[0] == exact[0].second;
     const std::set<std::uint32_t> set(found.begin(), found.end());
     EXPECT_EQ(set.size(), 3u);
@@ -74,30 +74,30 @@ TEST(Hilbert, FindsNearestNeighbours) {
   EXPECT_GT(all, 2550u);
 }
 
-TEST(Hilbert, FewerSamplesThanNeighbours) {
+TEST(Hilbert, FewerSamplesThanNeighbors) {
   const auto points = scattered(10);
   HilbertCurves curves;
   curves.build(points);
   std::vector<std::uint8_t> sampled(10);
-  SampledNeighbours neighbours;
-  neighbours.find(curves, sampled);
+  SampledNeighbors neighbors;
+  neighbors.find(curves, sampled);
   std::vector<std::uint8_t> by_row(10);
   std::vector<float> p(10);
-  nearest_probabilities(neighbours.of(), by_row, p);
+  nearest_probabilities(neighbors.of(), by_row, p);
   EXPECT_EQ(p, std::vector<float>(10, 0.5f));
   sampled[4] = 1;
   by_row[4] = seen::kVisible;
-  neighbours.find(curves, sampled);
-  nearest_probabilities(neighbours.of(), by_row, p);
+  neighbors.find(curves, sampled);
+  nearest_probabilities(neighbors.of(), by_row, p);
   EXPECT_EQ(p, std::vector<float>(10, 1.0f));
   // What is sampled elsewhere but unknown here does not count.
   sampled[2] = sampled[7] = sampled[8] = 1;
   by_row[7] = seen::kHidden;
-  neighbours.find(curves, sampled);
-  nearest_probabilities(neighbours.of(), by_row, p);
+  neighbors.find(curves, sampled);
+  nearest_probabilities(neighbors.of(), by_row, p);
   for (std::size_t i = 0; i < 10; ++i) {
     int known = 0, visible = 0;
-    for (const std::uint32_t n : neighbours.of()[i]) known += by_row[n] > 0, visible += n == 4;
+    for (const std::uint32_t n : neighbors.of()[i]) known += by_row[n] > 0, visible += n == 4;
     EXPECT_FLOAT_EQ(p[i], known > 0 ? static_cast<float>(visible) / static_cast<float>(known) : 0.5f);
   }
 }
@@ -179,7 +179,7 @@ TEST(Predictors, DrawsFollowTheProbability) {
     for (std::size_t i = 0; i + 1 < n; ++i) together += visible[i] & visible[i + 1];
     const double q = static_cast<double>(p), sigma = std::sqrt(q * (1 - q) * n);
     EXPECT_NEAR(sum, q * n, 4 * sigma);  // 1 in 16,000
-    // Independent neighbours: variance of the sum of products at most n(q² + 2q³).
+    // Independent neighbors: variance of the sum of products at most n(q² + 2q³).
     EXPECT_NEAR(together, q * q * (n - 1), 4 * std::sqrt(n * (q * q + 2 * q * q * q)) * (1 - q) + 1e-9);
   }
 }

@@ -37,7 +37,7 @@ TEST(ImageBlocks, EveryRowIsInOneBlockBetweenItsCorners) {
       corners.insert(block.corners.begin(), block.corners.begin() + block.corner_count);
     }
   EXPECT_EQ(rows.size(), m.rows());
-  EXPECT_EQ(corners.size(), 100u);  // pixels 0, 4, …, 36 each way: neighbours share them
+  EXPECT_EQ(corners.size(), 100u);  // pixels 0, 4, …, 36 each way: neighbors share them
 }
 
 TEST(ImageBlocks, ReceiversOfOtherSurfacesTellNothing) {

@@ -17,7 +17,7 @@ Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const
   return find_method("row-column-sampling").make(settings)->run(m, options);
 }
 
-// As many clusters as directions, and one colour per direction: every representative is its cluster's sum up
+// As many clusters as directions, and one color per direction: every representative is its cluster's sum up
 // to rounding. A column's entry carries about six roundings, its norm over 50 rows 25 more.
 TEST(RowColumn, ExactClustersGiveTheExactSum) {
   const auto m = matrix::clustered_matrix({300, 400, 1}, 12);
@@ -96,12 +96,12 @@ struct Errors {
   std::size_t zero_columns;
 };
 Errors errors_over_draws(const matrix::DenseMatrix& colored) {
-  // Colourless: scalars are then the entries, up to the factor √3, which cancels.
-  std::vector<Rgb> grey(colored.rows() * colored.columns());
+  // Colorless: scalars are then the entries, up to the factor √3, which cancels.
+  std::vector<Rgb> gray(colored.rows() * colored.columns());
   for (std::size_t i = 0; i < colored.rows(); ++i)
     for (std::size_t j = 0; j < colored.columns(); ++j)
-      grey[i * colored.columns() + j] = Rgb(colored.at(i, j).g);
-  matrix::DenseMatrix m(colored.rows(), colored.columns(), std::move(grey));
+      gray[i * colored.columns() + j] = Rgb(colored.at(i, j).g);
+  matrix::DenseMatrix m(colored.rows(), colored.columns(), std::move(gray));
   m.power = colored.power;
   ClusterSettings settings;
   settings.color = ColorMode::scalar;

@@ -96,7 +96,7 @@ TEST(SamplingRecovery, RecoversFromFewSamples) {
 TEST(SamplingRecovery, RedrawnRepresentativesAreUnbiased) {
   auto m = matrix::occluded_matrix({150, 400, 5}, 8);
   m.pixel.clear();
-  m.emitted.clear();  // colours of clusters are an average, which is not unbiased
+  m.emitted.clear();  // colors of clusters are an average, which is not unbiased
   const auto seen = [&](const std::string& redraw) {
     test::UnbiasednessTest t(m.exact_sums(), 10);
     for (std::uint64_t seed = 1; seed <= test::runs(400); ++seed)

@@ -67,7 +67,7 @@ Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
 }
 
 // A random line meets at most 2·32 of the squares between 32×32 receivers. On a level of spacing s a receiver
-// may have neighbours that differ only if the line passes within 2s of it: 4s/32 of the level's receivers.
+// may have neighbors that differ only if the line passes within 2s of it: 4s/32 of the level's receivers.
 // With s = 4, 2.8, 2, 1.4 and levels of 1/16, 1/8, 1/4, 1/2 of all, and the coarsest 1/16, that is at most
 // 1/16 + 4/32·(4/16 + 2.8/8 + 2/4 + 1.4/2) = 0.29. What is filled in wrongly lies on the wrong side of the
 // line by less than the last spacing.

@@ -174,13 +174,13 @@ TEST(TimePlan, WithoutColumnsNothingIsShort) {
   EXPECT_EQ(plan_time(w, c).divisor, 1);
 }
 
-TEST(SmallerFilm, EnlargesLinearlyBetweenCentres) {
+TEST(SmallerFilm, EnlargesLinearlyBetweenCenters) {
   Picture p;
   p.width = 2, p.height = 1;
   p.planes.push_back({"", {0, 1, 2, 4, 5, 6}});
   const Picture larger = enlarged(p, 4, 2);
   ASSERT_EQ(larger.planes[0].rgb.size(), 4u * 2 * 3);
-  // Centres at 1/4, 3/4, 5/4, 7/4 of the smaller one's pixels, whose own are at 1/2 and 3/2.
+  // Centers at 1/4, 3/4, 5/4, 7/4 of the smaller one's pixels, whose own are at 1/2 and 3/2.
   const float expected[] = {0, 1, 3, 4};
   for (std::size_t y = 0; y < 2; ++y)
     for (std::size_t x = 0; x < 4; ++x) EXPECT_FLOAT_EQ(larger.planes[0].rgb[3 * (y * 4 + x)], expected[x]);

@@ -83,7 +83,7 @@ BsdfCase ward(std::string name, int variant, float au, float av) {
   BsdfCase c = single("ward_" + name, WardMaterial{variant, gray(0.3f), gray(0.6f), number(au), number(av)});
   if (variant < 2)
     c.energy_exempt =
-        "the normalisation of both older Ward models grows without bound towards grazing angles";
+        "the normalization of both older Ward models grows without bound towards grazing angles";
   return c;
 }
 

@@ -50,7 +50,7 @@ TEST(ClosurePool, GivesBackFramesAndSmoothLobes) {
   EXPECT_EQ(pool.recipes(), 1u);
 }
 
-TEST(ClosurePool, SharesRecipesBetweenColours) {
+TEST(ClosurePool, SharesRecipesBetweenColors) {
   ClosurePool pool;
   for (int k = 0; k < 1000; ++k)
     pool.add(closure_of({0, 0, 1}, {1, 0, 0}, Rgb(static_cast<float>(k), 0.5f, 0.5f), k % 2 ? 0.1f : 0.2f),
@@ -62,7 +62,7 @@ TEST(ClosurePool, SharesRecipesBetweenColours) {
   EXPECT_EQ(pool.lobes(pool.recipe(5))[0].color, Rgb(1));
   EXPECT_EQ(pool.colors(5)[0], Rgb(5, 0.5f, 0.5f));
   pool.shrink();
-  // 12 bytes per entry; one palette of two colours (24 bytes) and an offset (4) each.
+  // 12 bytes per entry; one palette of two colors (24 bytes) and an offset (4) each.
   EXPECT_LE(pool.memory_bytes(), 1000u * (12 + 24 + 4) + 2 * 2 * sizeof(scatter::Lobe) + 64);
 }
 

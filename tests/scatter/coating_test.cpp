@@ -75,7 +75,7 @@ TEST(Coating, LobesFollowTheRandomWalk) {
   }
 }
 
-// Under a smooth layer without absorption a matt base is plastic whose colour saturates (nonlinear).
+// Under a smooth layer without absorption a matt base is plastic whose color saturates (nonlinear).
 TEST(Coating, OverMattIsPlastic) {
   MaterialSet set;
   set.materials.push_back(DiffuseMaterial{ColorInput{Rgb(0.8f, 0.5f, 0.1f), -1}});

@@ -135,7 +135,7 @@ TEST_P(EveryBsdfPair, GrazingAnglesAreSafe) {
   }
 }
 
-// The corners of the unit square and its centre lead to valid samples too.
+// The corners of the unit square and its center lead to valid samples too.
 TEST_P(EveryBsdfPair, ExtremeRandomNumbersAreSafe) {
   const BsdfCase& c = bsdf();
   const SurfacePoint at = point_with_normal({0, 0, 1});

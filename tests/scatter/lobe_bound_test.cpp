@@ -68,7 +68,7 @@ TEST_P(EveryBsdfBound, IsAboveAllValues) {
       const auto s = sample(closure, wo, r.next_float(), r.next_2d(), Lobes::smooth, adjoint);
       if (s) cone.axis = s->wi;
     }
-    // Off centre, so that peaks may lie anywhere in the cone.
+    // Off center, so that peaks may lie anywhere in the cone.
     if (r.next_float() < 0.7f) cone.axis = direction_in(cone, r.next_2d());
     const Rgb in_cone = bound.within(cone, CosineFactor::cosine, limit),
               f_in_cone = bound.within(cone, CosineFactor::none, limit);

@@ -262,7 +262,7 @@ TEST(Mixture, ManyPartsAreJoinedWithoutLosingEnergy) {
   set.materials.push_back(mix);
   const Closure c = set.closure(12, point_with_normal(kUp), kUp);
   EXPECT_EQ(c.count, kMaxLobes);
-  // At normal incidence (n+2)/(2π)∫cosⁿ·cos dω = 1 for every n, so the albedo is the sum of the colours.
+  // At normal incidence (n+2)/(2π)∫cosⁿ·cos dω = 1 for every n, so the albedo is the sum of the colors.
   double sum = 0;
   for (int k = 0; k < c.count; ++k) sum += c.lobes[k].color.r;
   EXPECT_NEAR(sum, expected, 1e-6);

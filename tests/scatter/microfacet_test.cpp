@@ -46,7 +46,7 @@ double over_hemisphere(F&& value) {
 }
 
 // The projected area of all microfacets is that of the surface: ∫ D(m) cos m dω = 1.
-TEST(Microfacet, DistributionIsNormalised) {
+TEST(Microfacet, DistributionIsNormalized) {
   for (const Setting& s : kSettings)
     EXPECT_NEAR(over_hemisphere([&](Vec3f m) { return microfacet_d(s.kind, m, s.alpha_u, s.alpha_v) * m.z; }),
                 1, 1e-3)
@@ -55,7 +55,7 @@ TEST(Microfacet, DistributionIsNormalised) {
 
 // The visible microfacets' projected area is the surface's, seen from anywhere: ∫ G1 D max(0, w·m) dω = cos
 // w.
-TEST(Microfacet, VisibleNormalsAreNormalised) {
+TEST(Microfacet, VisibleNormalsAreNormalized) {
   for (const Setting& s : kSettings) {
     for (float c : {1.0f, 0.6f, 0.15f}) {
       const Vec3f w = at_angle(c, 0.8f);

@@ -5,7 +5,7 @@
 namespace lumirank::scatter {
 namespace {
 
-// Regularised incomplete gamma functions: the series of the lower one, Lentz's continued fraction of the
+// Regularized incomplete gamma functions: the series of the lower one, Lentz's continued fraction of the
 // upper one.
 double lower_series(double a, double x) {
   double term = 1 / a, sum = term;

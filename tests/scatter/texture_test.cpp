@@ -27,7 +27,7 @@ BitmapTexture numbered(TexFilter filter = TexFilter::bilinear) {
 
 Rgb look(const BitmapTexture& t, float u, float v) { return TextureSet{{t}}.lookup(0, {{u, v}, Rgb(1)}); }
 
-TEST(Bitmap, TexelCentresAreExactAndTheTopRowIsAtVOne) {
+TEST(Bitmap, TexelCentersAreExactAndTheTopRowIsAtVOne) {
   for (const TexFilter filter : {TexFilter::nearest, TexFilter::bilinear})
     for (int row = 0; row < kHeight; ++row)
       for (int column = 0; column < kWidth; ++column) {
@@ -109,7 +109,7 @@ TEST(Bitmap, GradientOfALinearRamp) {
   EXPECT_EQ(set.gradient(3, at).x, 0);
 }
 
-TEST(Checkerboard, FirstColourWhereHalvesAgree) {
+TEST(Checkerboard, FirstColorWhereHalvesAgree) {
   TextureSet set;
   set.textures.push_back(ConstantTexture{Rgb(0.1f)});
   set.textures.push_back(ConstantTexture{Rgb(0.9f)});
@@ -122,7 +122,7 @@ TEST(Checkerboard, FirstColourWhereHalvesAgree) {
   EXPECT_EQ(set.mean(2), Rgb(0.5f));
 }
 
-TEST(TextureSet, ScalesVertexColoursAndMeans) {
+TEST(TextureSet, ScalesVertexColorsAndMeans) {
   TextureSet set{{VertexColorTexture{}, ScaleTexture{0, {2, 1, 0.5f}}, numbered()}};
   EXPECT_EQ(set.lookup(1, {{0, 0}, {0.25f, 0.5f, 1}}), Rgb(0.5f, 0.5f, 0.5f));
   EXPECT_NEAR(set.lookup_float(1, {{0, 0}, {0.25f, 0.5f, 1}}), 0.5f, 1e-6f);
@@ -149,7 +149,7 @@ TEST(TextureSet, ProductsAndThresholds) {
 TEST(TextureSet, MixesAndRoots) {
   TextureSet set{{VertexColorTexture{}, ConstantTexture{{1, 0, 0.5f}}, ConstantTexture{Rgb(0.25f)},
                   MixTexture{0, 1, 2}, numbered(), RootTexture{4}, MixTexture{2, 4, 4}, RootTexture{2}}};
-  // ¾ of the vertex colour and ¼ of the constant.
+  // ¾ of the vertex color and ¼ of the constant.
   EXPECT_EQ(set.lookup(3, {{0, 0}, {1, 0.5f, 0}}), Rgb(1, 0.375f, 0.125f));
   EXPECT_EQ(set.mean(3), Rgb(1, 0.75f, 0.875f));
   EXPECT_EQ(set.mean(7), Rgb(0.5f));

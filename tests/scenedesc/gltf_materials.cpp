@@ -140,7 +140,7 @@ TEST(GltfMaterial, TextureTransforms) {
   EXPECT_NEAR(at(t, 0, 1).y, 0.75f, 1e-6f);
 }
 
-TEST(GltfMaterial, UvSetsAndVertexColours) {
+TEST(GltfMaterial, UvSetsAndVertexColors) {
   GltfMaker m =
       with_material({{"pbrMetallicRoughness",
                       {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}, {"metallicFactor", 0}}}});

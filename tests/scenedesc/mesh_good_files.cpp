@@ -63,7 +63,7 @@ TEST(ObjReader, CutsPolygonsIntoFans) {
   EXPECT_EQ(pentagon.mended.size(), 1u);
 }
 
-TEST(ObjReader, ReadsColoursAndPassesOverTheRest) {
+TEST(ObjReader, ReadsColorsAndPassesOverTheRest) {
   const MeshData mesh = parse_obj(
       "\xef\xbb\xbf# comment\nmtllib a.mtl\no thing\ng group\ns off\nusemtl red\n"
       "v 0 0 0 1 0 0.5\nv +1 0 0 0 1 0\nv 0 1e0 0.0E+00 0.25 0.5 1\nl 1 2\np 1\nf 1 2 3",

@@ -308,7 +308,7 @@ TEST(MitsubaMetals, LookAsTheyShould) {
     EXPECT_GT(r.r, r.g);
     EXPECT_GT(r.g, r.b);
   }
-  // Nearly colourless.
+  // Nearly colorless.
   for (const char* name : {"Al", "Cr", "Mo", "Rh", "V", "W", "Hg", "a-C", "d-C", "MgO", "TiO2"}) {
     const Rgb r = reflectance(name);
     EXPECT_LT(max_component(r), 2.5f * std::min({r.r, r.g, r.b})) << name;

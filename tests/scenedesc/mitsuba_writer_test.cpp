@@ -293,9 +293,9 @@ TEST(MitsubaWriter, TexturesThatCanBePaintedAre) {
   const test::TemporaryFolder folder;
   SceneDesc scene;
   scene.sensors.emplace_back();
-  BitmapTextureDesc grey;
-  grey.filename = folder / "a.png", grey.channel = TextureChannel::green;
-  scene.textures.emplace_back().kind = grey;
+  BitmapTextureDesc gray;
+  gray.filename = folder / "a.png", gray.channel = TextureChannel::green;
+  scene.textures.emplace_back().kind = gray;
   scene.textures.emplace_back().kind = ScaleTextureDesc{{Rgb(0), 0}, Rgb(2)};
   scene.textures.emplace_back().kind = CheckerboardTextureDesc{{Rgb(0), 1}, {Rgb(0.5f)}, {}};
   scene.textures.emplace_back().kind = ScaleTextureDesc{{Rgb(0), 2}, Rgb(2)};

@@ -27,7 +27,7 @@ const BadFile kBad[] = {
     {"p_bright", 4, "\"reflectance\" of Material \"diffuse\" is above 1"},
     {"p_camera_late", 3, "Camera after WorldBegin"},
     {"p_cold", 4, "\"I\" of LightSource \"point\" is not one temperature above 0"},
-    {"p_color_space", 1, "the colour space \"cmyk\" is not known"},
+    {"p_color_space", 1, "the color space \"cmyk\" is not known"},
     {"p_cone", 4, "\"conedeltaangle\" of LightSource \"spot\" is not between 0 and \"coneangle\""},
     {"p_coordinate_system", 3, "the coordinate system \"nowhere\" is not defined"},
     {"p_crop", 2, "\"cropwindow\" of Film \"rgb\" is no window of the film"},

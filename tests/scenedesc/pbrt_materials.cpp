@@ -77,7 +77,7 @@ TEST(PbrtMaterial, Dielectrics) {
   EXPECT_EQ(inner<ThinDielectricDesc>(pbrt_material("\"thindielectric\" \"float eta\" 1.7")).eta, 1.7f);
 }
 
-TEST(PbrtMaterial, ConductorOfAColourHasThatReflectanceAtNormalIncidence) {
+TEST(PbrtMaterial, ConductorOfAColorHasThatReflectanceAtNormalIncidence) {
   const SceneDesc scene = pbrt_material("\"conductor\" \"rgb reflectance\" [ .9 .5 .2 ]");
   const auto& c = inner<ConductorDesc>(scene);
   const float want[] = {.9f, .5f, .2f};
@@ -87,7 +87,7 @@ TEST(PbrtMaterial, ConductorOfAColourHasThatReflectanceAtNormalIncidence) {
   }
 }
 
-TEST(PbrtMaterial, ConductorsByColoursAndByNames) {
+TEST(PbrtMaterial, ConductorsByColorsAndByNames) {
   const SceneDesc by_numbers = pbrt_material("\"conductor\" \"rgb eta\" [ 1.6 .9 .5 ] \"rgb k\" [ 9 6 4 ]");
   const auto& rgb = inner<ConductorDesc>(by_numbers);
   EXPECT_EQ(rgb.eta, Rgb(1.6f, .9f, .5f));
@@ -272,11 +272,11 @@ Rgb reflectance(const std::string& parameter) {
 
 TEST(PbrtSpectrum, Reflectances) {
   expect_near(reflectance("\"spectrum reflectance\" [ 300 0.4 900 0.4 ]"), Rgb(0.4f), 1e-5f);
-  std::ofstream(testing::TempDir() + "grey.spd") << "# of paint\n300 0.7\n900 0.7\n";
-  expect_near(reflectance("\"spectrum reflectance\" \"grey.spd\""), Rgb(0.7f), 1e-5f);
+  std::ofstream(testing::TempDir() + "gray.spd") << "# of paint\n300 0.7\n900 0.7\n";
+  expect_near(reflectance("\"spectrum reflectance\" \"gray.spd\""), Rgb(0.7f), 1e-5f);
 }
 
-TEST(PbrtSpectrum, ColourSpaces) {
+TEST(PbrtSpectrum, ColorSpaces) {
   const auto in = [](const char* space) {
     const SceneDesc scene =
         pbrt_world("ColorSpace \"" + std::string(space) +
@@ -285,7 +285,7 @@ TEST(PbrtSpectrum, ColourSpaces) {
     return std::pair{inner<DiffuseDesc>(scene).reflectance.value,
                      std::get<PointLightDesc>(scene.emitters.at(0).kind).intensity};
   };
-  // Greys are grey in every space; the green of BT.2020 lies outside of Rec. 709 and is cut there.
+  // Grays are gray in every space; the green of BT.2020 lies outside of Rec. 709 and is cut there.
   for (const char* space : {"srgb", "dci-p3", "rec2020", "aces2065-1"})
     expect_near(in(space).first, Rgb(0.5f), 1e-5f);
   expect_near(in("rec2020").second, Rgb(0, 0.56645f, 0), 1e-5f);

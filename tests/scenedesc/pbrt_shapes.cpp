@@ -64,7 +64,7 @@ TEST(PbrtShape, PlyMeshesKeepTheirUvAndAreFlatWithoutNormals) {
   EXPECT_EQ(read.uvs.at(0), (Vec2f{0, 0.25f}));
 }
 
-// As pbrt parametrises it: u = φ/2π, v from the south pole up. The built-in sphere's v runs from +z down, so
+// As pbrt parametrizes it: u = φ/2π, v from the south pole up. The built-in sphere's v runs from +z down, so
 // it is turned over.
 TEST(PbrtShape, SphereHasPbrtsV) {
   const SceneDesc scene = pbrt_world("Shape \"sphere\" \"float radius\" 2\n");

@@ -14,7 +14,7 @@
 namespace lumirank::test {
 
 // Mean of each channel over the whole (cropped) picture.
-inline std::array<double, 3> mean_colour(const Picture& picture) {
+inline std::array<double, 3> mean_color(const Picture& picture) {
   std::array<double, 3> sum{};
   const auto& rgb = picture.planes[0].rgb;
   for (std::size_t k = 0; k < rgb.size(); ++k) sum[k % 3] += rgb[k];
@@ -26,7 +26,7 @@ inline std::array<double, 3> mean_colour(const Picture& picture) {
 struct ChannelMeans {
   std::vector<double> of[3];
   void add(const Picture& picture) {
-    const auto mean = mean_colour(picture);
+    const auto mean = mean_color(picture);
     for (std::size_t c = 0; c < 3; ++c) of[c].push_back(mean[c]);
   }
 };

@@ -223,7 +223,7 @@ TEST(VirtualLights, EmitterSamplesFollowWhatColumnsCarry) {
   EXPECT_EQ(direct[2], 20u);            // the least there is: a hundredth
 }
 
-// One particle leaves forty lights within a millimetre; others lie about a tenth apart. What it stands for is
+// One particle leaves forty lights within a millimeter; others lie about a tenth apart. What it stands for is
 // told by the others.
 TEST(LightAreas, OfACaughtParticleAreMeasuredByOthers) {
   VirtualLights lights;

@@ -183,7 +183,7 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
   sheet.sheen = value(0.3f), sheet.spec_tint = value(0.5f);
   all.push_back(add_bsdf(desc, sheet));
   all.push_back(add_bsdf(desc, DiffuseTransmitterDesc{color(0.2f, 0.3f, 0.1f), color(0.5f, 0.2f, 0.4f)}));
-  for (const float alpha : {0.0f, 0.2f}) {  // metal and matt colour under varnish
+  for (const float alpha : {0.0f, 0.2f}) {  // metal and matt color under varnish
     CoatingDesc coating;
     coating.alpha_u = coating.alpha_v = value(alpha);
     coating.absorption = color(0.1f, 0.2f, 0.4f);

@@ -250,7 +250,7 @@ TEST_F(SceneMatrixPairs, TellsWhatItSays) {
   for (const Rgb& v : all(scene, Part::visibility)) ASSERT_TRUE(v == Rgb(0) || v == Rgb(1));
 }
 
-TEST_F(SceneMatrixPairs, ClampedEntriesKeepTheBoundAndTheirColour) {
+TEST_F(SceneMatrixPairs, ClampedEntriesKeepTheBoundAndTheirColor) {
   const float limit = 1e-3f;
   const std::vector<Rgb> free = all(make(0), Part::unoccluded), held = all(make(limit), Part::unoccluded);
   std::size_t clamped = 0;

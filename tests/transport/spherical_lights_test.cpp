@@ -285,17 +285,17 @@ VirtualLights grid_on_the_floor() {
   return lights;
 }
 
-TEST(SphericalLights, RadiiFollowTheTenthNeighbourAndCornersHideAQuarter) {
+TEST(SphericalLights, RadiiFollowTheTenthNeighborAndCornersHideAQuarter) {
   const world::World world = cube();
   VirtualLights lights = grid_on_the_floor();
   add_light(lights, LightKind::omni, {0, 0, 0}, {}, Rgb(1));
   EXPECT_EQ(make_spherical(lights, world, {2}), 2);
   const std::size_t middle = 60;
-  // Of the neighbours of a grid's point, four are 1 away, four √2, four 2: the tenth is at 2.
+  // Of the neighbors of a grid's point, four are 1 away, four √2, four 2: the tenth is at 2.
   EXPECT_NEAR(lights.radius[middle], 2 * 0.2f, 1e-5);
   EXPECT_EQ(lights.hidden[middle], 0);
   EXPECT_EQ(lights.radius.back(), 0);
-  // Against a wall: half of the disc; eight sectors of a circle that the wall cuts at its centre know it
+  // Against a wall: half of the disc; eight sectors of a circle that the wall cuts at its center know it
   // exactly.
   VirtualLights corner;
   for (int k = 0; k < 12; ++k)
@@ -317,7 +317,7 @@ TEST(SphericalLights, AReachIsSoManyRadii) {
   EXPECT_EQ(LightReach(VirtualLights(), world, 2, 3).at({0, 0, 0}), 0);
 }
 
-// Radii fall with the sixth root of the number of lights: the tenth neighbour's distance with the square
+// Radii fall with the sixth root of the number of lights: the tenth neighbor's distance with the square
 // root.
 TEST(SphericalLights, AutomaticRadiiBalanceBlurAndNoise) {
   EXPECT_EQ(automatic_radius_scale(1), 1);

@@ -197,7 +197,7 @@ TEST(VirtualLights, CountIsNearTheTarget) {
   const auto lights = trace_virtual_lights(furnace(0.6f).build(), settings_of(3, 20000));
   EXPECT_EQ(lights.direct_count, 1u);
   EXPECT_NEAR(static_cast<double>(lights.size()), 20000, 0.075 * 20000);
-  // Survival is paid by roulette, not by power: all lights of a grey box are alike.
+  // Survival is paid by roulette, not by power: all lights of a gray box are alike.
   for (std::size_t j = 0; j < lights.size(); ++j)
     if (lights.kind[j] == LightKind::surface) {
       EXPECT_NEAR(lights.power[j].r * static_cast<float>(lights.paths), 4 * kPi, 1e-3);

@@ -291,7 +291,7 @@ TEST(Build, AMaskReadsTheAlphaOfItsPicture) {
   { std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes), sizeof bytes); }
   EXPECT_FLOAT_EQ(build(desc).materials().opacity(material, {{0.25f, 0.5f}}), 0.2f);
   std::remove(path.c_str());
-  bitmap.filename = ::testing::TempDir() + "lumirank_world_colours.pfm";
+  bitmap.filename = ::testing::TempDir() + "lumirank_world_colors.pfm";
   image::write_image(bitmap.filename, {image::Image(1, 1, Rgb(0.9f, 0, 0)), {}});
   desc.textures[static_cast<std::size_t>(alpha)].kind = bitmap;
   desc.textures[static_cast<std::size_t>(red)].kind = bitmap;

@@ -223,7 +223,7 @@ TEST(GltfBrdf, NormalMapsFollowMirroredUvs) {
     set.materials.push_back(scatter::NormalMapMaterial{0, 0, 1, true});
     const Vec3f n = set.closure(1, p.hit.point, {0, 0, 1}).frame.n;
     EXPECT_NEAR(n.x, 0, 1e-5f);
-    // v runs along v_along · y, so up is -v_along · y: (0.5, 0.866) by the colour.
+    // v runs along v_along · y, so up is -v_along · y: (0.5, 0.866) by the color.
     EXPECT_NEAR(n.y, -0.5f * static_cast<float>(v_along), 1e-3f);
     // Flattened to half: tan is half of 0.5 / 0.866.
     set.materials.push_back(scatter::NormalMapMaterial{0, 0, 0.5f, true});

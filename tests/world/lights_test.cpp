@@ -157,7 +157,7 @@ TEST(AreaLight, TexturedRadianceIsExactInEverySample) {
     const auto d = w.sample_direct(0, {0.3f, 0.1f, 2}, u1, up);
     const auto hit = w.intersect(ray({0.3f, 0.1f, 2}, d.direction));
     ASSERT_TRUE(hit);
-    // A sample within rounding of a texel's edge may read the neighbour: only the bulk is compared.
+    // A sample within rounding of a texel's edge may read the neighbor: only the bulk is compared.
     if (i < 200) {
       EXPECT_EQ(w.emitted(*hit, -d.direction), d.radiance);
     }

@@ -30,7 +30,7 @@ std::vector<LoadingCase> missing_files() {
     return "\n<texture type=\"bitmap\" name=\"" + name +
            "\"><string name=\"filename\" value=\"absent.png\"/></texture>\n";
   };
-  const std::string squares = "squares of magenta and grey";
+  const std::string squares = "squares of magenta and gray";
   std::vector<LoadingCase> cases;
   add_missing(cases, "obj", "obj_refused", xml, shape("obj"), "mesh file not found: ", 4, 1);
   add_missing(cases, "ply", "ply_refused", xml, shape("ply"), "mesh file not found: ", 4, 1);
@@ -40,8 +40,7 @@ std::vector<LoadingCase> missing_files() {
   add_missing(cases, "hair", "hair_refused", xml, shape("hair"), "curve file not found: ", 4, 1);
   add_missing(cases, "lamp", "lamp_refused", xml, shape("obj", "<emitter type=\"area\"/>"),
               "is missing: the shape \"cup\" is left out, and its light is gone too", 4, 1);
-  add_missing(cases, "colour", "colour_refused", xml, bsdf("diffuse\">" + picture("reflectance")), squares,
-              4);
+  add_missing(cases, "color", "color_refused", xml, bsdf("diffuse\">" + picture("reflectance")), squares, 4);
   add_missing(cases, "roughness", "roughness_refused", xml, bsdf("roughconductor\">" + picture("alpha")),
               squares, 4);
   add_missing(cases, "measured", "measured_refused", xml,
@@ -64,7 +63,7 @@ std::vector<LoadingCase> missing_files() {
   add_missing(
       cases, "sky", "sky_refused", xml,
       xml_scene("\n<emitter type=\"envmap\"><string name=\"filename\" value=\"absent.exr\"/></emitter>"),
-      "a grey sky", 4);
+      "a gray sky", 4);
   add_missing(cases, "ies", "ies_refused", xml,
               xml_scene("\n<emitter type=\"ies\"><string name=\"filename\" value=\"absent.ies\"/></emitter>"),
               "IES profile not found: ", 4);
@@ -92,7 +91,7 @@ std::vector<LoadingCase> missing_files() {
   add_missing(
       cases, "pbrt_sky", "pbrt_sky_refused", pbrt,
       pbrt_scene("\nLightSource \"infinite\" \"string filename\" \"absent.exr\" \"float illuminance\" 9"),
-      "a grey sky", 4);
+      "a gray sky", 4);
   add_missing(
       cases, "pbrt_goniometric", "pbrt_goniometric_refused", pbrt,
       pbrt_scene("\nLightSource \"goniometric\" \"string filename\" \"absent.exr\" \"float power\" 9"),

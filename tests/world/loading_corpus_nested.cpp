@@ -154,7 +154,7 @@ std::vector<LoadingCase> nested_without_end() {
 
 std::vector<LoadingCase> odd_scenes() {
   // A disk whose reflectance is the spectrum texture "s" of that text on line 4; "f" is a float texture,
-  // "c" one of colours.
+  // "c" one of colors.
   const auto textured = [](const std::string& text) {
     return pbrt_scene(
         "Texture \"f\" \"float\" \"checkerboard\" Texture \"c\" \"spectrum\" \"checkerboard\"\n"
@@ -178,7 +178,7 @@ std::vector<LoadingCase> odd_scenes() {
       {"scale_float_texture", pbrt, textured("\"scale\" \"texture tex\" \"c\" \"texture scale\" \"f\""),
        loads},
       {"scale_rgb", pbrt, textured("\"scale\" \"texture tex\" \"c\" \"rgb scale\" [ 1 0 0 ]"), loads},
-      {"scale_colour_texture", pbrt, textured("\"scale\" \"texture tex\" \"c\" \"texture scale\" \"c\""),
+      {"scale_color_texture", pbrt, textured("\"scale\" \"texture tex\" \"c\" \"texture scale\" \"c\""),
        loads},
       {"scale_rgb_by_float", pbrt, textured("\"scale\" \"rgb tex\" [ .5 .5 1 ] \"float scale\" 0.5"), loads},
       {"scale_rgb_by_texture", pbrt, textured("\"scale\" \"rgb tex\" [ .5 .5 1 ] \"texture scale\" \"f\""),
@@ -193,13 +193,13 @@ std::vector<LoadingCase> odd_scenes() {
       {"scale_tex_is_float", pbrt, textured("\"scale\" \"texture tex\" \"f\""), refused,
        "it is a float texture", 4},
       {"scale_text", pbrt, textured("\"scale\" \"texture tex\" \"c\" \"string scale\" \"f\""), refused,
-       "a colour is needed", 4},
+       "a color is needed", 4},
       {"mix_amount_float", pbrt, textured("\"mix\" \"texture tex1\" \"c\" \"float amount\" 0.5"), loads},
       {"mix_amount_texture", pbrt, textured("\"mix\" \"texture tex1\" \"c\" \"texture amount\" \"f\""),
        loads},
       {"mix_floats", pbrt, textured("\"mix\" \"float tex1\" 0 \"float tex2\" 1 \"texture amount\" \"f\""),
        loads},
-      {"mix_amount_colour", pbrt, textured("\"mix\" \"texture amount\" \"c\""), refused,
+      {"mix_amount_color", pbrt, textured("\"mix\" \"texture amount\" \"c\""), refused,
        "it is a spectrum texture", 4},
       {"constant_float", pbrt, textured("\"constant\" \"float value\" 0.5"), loads},
       {"constant_rgb", pbrt, textured("\"constant\" \"rgb value\" [ 1 0 0 ]"), loads},
@@ -216,7 +216,7 @@ std::vector<LoadingCase> odd_scenes() {
            "filename\" \"good.pfm\""),
        loads},
       {"float_scaled", pbrt, number("\"scale\" \"texture tex\" \"f\" \"float scale\" 0.5"), loads},
-      {"float_scaled_by_colour", pbrt, number("\"scale\" \"texture tex\" \"f\" \"texture scale\" \"c\""),
+      {"float_scaled_by_color", pbrt, number("\"scale\" \"texture tex\" \"f\" \"texture scale\" \"c\""),
        refused, "it is a spectrum texture", 4},
       {"float_rgb", pbrt, number("\"constant\" \"rgb value\" [ 1 0 0 ]"), refused, "\"value\"", 4},
       {"far_away", xml, place("<translate x=\"1e38\"/><scale value=\"10\"/>"), refused, "", 4},
@@ -238,7 +238,7 @@ std::vector<LoadingCase> odd_scenes() {
       {"unknown_bsdf", xml, cube("<bsdf type=\"velvet\"/>"), warned, "velvet", 4},
       {"texture_of_bsdf", xml,
        cube("<bsdf type=\"diffuse\"><bsdf type=\"diffuse\" name=\"reflectance\"/></bsdf>"), refused,
-       "a colour or a texture", 4},
+       "a color or a texture", 4},
       {"pbrt_empty_object", pbrt, pbrt_scene("ObjectBegin \"o\" ObjectEnd\nObjectInstance \"o\""), loads},
       {"pbrt_own_instance", pbrt, pbrt_scene("ObjectBegin \"o\"\nObjectInstance \"o\"\nObjectEnd"), refused,
        "objects cannot hold instances", 4},

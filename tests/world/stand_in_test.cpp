@@ -8,7 +8,7 @@ namespace {
 
 using namespace test;
 
-TEST(StandIn, IsMagentaAndGreyAsAColourAndHarmlessAsANumber) {
+TEST(StandIn, IsMagentaAndGrayAsAColorAndHarmlessAsANumber) {
   auto desc = empty_scene();
   add_emitter(desc, sd::PointLightDesc{});
   sd::BitmapTextureDesc absent;
@@ -32,14 +32,14 @@ TEST(StandIn, IsMagentaAndGreyAsAColourAndHarmlessAsANumber) {
   const auto material = [&](std::size_t placement) -> const scatter::Material& {
     return set.materials[w.rays().placements()[placement].material];
   };
-  const auto& colour = std::get<scatter::DiffuseMaterial>(material(0)).reflectance;
-  ASSERT_GE(colour.texture, 0);
-  // Neighbouring squares of eight along an edge.
-  const Rgb a = set.textures.lookup(colour.texture, {{1.0f / 16, 1.0f / 16}}),
-            b = set.textures.lookup(colour.texture, {{3.0f / 16, 1.0f / 16}});
-  const Rgb magenta = a.g == 0 ? a : b, grey = a.g == 0 ? b : a;
+  const auto& color = std::get<scatter::DiffuseMaterial>(material(0)).reflectance;
+  ASSERT_GE(color.texture, 0);
+  // Neighboring squares of eight along an edge.
+  const Rgb a = set.textures.lookup(color.texture, {{1.0f / 16, 1.0f / 16}}),
+            b = set.textures.lookup(color.texture, {{3.0f / 16, 1.0f / 16}});
+  const Rgb magenta = a.g == 0 ? a : b, gray = a.g == 0 ? b : a;
   EXPECT_EQ(magenta, Rgb(0.9f, 0, 0.9f));
-  EXPECT_EQ(grey, Rgb(0.3f));
+  EXPECT_EQ(gray, Rgb(0.3f));
   const auto& mask = std::get<scatter::MaskMaterial>(material(1));
   EXPECT_EQ(mask.opacity.texture, -1);
   EXPECT_EQ(mask.opacity.value, 1);

@@ -149,7 +149,7 @@ TEST(Surface, TheOutsideIsTheSideOfTheVertexNormals) {
   const auto hit = w.intersect(ray({1, 0.5f, 5}, {0, 0, -1}));
   ASSERT_TRUE(hit);
   expect_near(hit->point.ng, {0, 0, 1});
-  // Weights ¼, ¼, ½: (0.3, 0, 0.9) normalised.
+  // Weights ¼, ¼, ½: (0.3, 0, 0.9) normalized.
   expect_near(hit->point.shading.n, normalize(Vec3f{0.3f, 0, 0.9f}));
   EXPECT_EQ(w.emitted(*hit, {0, 0, 1}), Rgb(1));
   EXPECT_EQ(w.emitted(*hit, {0, 0, -1}), Rgb(0));

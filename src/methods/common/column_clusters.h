@@ -41,7 +41,7 @@ class ColumnClusters {
  private:
   // For a representative drawn with probability q_j/s: Σ_clusters (s Σ_j ‖x_j‖²/q_j − ‖Σ_j x_j‖²), the
   // expected squared error of the sum of the points x; with q_j = ‖x_j‖ it is the cost that the clustering
-  // minimises. One number per coordinate of the points. `Reader`: reader(j, out) writes them as floats.
+  // minimizes. One number per coordinate of the points. `Reader`: reader(j, out) writes them as floats.
   template <typename Reader>
   std::vector<double> expected_squares(const linalg::Partition& partition, std::size_t dimension,
                                        const Reader& reader) const;

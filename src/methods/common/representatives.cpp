@@ -13,10 +13,10 @@ namespace lumirank::methods {
 
 namespace {
 
-constexpr double kNoColor = 1e-3;  // of the scalar norm: less than that is no colour to scale
+constexpr double kNoColor = 1e-3;  // of the scalar norm: less than that is no color to scale
 constexpr double kMaxGain = 4;     // of a channel over the scalar factor
 
-// The cluster's colour over the representative's, per channel.
+// The cluster's color over the representative's, per channel.
 Rgb color_gain(const linalg::ColumnSketch& sketch, std::span<const std::uint32_t> members, std::uint32_t j) {
   const double own = static_cast<double>(sketch.norm(j));
   double all = 0;

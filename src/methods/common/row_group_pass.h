@@ -130,7 +130,7 @@ using NextRowGroup = std::function<std::optional<std::size_t>()>;
 // Calls worker(next) on all threads; each asks for units until there are none. What a worker has taken it
 // finishes, and then has written (not added to) sums[i] of all rows i of the unit. Where the pass ends early
 // and rows are not covered, rows of other units take the sum of the nearest row that is finished (by number:
-// rows are kept in an order in which neighbours lie close), and so do previews. Rows of no unit are left
+// rows are kept in an order in which neighbors lie close), and so do previews. Rows of no unit are left
 // alone.
 RowGroupResult run_workers(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
                            const std::function<void(const NextRowGroup&)>& worker);

@@ -1,6 +1,6 @@
 #include "methods/common/visibility_predictors.h"
 
-// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialised variables.
+// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialized variables.
 #include <algorithm>
 
 #include "linalg/least_squares.h"
@@ -13,17 +13,17 @@ float share_visible(int sum) {
 }
 }  // namespace
 
-float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> seen_by_row) {
+float nearest_probability(const SampledNeighbors::Few& nearest, std::span<const std::uint8_t> seen_by_row) {
   int sum = 0;
   for (const std::uint32_t i : nearest)
-    if (i != SampledNeighbours::kNone) sum += seen_by_row[i];
+    if (i != SampledNeighbors::kNone) sum += seen_by_row[i];
   return share_visible(sum);
 }
 
-void nearest_probabilities(std::span<const SampledNeighbours::Few> nearest,
+void nearest_probabilities(std::span<const SampledNeighbors::Few> nearest,
                            std::span<const std::uint8_t> seen_by_row, std::span<float> out) {
-  // With three samples or more, every point has three neighbours.
-  if (nearest.empty() || nearest[0].back() == SampledNeighbours::kNone) {
+  // With three samples or more, every point has three neighbors.
+  if (nearest.empty() || nearest[0].back() == SampledNeighbors::kNone) {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = nearest_probability(nearest[i], seen_by_row);
     return;
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "methods/common/hilbert_neighbours.h"
+#include "methods/common/hilbert_neighbors.h"
 
 namespace lumirank::methods {
 
@@ -25,14 +25,14 @@ namespace seen {
 inline constexpr std::uint8_t kUnknown = 0, kHidden = 16, kVisible = 17;
 }
 
-// k nearest neighbours: one of the nearest sampled points, drawn at random, has the answer; so the
+// k nearest neighbors: one of the nearest sampled points, drawn at random, has the answer; so the
 // probability is the mean of those that are known, ½ if none is.
-float nearest_probability(const SampledNeighbours::Few& nearest, std::span<const std::uint8_t> seen_by_row);
-void nearest_probabilities(std::span<const SampledNeighbours::Few> nearest,
+float nearest_probability(const SampledNeighbors::Few& nearest, std::span<const std::uint8_t> seen_by_row);
+void nearest_probabilities(std::span<const SampledNeighbors::Few> nearest,
                            std::span<const std::uint8_t> seen_by_row, std::span<float> out);
 
 // A plane through space between what is lit and what is not: least squares of ±1 over homogeneous
-// coordinates, with 10⁻³ of their mean square as regularisation, because points may all lie in a plane.
+// coordinates, with 10⁻³ of their mean square as regularization, because points may all lie in a plane.
 // (Equation 9 should read W = (XᵀX)⁻¹XᵀY, and equation 10 P(V = 1) = clamp(½ + f/2, 0, 1), for then f = 1
 // means surely visible.)
 struct SeparatingPlane {
@@ -60,7 +60,7 @@ class PlaneSums {
 };
 
 // Naive Bayes over five columns side by side: P(v | i) ∝ P(v) P(i | v), where the feature i is the stretch of
-// 16 rows that row i lies in (rows must be in an order in which neighbours are near); Laplace-smoothed.
+// 16 rows that row i lies in (rows must be in an order in which neighbors are near); Laplace-smoothed.
 class BayesCounts {
  public:
   static constexpr std::size_t kStretch = 16, kColumns = 5;

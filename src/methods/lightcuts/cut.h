@@ -25,7 +25,7 @@ struct CutLimits {
 // parent.
 struct CutNode {
   LightTree::Node node = 0;
-  std::uint32_t children = 0;  // the first of two neighbours; 0: on the cut
+  std::uint32_t children = 0;  // the first of two neighbors; 0: on the cut
   Rgb entry;                   // of the representative, not scaled
   float value = 0;             // luminance of scale × entry
 };

@@ -1,7 +1,7 @@
 // Lightcuts (Walter et al. 2005): for every receiver a cut of its own through the light tree, refined until
 // no node's bound exceeds 2 % of the receiver's total; and between such cuts, reconstruction cuts.
 //
-// Our deviations: cuts are refined in rounds of a few nodes and beside those of neighbours (cut.h). Bounds
+// Our deviations: cuts are refined in rounds of a few nodes and beside those of neighbors (cut.h). Bounds
 // and totals are compared by luminance. Receivers between cuts are reconstructed in blocks of 4×4 pixels with
 // as many further cuts as their surfaces need; materials are alike where they answer some lights alike
 // (probe_responses.h); an interpolated node is shaded anew by its representative's unoccluded entry, where
@@ -43,7 +43,7 @@ const Fields<LightcutsSettings> kLightcutsFields{
                                    &LightcutsSettings::max_nodes, 1, kMaxColumns),
     choice_field<LightcutsSettings>(
         {"reconstruction", "",
-         "on: few receivers have a cut of their own; what cuts in the neighbourhood agree in is "
+         "on: few receivers have a cut of their own; what cuts in the neighborhood agree in is "
          "interpolated between them. off: every receiver has its own; many times slower."},
         &LightcutsSettings::reconstruction, {"on", "off"}),
     number_field<LightcutsSettings>({"interpolation-tolerance", "",
@@ -71,7 +71,7 @@ struct LightcutsWorkspace {
 };
 using LightcutsPool = WorkspacePool<LightcutsWorkspace>;
 
-// Stretches of rows, which are kept in an order in which neighbours lie close.
+// Stretches of rows, which are kept in an order in which neighbors lie close.
 RowGroups stretches(std::size_t rows) {
   std::vector<Index> all(rows);
   std::iota(all.begin(), all.end(), 0u);

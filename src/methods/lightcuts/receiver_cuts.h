@@ -14,7 +14,7 @@ namespace lumirank::methods {
 
 class ReceiverCuts {
  public:
-  // Side by side: neighbours, which ask for like entries, so that rays and lanes find company.
+  // Side by side: neighbors, which ask for like entries, so that rays and lanes find company.
   static constexpr std::size_t kTogether = 8;
 
   ReceiverCuts(const matrix::LightingMatrix& matrix, const LightTree& tree, const CutLimits& limits) {

@@ -8,7 +8,7 @@ namespace {
 // Where the samples' sums are larger than this many times what the representative would give unoccluded, it
 // tells nothing of the others.
 constexpr float kTypical = 4;
-// The most that texture or shading may brighten a node between two neighbouring receivers.
+// The most that texture or shading may brighten a node between two neighboring receivers.
 constexpr float kMaxChange = 8;
 }  // namespace
 

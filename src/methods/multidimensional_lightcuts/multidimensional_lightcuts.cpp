@@ -36,7 +36,7 @@ const Fields<MultidimensionalSettings> kMultidimensionalFields{
     count_field<MultidimensionalSettings>({"max-pairs", "pairs", "Of a pixel's cut; time is in proportion."},
                                           &MultidimensionalSettings::max_pairs, 1, kMaxColumns)};
 
-// Pixels whose cuts are refined side by side: neighbours, which ask for like entries.
+// Pixels whose cuts are refined side by side: neighbors, which ask for like entries.
 constexpr std::size_t kPixelsTogether = 8;
 // Of a first guess: cuts are found, not set.
 constexpr double kPairEntriesPerRow = 300;

@@ -3,7 +3,7 @@
 // these (column_pass).
 //
 // Deviations: blocks of rows follow a Hilbert curve; columns that vanish on all sampled rows are sampled by
-// power instead of ignored; colour averaging is bounded; without given numbers, rows and columns are found
+// power instead of ignored; color averaging is bounded; without given numbers, rows and columns are found
 // automatically (run.h).
 #include "methods/row_column/row_column.h"
 

@@ -54,7 +54,7 @@ class Calibration {
   }
 
  private:
-  // Three neighbours give four probabilities; samples by powers of two; none, few, half, many, all visible.
+  // Three neighbors give four probabilities; samples by powers of two; none, few, half, many, all visible.
   static constexpr std::size_t kLevels = 4, kSizes = 8, kMixtures = 5;
   // Of a kind's light, that a level's own probability counts for: one that was hardly tested keeps it.
   static constexpr double kPrior = 0.01;

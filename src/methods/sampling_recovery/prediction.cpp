@@ -49,7 +49,7 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, std::
   const SliceEntries::Slot& slot = entries.slot(column.slot);
   const auto order = entries.patterns().order(slot.pattern);
   const auto known = entries.seen(column.slot);
-  const auto neighbours =
+  const auto neighbors =
       entries.patterns().nearest_of_next(slot.pattern, column.trained, slot.sampled - column.trained);
   const SeparatingPlane fitted = column.plane.fit();
   std::array<float, 3> wrong{};
@@ -59,7 +59,7 @@ bool Prediction::validate(const RecoverySettings& settings, std::size_t c, std::
     const std::uint32_t row = order[k];
     if (known[row] == seen::kUnknown) continue;
     const float v = known[row] == seen::kVisible ? 1.0f : 0.0f;
-    const std::array<float, 3> p{nearest_probability(neighbours[k - column.trained], known),
+    const std::array<float, 3> p{nearest_probability(neighbors[k - column.trained], known),
                                  fitted.probability(entries.rows().points()[row]),
                                  counts_.probability(c, row / BayesCounts::kStretch)};
     const double light = static_cast<double>(e[c * entries.rows().size() + row]) /

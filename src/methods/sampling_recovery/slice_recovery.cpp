@@ -90,7 +90,7 @@ void SliceRecovery::tally_separation() {
     tally_.residual[k] += history[std::min(k, history.size() - 1)];
 }
 
-// Entries whose neighbourhood is full of errors that the separation found (section 6.2).
+// Entries whose neighborhood is full of errors that the separation found (section 6.2).
 void SliceRecovery::request_where_dense() {
   if (!settings_.separation || !settings_.correction) return;
   const std::size_t rows = entries().rows().size(), columns = separated_.size();

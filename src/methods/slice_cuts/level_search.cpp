@@ -110,8 +110,8 @@ class LevelSearch {
   }
   bool may_try() const { return tried_.size() < kMaxTrials && !options_.sinks.cancelled(); }
 
-  // The neighbours in one direction of both ladders.
-  std::vector<Trial> neighbours(SliceLevel at, bool finer) {
+  // The neighbors in one direction of both ladders.
+  std::vector<Trial> neighbors(SliceLevel at, bool finer) {
     std::vector<Trial> found;
     const auto step = [&](std::size_t k, std::size_t size) -> std::optional<std::size_t> {
       if (finer) return k + 1 < size ? std::optional(k + 1) : std::nullopt;
@@ -126,7 +126,7 @@ class LevelSearch {
   // Steps to where the error falls most for what it costs more.
   void refine(Trial at, double target) {
     while (at.error > target && affordable(at)) {
-      const auto options = neighbours(at.level, true);
+      const auto options = neighbors(at.level, true);
       if (options.empty()) return;
       const auto gain = [&](const Trial& t) {
         return (at.error - t.error) / std::max(t.cost - at.cost, 1.0);
@@ -140,7 +140,7 @@ class LevelSearch {
   void coarsen(Trial at, double target) {
     while (affordable(at)) {
       std::optional<Trial> next;
-      for (const Trial& t : neighbours(at.level, false))
+      for (const Trial& t : neighbors(at.level, false))
         if (t.error <= target && t.cost < at.cost && (!next || t.cost < next->cost)) next = t;
       if (!next) return;
       best_ = at = *next;

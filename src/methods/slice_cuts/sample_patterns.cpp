@@ -44,7 +44,7 @@ std::span<const SamplePatterns::Few> SamplePatterns::nearest(std::size_t pattern
     if (p.counts[k] == count) return p.tables[k]->of();
   const std::size_t k = p.counts.size();
   p.counts.push_back(static_cast<std::uint32_t>(count));
-  if (k == p.tables.size()) p.tables.push_back(std::make_unique<SampledNeighbours>());
+  if (k == p.tables.size()) p.tables.push_back(std::make_unique<SampledNeighbors>());
   // From the table of the most samples that are among these, if there is one.
   std::size_t before = k;
   for (std::size_t t = 0; t < k; ++t)
@@ -77,7 +77,7 @@ std::span<const SamplePatterns::Few> SamplePatterns::nearest_of_next(std::size_t
   for (std::size_t r = count; r < std::min(count + more, p.order.size()); ++r) {
     const Vec2f at = points[p.order[r]];
     Few few;
-    few.fill(SampledNeighbours::kNone);
+    few.fill(SampledNeighbors::kNone);
     std::array<float, 3> distance{kInfinity, kInfinity, kInfinity};
     for (std::size_t s = 0; s < count; ++s) {
       const Vec2f q = points[p.order[s]];

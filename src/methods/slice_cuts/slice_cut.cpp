@@ -13,9 +13,9 @@ using Node = LightTree::Node;
 
 namespace {
 
-// A cluster's neighbours are the clusters below an ancestor of it that has up to four times its power (the
+// A cluster's neighbors are the clusters below an ancestor of it that has up to four times its power (the
 // supplement with the paper's own range search was not at hand), of these the nearest eight on either side.
-constexpr float kNeighbourPower = 4;
+constexpr float kNeighborPower = 4;
 constexpr std::size_t kReach = 8;
 
 }  // namespace
@@ -98,7 +98,7 @@ void SliceCut::sample_members(const SliceCutSettings& settings, SliceEntries& en
   }
 }
 
-// Equation 7: Γ = (greatest M·G among the neighbours) · (whether any sample of theirs is visible) · power.
+// Equation 7: Γ = (greatest M·G among the neighbors) · (whether any sample of theirs is visible) · power.
 // Where none is, the paper's factor is 0; but hidden are only so many representatives, each one light of
 // many. By the rule of succession the next would be visible with probability 1/(number + 2).
 void SliceCut::contributions(const SliceCutSettings& settings, SliceEntries& entries) {
@@ -115,7 +115,7 @@ void SliceCut::contributions(const SliceCutSettings& settings, SliceEntries& ent
     const float power = mean(tree_.emitted(node));
     Node above = node;
     for (Node p = tree_.parent(node);
-         p != LightTree::kNone && tree_.power(p) <= kNeighbourPower * tree_.power(node); p = tree_.parent(p))
+         p != LightTree::kNone && tree_.power(p) <= kNeighborPower * tree_.power(node); p = tree_.parent(p))
       above = p;
     const std::uint32_t begin = place(above),
                         end = begin + static_cast<std::uint32_t>(tree_.columns(above).size());

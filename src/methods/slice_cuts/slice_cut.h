@@ -1,7 +1,7 @@
 // Which clusters of lights a slice's reduced matrix has: first a cut by bounds, then splitting by the
 // greatest contribution (Huo et al. 2015, section 4.2 and algorithm 1).
 //
-// Where we deviate: the paper splits node after node and takes the contributions of the neighbours of each
+// Where we deviate: the paper splits node after node and takes the contributions of the neighbors of each
 // anew; here all clusters above the threshold are split together, then all contributions and the threshold
 // are taken anew, until nothing is above it. The result does not depend on an order, and costs O(log) rounds.
 // The rows that equation 7 takes its maximum over are those that `entries` was started with: some of the
@@ -34,7 +34,7 @@ class SliceCut {
 
   // Evaluates representatives in `entries`, as far as it takes, and samples them for sparse visibility.
   void choose(const SliceCutSettings& settings, SliceEntries& entries);
-  // In the order of the tree: neighbours are near.
+  // In the order of the tree: neighbors are near.
   std::span<const Cluster> clusters() const { return clusters_; }
   // What the cut by bounds took of the last choose().
   double seconds_of_bounds() const { return seconds_of_bounds_; }

@@ -40,7 +40,7 @@ void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index
   });
   group_first_.clear();
   group_points_.clear();
-  Vec3f normal{}, centre{};
+  Vec3f normal{}, center{};
   for (std::size_t k = 0; k < placed_.size();) {
     group_first_.push_back(static_cast<std::uint32_t>(k));
     const Placed pixel = placed_[k];
@@ -55,14 +55,14 @@ void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index
       if (!features.normal.empty()) normal = normal + features.normal[i];
     }
     group_points_.push_back(sum / count);
-    centre = centre + group_points_.back();
+    center = center + group_points_.back();
   }
   const std::size_t rows = group_points_.size();
   group_first_.push_back(static_cast<std::uint32_t>(placed_.size()));
-  centre = centre / std::max(static_cast<float>(rows), 1.0f);
+  center = center / std::max(static_cast<float>(rows), 1.0f);
   double spread = 0;
   for (Vec3f& p : group_points_) {
-    p = p - centre;
+    p = p - center;
     spread += static_cast<double>(length_squared(p));
   }
   const auto unit =

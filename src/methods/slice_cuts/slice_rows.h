@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "matrix/lighting_matrix.h"
-#include "methods/common/hilbert_neighbours.h"
+#include "methods/common/hilbert_neighbors.h"
 
 namespace lumirank::methods {
 

@@ -43,7 +43,7 @@ const Fields<StochasticSettings> kStochasticFields{
         {"pilot", "columns", "By which the total is estimated beforehand, where an error bound needs it."},
         &StochasticSettings::pilot, 1, kMaxColumns)};
 
-// Receivers whose entries are asked for together: neighbours.
+// Receivers whose entries are asked for together: neighbors.
 constexpr std::size_t kRowsTogether = 16;
 
 struct WalkWorkspace {

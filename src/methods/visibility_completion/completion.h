@@ -13,7 +13,7 @@ namespace lumirank::methods {
 
 struct CompletionSettings {
   std::size_t spacing = 16;  // one of so many rows is sampled in every column
-  double checks = 0.03;      // share of what neighbours agree on that is sampled all the same
+  double checks = 0.03;      // share of what neighbors agree on that is sampled all the same
 };
 
 // Work space for one slice at a time; one thread.
@@ -23,7 +23,7 @@ class Completion {
 
   explicit Completion(matrix::EntryReader& reader) : reader_(reader) {}
 
-  // The slice's rows, their places (NestedLevels' points; neighbours follow each other) and its columns.
+  // The slice's rows, their places (NestedLevels' points; neighbors follow each other) and its columns.
   // `key`: of the random numbers.
   struct Slice {
     std::span<const matrix::Index> rows;

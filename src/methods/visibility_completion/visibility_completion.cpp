@@ -24,7 +24,7 @@ const Fields<Settings>& fields() {
            &Settings::spacing, 1, kMaxRows),
        number_field<Settings>(
            {"checks", "",
-            "Share of the entries on which neighbours agree that gets a shadow ray all the same."},
+            "Share of the entries on which neighbors agree that gets a shadow ray all the same."},
            &Settings::checks, 0, 1)});
   return all;
 }

@@ -7,7 +7,7 @@
 //
 // E is the directional albedo of D·V. At grazing angles it exceeds 1 for roughness √α below 0.43; the
 // denominator, ours, is for that. What is below keeps 1 - share·min(1, max(E(wo), E(wi))), share being the
-// largest channel of the sheen's colour, so that both together are reciprocal and make no light. E falls with
+// largest channel of the sheen's color, so that both together are reciprocal and make no light. E falls with
 // the cosine: the larger of two is that of the smaller cosine.
 #pragma once
 
@@ -20,7 +20,7 @@ inline constexpr float kMinSheenRoughness = 0.07f;
 
 struct SheenAlbedo {
   float raw = 0;   // E
-  float held = 0;  // albedo of f with a colour of 1: at most 1
+  float held = 0;  // albedo of f with a color of 1: at most 1
 };
 // Bilinear in the roughness and in the square root of the cosine. Thread-safe; built at first use.
 SheenAlbedo sheen_albedo(float roughness, float cosine);

@@ -33,7 +33,7 @@ Rgb sheen_value(LobeView view, Vec3f wo, Vec3f wi) {
 
 constexpr float kCoatF0 = 0.04f, kCoatMaskAlpha = 0.25f;
 
-// The generalised Trowbridge-Reitz distribution with exponent 1; alpha_u is its width.
+// The generalized Trowbridge-Reitz distribution with exponent 1; alpha_u is its width.
 // sin² + α²·cos² instead of 1 + (α² - 1)·cos²: near the pole the latter has no digits left.
 float gtr1_d(Vec3f m, float alpha) {
   const float a2 = alpha * alpha;

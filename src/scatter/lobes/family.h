@@ -12,7 +12,7 @@ namespace lumirank::scatter {
 
 struct AngleRange;  // bound_terms.h
 
-// The vectorised formulas of transport/pairs/lobe_lanes.cpp. A family without one is evaluated closure by
+// The vectorized formulas of transport/pairs/lobe_lanes.cpp. A family without one is evaluated closure by
 // closure.
 enum class LaneForm : std::uint8_t {
   none,

@@ -1,16 +1,16 @@
 // Kajiya and Kay's hair (1989, section "A new lighting model for hair"): a diffuse part in proportion to the
 // sine of the angle between fibre and light, and a specular part about the cone of mirror directions. Theirs
-// makes energy; here both are normalised and reciprocal.
+// makes energy; here both are normalized and reciprocal.
 //
 // Local x runs along the fibre. For a direction w, x = w·x is the sine of its latitude φ and c = √(1 - x²)
 // the sine of its angle to the fibre, which is also the share of the fibre's width that light along w meets.
 // So the cosine of a surface is replaced by c: radiance = ∫ f·L·c dω, and of the light from wi a fibre sends
 // on the share ∫ f·c dω ≤ 1 (Marschner et al. 2003, section 3).
 //
-// diffuse   f = color/π²: ∫ c dω = 2π·∫cos²φ dφ = π², so the share is exactly the colour.
+// diffuse   f = color/π²: ∫ c dω = 2π·∫cos²φ dφ = π², so the share is exactly the color.
 // specular  f = color · cosⁿ(φo + φi) / (2π·W(n)·max(co, ci)²), W(n) = ∫ cosⁿδ dδ over ±π/2; 0 beyond 90°.
 //           The share is ∫ cosⁿ(δ)/W · co²/max(co, ci)² dδ ≤ 1, symmetric in wo and wi, and near 1 for sharp
-//           lobes but at grazing light. (Kajiya and Kay have neither normalisation nor denominator.)
+//           lobes but at grazing light. (Kajiya and Kay have neither normalization nor denominator.)
 #include <cmath>
 
 #include "base/warp.h"

@@ -40,7 +40,7 @@ std::optional<Rgb> named_illuminant(const std::string& name) {
 }
 
 std::optional<float> named_glass(const std::string& name) {
-  // Indices at the d line from the catalogues of Schott and Hikari.
+  // Indices at the d line from the catalogs of Schott and Hikari.
   static const std::map<std::string, float> known = {
       {"glass-BK7", 1.5168f}, {"glass-BAF10", 1.6700f}, {"glass-FK51A", 1.4866f}, {"glass-LASF9", 1.8503f},
       {"glass-F5", 1.6034f},  {"glass-SF5", 1.6727f},   {"glass-SF10", 1.7283f},  {"glass-SF11", 1.7847f}};

@@ -1,4 +1,4 @@
-// Typed arrays of numbers in a glTF file, with all that they may be: strided, normalised, sparse.
+// Typed arrays of numbers in a glTF file, with all that they may be: strided, normalized, sparse.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class Accessors {
  public:
   Accessors(const Element& root, Buffers& buffers) : accessors_(root.list("accessors")), buffers_(buffers) {}
 
-  // The accessor that `user` (an index in the file) names, as floats: normalised integers within [0, 1] or
+  // The accessor that `user` (an index in the file) names, as floats: normalized integers within [0, 1] or
   // [-1, 1], others by their value. InputError at `user` unless it has from `least` to `most` components.
   Numbers floats(const Element& user, std::size_t min_components, std::size_t max_components);
   // Unsigned integers of one component (indices); with `most` = 4 also of four (joints).

@@ -7,7 +7,7 @@ int Reader::sheen_bsdf(const Element& material, const Surface& s, const Element&
   ColorInput color = color_input(sheen, "sheenColorFactor", Rgb(0), "sheenColorTexture");
   if (color.texture == kNone && color.value == Rgb(0)) return opaque_bsdf(material, s);
   if (color.texture == kNone && max_component(color.value) > 1) {
-    warn(sheen.at("sheenColorFactor"), "a sheen colour above 1", "1");
+    warn(sheen.at("sheenColorFactor"), "a sheen color above 1", "1");
     color.value = clamp_below(color.value, 1.0f);
   }
   SheenDesc cloth;

@@ -1,6 +1,6 @@
 // Metallic-roughness materials and their extensions as sums of BSDFs.
 //
-// glTF 2.0, appendix B: a metal is GGX with Schlick's Fresnel factor from the base colour: "principled" with
+// glTF 2.0, appendix B: a metal is GGX with Schlick's Fresnel factor from the base color: "principled" with
 // metallic 1 is that formula. A dielectric is a GGX reflection of index 1.5 over a diffuse base: "plastic",
 // lossless, whose base gets what is not reflected, so that nothing is lost or made; the appendix's own base ·
 // (1 - F(half vector)) sends back more than it receives at grazing angles.
@@ -46,7 +46,7 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
       tint = color_input(*specular, "specularColorFactor", Rgb(1), "specularColorTexture");
       const float max_tint = max_component(tint.value);
       if (tint.texture == kNone && max_tint > 1) {
-        warn(specular->at("specularColorFactor"), "a specular colour above 1", "1");
+        warn(specular->at("specularColorFactor"), "a specular color above 1", "1");
         tint.value = clamp_below(tint.value, 1.0f);
       }
     }
@@ -150,7 +150,7 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
   if (const auto ior = material.extension("KHR_materials_ior")) {
     s.ior = ior->real("ior", 1.5f, 0, 100);
     if (s.ior == 0) {
-      warn(*ior, "an index of refraction of 0 (a mirror of any colour)", "1.5");
+      warn(*ior, "an index of refraction of 0 (a mirror of any color)", "1.5");
       s.ior = 1.5f;
     } else if (s.ior < 1) {
       ior->at("ior").fail("is less than 1", "give 1 or more, or 0");
@@ -158,7 +158,7 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
   }
 
   if (material.extension("KHR_materials_unlit")) {
-    warn(material, "an unlit material", "a black surface that shines in its base colour");
+    warn(material, "an unlit material", "a black surface that shines in its base color");
     out.bsdf = add_bsdf(material, DiffuseDesc{{Rgb(0)}});
     out.emission = s.base;
   } else {

@@ -90,7 +90,7 @@ std::shared_ptr<const MeshData> Reader::build_mesh(const Element& primitive, int
         mesh.colors.push_back({c[0], c[1], c[2]});
         clear = clear || (n.components == 4 && c[3] < 1);
       }
-      if (clear) warn(*colors, "the alpha of vertex colours", "1");
+      if (clear) warn(*colors, "the alpha of vertex colors", "1");
     }
     if (const auto indices = primitive.find("indices")) {
       corners = accessors_.integers(*indices);

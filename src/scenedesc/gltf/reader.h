@@ -69,10 +69,10 @@ class Reader {
   std::vector<Transform> joint_matrices(const Node& node);
   void morph(const Element& primitive, const std::vector<float>& weights, MeshData& mesh);
   void skin(const Element& primitive, const std::vector<Transform>& joints, MeshData& mesh);
-  // draco.cpp: positions, normals, uvs, colours and indices from KHR_draco_mesh_compression.
+  // draco.cpp: positions, normals, uvs, colors and indices from KHR_draco_mesh_compression.
   void decode_draco(const Element& primitive, const Element& extension, int uv_set, MeshData& mesh);
 
-  // materials.cpp: `colored` if the primitive has vertex colours. kNone: the default material.
+  // materials.cpp: `colored` if the primitive has vertex colors. kNone: the default material.
   struct BuiltMaterial {
     int bsdf = kNone;
     int uv_set = 0;

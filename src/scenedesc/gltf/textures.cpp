@@ -153,7 +153,7 @@ ColorInput Reader::color_input(const Element& object, const std::string& factor,
   if (const auto given = object.find(factor)) {
     const std::size_t count = given->size();
     if (count != 3 && count != 4)
-      given->fail("has " + std::to_string(count) + " numbers", "a colour has 3, or 4");
+      given->fail("has " + std::to_string(count) + " numbers", "a color has 3, or 4");
     for (int k = 0; k < 3; ++k) {
       const Element channel = given->item(static_cast<std::size_t>(k));
       value[k] = channel.real();

@@ -25,7 +25,7 @@ struct IesData {
   std::vector<float> candela;
   int lamps = 1;
   float lumens_per_lamp = 0;  // -1: absolute photometry
-  Vec3f opening;              // width, length and height in metres as the file states them
+  Vec3f opening;              // width, length and height in meters as the file states them
   // How the output depends on the luminaire's tilt. Empty: it does not.
   std::vector<float> tilt_angles, tilt_factors;
   std::string tilt_file;  // of TILT=FILE, as long as it has not been read

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxAngles = 100000;
 constexpr float kMinStep = 1e-3f;  // degrees
-constexpr float kMetresPerFoot = 0.3048f;
+constexpr float kMetersPerFoot = 0.3048f;
 
 struct Line {
   std::string_view text;
@@ -95,7 +95,7 @@ void read_photometry(NumberStream& in, IesData& out) {
   const int verticals = in.count("the number of vertical angles", 2, kMaxAngles);
   const int horizontals = in.count("the number of horizontal angles", 1, kMaxAngles);
   out.type = static_cast<IesData::Type>(in.count("the photometric type", 1, 3));
-  const float unit = in.count("the type of units", 1, 2) == 1 ? kMetresPerFoot : 1.0f;
+  const float unit = in.count("the type of units", 1, 2) == 1 ? kMetersPerFoot : 1.0f;
   for (int k = 0; k < 3; ++k) out.opening[k] = unit * in.number("the size of the luminous opening");
   const float ballast = in.positive("the ballast factor");
   // Up to 1991 a factor; later editions reserve the place or keep a code there.

@@ -83,7 +83,7 @@ MeshData mend(MeshData mesh, const SourceLocation& where) {
   bad.clear();
   for (std::uint32_t k = 0; k < mesh.colors.size(); ++k)
     if (Rgb& c = mesh.colors[k]; !is_finite(c)) c = Rgb(0), bad.push_back(k);
-  note(mesh, bad, "vertex colour that is not finite", "vertex colours that are not finite", "black");
+  note(mesh, bad, "vertex color that is not finite", "vertex colors that are not finite", "black");
   mend_normals(mesh);
   return mesh;
 }
@@ -101,7 +101,7 @@ MeshData check_mesh(MeshData mesh, const SourceLocation& where) {
   };
   check_list(mesh.normals.size(), "normals");
   check_list(mesh.uvs.size(), "texture coordinates");
-  check_list(mesh.colors.size(), "vertex colours");
+  check_list(mesh.colors.size(), "vertex colors");
   if (mesh.indices.size() % 3 != 0)
     throw InputError(where, "the mesh has " + std::to_string(mesh.indices.size()) + " indices",
                      "three make a triangle");

@@ -10,7 +10,7 @@ namespace lumirank::scenedesc {
 
 // Every corner must be the number of a vertex; the caller has checked that. Leaves degenerate triangles
 // out, gives normals that are missing (zero or not finite) the direction of the faces around them, replaces
-// uvs and colours that are not finite by 0, and notes what it did to vertices in use; there may be no
+// uvs and colors that are not finite by 0, and notes what it did to vertices in use; there may be no
 // triangle left. InputError if a vertex is not finite.
 MeshData checked(MeshData mesh, const std::string& filename);
 

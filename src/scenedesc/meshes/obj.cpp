@@ -1,4 +1,4 @@
-// Wavefront OBJ. Read are v (with colours if they follow), vt, vn and f; groups, materials, lines, points and
+// Wavefront OBJ. Read are v (with colors if they follow), vt, vn and f; groups, materials, lines, points and
 // smoothing groups are passed over. Polygons are cut into a fan from their first corner, which is right for
 // convex ones only.
 #include <algorithm>
@@ -130,7 +130,7 @@ class ObjParser {
     for (int i = 0; i < 3; ++i) p[i] = number<double>("a vertex");
     if (!is_finite(static_cast<Vec3f>(p))) fail("a vertex is not finite");
     positions_.push_back(p);
-    // What may follow: a weight, or a colour, or both.
+    // What may follow: a weight, or a color, or both.
     std::array<float, 4> rest{};
     std::size_t n = 0;
     while (n < rest.size() && !at_line_end()) rest[n++] = number("a vertex");

@@ -11,7 +11,7 @@
 namespace lumirank::scenedesc {
 namespace {
 
-// Where the values of one vertex go: slot k of 11 (position, normal, uv, colour), or nowhere.
+// Where the values of one vertex go: slot k of 11 (position, normal, uv, color), or nowhere.
 struct VertexLayout {
   static constexpr int kSlots = 11;
   std::vector<int> slot;  // per property; -1: skipped
@@ -19,7 +19,7 @@ struct VertexLayout {
   bool normal = false, uv = false, color = false;
 };
 
-// Integer colours span [0, 1].
+// Integer colors span [0, 1].
 float color_scale(PlyType type) {
   switch (type) {
     case PlyType::int8:

@@ -30,7 +30,7 @@ Rgb parse_triple(const Element& element) {
   const std::string& text = element.require("value");
   const bool encoded = element.tag == "srgb";
   Rgb rgb;
-  // A hexadecimal code is what a colour picker shows: it is sRGB in either element.
+  // A hexadecimal code is what a color picker shows: it is sRGB in either element.
   if (parse_hex(text, rgb)) return srgb_to_linear(rgb);
   const auto list = parse_list(text, element.where, "value of <" + element.tag + ">");
   if (list.size() != 1 && list.size() != 3)
@@ -135,9 +135,9 @@ Rgb parse_color(const Element& element, Intent intent) {
   else if (element.tag == "blackbody")
     value = parse_blackbody(element);
   else
-    value = Rgb(parse_float(element.require("value"), element.where, "the colour"));
-  if (!is_finite(value)) throw InputError(element.where, "the colour overflows");
-  // Spectra of saturated colours lie outside Rec. 709: their negative parts are cut off, as Mitsuba does.
+    value = Rgb(parse_float(element.require("value"), element.where, "the color"));
+  if (!is_finite(value)) throw InputError(element.where, "the color overflows");
+  // Spectra of saturated colors lie outside Rec. 709: their negative parts are cut off, as Mitsuba does.
   const bool from_spectrum =
       element.tag == "blackbody" || element.find("filename") ||
       (element.tag == "spectrum" && element.require("value").find(':') != std::string::npos);

@@ -53,7 +53,7 @@ SpotLightDesc spot_light(Reader& reader, Plugin& p) {
   return out;
 }
 
-// Lumirank's own: <emitter type="ies"> with "filename", "to_world", "scale", "color" and "tilt". Colours are
+// Lumirank's own: <emitter type="ies"> with "filename", "to_world", "scale", "color" and "tilt". Colors are
 // taken relative to their luminance, so that they leave the illuminance as it is.
 // Empty if the profile is missing: nothing tells how bright the light is.
 std::optional<ProfileLightDesc> ies_light(Reader& reader, Plugin& p) {
@@ -91,7 +91,7 @@ DirectionalLightDesc directional_light(Plugin& p) {
 decltype(EmitterDesc::kind) environment_map(Reader& reader, Plugin& p) {
   EnvironmentMapDesc out;
   const std::string name = p.required_text("filename");
-  const auto file = reader.file(name, p.where_of("filename"), "environment map", "a grey sky");
+  const auto file = reader.file(name, p.where_of("filename"), "environment map", "a gray sky");
   out.filename = file.name;
   out.scale = not_negative(p, "scale", 1);
   out.to_world = p.regular_transform();

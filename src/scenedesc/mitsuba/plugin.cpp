@@ -189,7 +189,7 @@ std::optional<ColorInput> Plugin::color_if(const std::string& name, Intent inten
   } else if (target.tag == "texture") {
     out.texture = reader_.build_texture(target);
   } else {
-    wrong_kind(*child, "a colour or a texture");
+    wrong_kind(*child, "a color or a texture");
   }
   return out;
 }

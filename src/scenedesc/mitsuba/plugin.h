@@ -44,9 +44,9 @@ class Plugin {
 
   std::optional<ColorInput> color_if(const std::string& name, Intent intent);
   ColorInput color(const std::string& name, Rgb fallback, Intent intent);
-  // A constant colour where no texture can be used: a texture is warned of and its stand-in used.
+  // A constant color where no texture can be used: a texture is warned of and its stand-in used.
   Rgb constant_color(const std::string& name, Rgb fallback, Intent intent);
-  // A colour of a surface: a negative one is an error, one above 1 a warning.
+  // A color of a surface: a negative one is an error, one above 1 a warning.
   ColorInput reflectance(const std::string& name, Rgb fallback);
   ColorInput radiance(const std::string& name, Rgb fallback);
   FloatInput scalar(const std::string& name, float fallback);

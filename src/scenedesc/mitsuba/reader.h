@@ -39,7 +39,7 @@ class Reader {
   void build_sensor(const Element& element);
   void build_integrator(const Element& element);
 
-  // <texture type="uniform|srgb|blackbody|d65|…"> and <spectrum type="…"> hold one colour.
+  // <texture type="uniform|srgb|blackbody|d65|…"> and <spectrum type="…"> hold one color.
   bool constant_texture(const Element& element, Intent intent, Rgb& value);
   AreaEmitterDesc area_emitter(const Element& element);
 

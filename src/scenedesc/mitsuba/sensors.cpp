@@ -114,21 +114,21 @@ std::pair<float, FieldAxis> field_of_view(Plugin& p, const FilmDesc& film) {
     return {horizontal_fov(*fov, kept, film.width, film.height), kept};
   }
   // The focal length of a 35 mm camera, whose picture is 36 × 24 mm: the diagonals are made the same.
-  float millimetres = 50;
+  float millimeters = 50;
   if (p.has("focal_length")) {
     const auto value = p.text_or_number("focal_length");
     if (const float* number = std::get_if<float>(&value)) {
-      millimetres = *number;
+      millimeters = *number;
     } else {
       std::string text = std::get<std::string>(value);
       if (const auto unit = text.find("mm"); unit != std::string::npos) text = text.substr(0, unit);
-      millimetres = parse_float(text, p.where_of("focal_length"), "\"focal_length\" of " + p.title());
+      millimeters = parse_float(text, p.where_of("focal_length"), "\"focal_length\" of " + p.title());
     }
   }
-  if (!(millimetres > 0))
+  if (!(millimeters > 0))
     throw InputError(p.where_of("focal_length"), "\"focal_length\" of " + p.title() + " is not positive",
                      "50mm, say");
-  const double across = 2 * std::atan(std::hypot(36.0, 24.0) / (2 * millimetres)) * 180 / M_PI;
+  const double across = 2 * std::atan(std::hypot(36.0, 24.0) / (2 * millimeters)) * 180 / M_PI;
   return {horizontal_fov(across, FieldAxis::diagonal, film.width, film.height), FieldAxis::diagonal};
 }
 

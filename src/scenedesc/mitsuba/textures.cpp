@@ -44,7 +44,7 @@ WrapMode wrap_mode(Reader& reader, Plugin& p, const std::string& name, WrapMode 
   return WrapMode::clamp;
 }
 
-// 0.6: one channel as a grey texture; masks are made so from the alpha of a picture.
+// 0.6: one channel as a gray texture; masks are made so from the alpha of a picture.
 TextureChannel channel(Plugin& p) {
   const auto name = p.text("channel");
   if (!name) return TextureChannel::rgb;
@@ -150,7 +150,7 @@ int Reader::build_texture(const Element& element) {
     VertexColorTextureDesc out;
     if (const auto name = p.text("name")) out.attribute = *name;
     if (out.attribute != "vertex_color" && out.attribute != "vertex_Color")
-      warn(p.where(), "the mesh attribute \"" + out.attribute + "\"", "the vertex colours");
+      warn(p.where(), "the mesh attribute \"" + out.attribute + "\"", "the vertex colors");
     const Rgb scale = p.constant_color("scale", Rgb(1), Intent::index);
     index = add_texture(p.id(), p.where(), out);
     if (!(scale == Rgb(1))) index = add_texture(p.id(), p.where(), ScaleTextureDesc{{Rgb(0), index}, scale});
@@ -158,13 +158,13 @@ int Reader::build_texture(const Element& element) {
     p.ignore_all();
     index = add_texture(p.id(), p.where(), ScaleTextureDesc{{constant, kNone}, Rgb(1)});
   } else {
-    // The mean of the two colours that most procedural textures have, if they are given.
+    // The mean of the two colors that most procedural textures have, if they are given.
     Rgb gray(0.5f);
     if (p.has("color0") && p.has("color1"))
       gray = lerp(p.constant_color("color0", gray, Intent::reflectance),
                   p.constant_color("color1", gray, Intent::reflectance), 0.5f);
     warn(p.where(), "the texture \"" + p.type() + "\"",
-         p.has("color0") && p.has("color1") ? "the mean of its colours" : "the gray 0.5");
+         p.has("color0") && p.has("color1") ? "the mean of its colors" : "the gray 0.5");
     p.ignore_all();
     index = add_texture(p.id(), p.where(), ScaleTextureDesc{{gray, kNone}, Rgb(1)});
   }

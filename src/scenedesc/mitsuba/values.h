@@ -1,4 +1,4 @@
-// Texts of attributes as numbers, lists, colours and transforms; every failure names the file, the line and
+// Texts of attributes as numbers, lists, colors and transforms; every failure names the file, the line and
 // the text.
 #pragma once
 

@@ -94,15 +94,15 @@ void Reader::read_film(Params& p, const std::string& type) {
   iso_ = p.positive("iso", 100);
   const std::string sensor = p.text("sensor", "cie1931");
   if (sensor != "cie1931")
-    warn(p.where_of("sensor"), "the colours of the sensor \"" + sensor + "\"", "the CIE 1931 observer");
+    warn(p.where_of("sensor"), "the colors of the sensor \"" + sensor + "\"", "the CIE 1931 observer");
   if (p.number("whitebalance", 0) != 0 && sensor == "cie1931")
-    warn(p.where_of("whitebalance"), "white balance", "colours as they are");
+    warn(p.where_of("whitebalance"), "white balance", "colors as they are");
   if (p.has("maxcomponentvalue"))
     warn(p.where_of("maxcomponentvalue"), "a limit of the values of samples", "no limit");
   p.ignore({"filename", "diagonal", "savefp16", "maxcomponentvalue", "coordinatesystem", "nbuckets",
             "lambdamin", "lambdamax"});
   if (state_.space != ColorSpace::srgb)
-    warn(p.where(), "pictures in another colour space than sRGB's", "linear Rec. 709");
+    warn(p.where(), "pictures in another color space than sRGB's", "linear Rec. 709");
 }
 
 void Reader::read_filter(Params& p, const std::string& type) {

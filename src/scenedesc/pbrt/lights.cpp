@@ -100,7 +100,7 @@ decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform&
   if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
   EnvironmentMapDesc out;
   const auto file =
-      reader.named_file(p.text("filename", ""), p.where_of("filename"), "environment map", "a grey sky");
+      reader.named_file(p.text("filename", ""), p.where_of("filename"), "environment map", "a gray sky");
   out.filename = file.name;
   out.scale = scale;
   if (file.missing)

@@ -234,7 +234,7 @@ int MaterialMaker::hair() {
     sigma = *given;
     p_.ignore({"reflectance", "color", "eumelanin", "pheomelanin"});
   } else if (const char* name = p_.has("reflectance") ? "reflectance" : "color"; p_.has(name)) {
-    // The colour of dense hair, inverted (section 4.2 of that paper). A textured one cannot be.
+    // The color of dense hair, inverted (section 4.2 of that paper). A textured one cannot be.
     painted = color(name, 0.5f);
     const float b = beta_n, width = 5.969f - 0.215f * b + 2.532f * b * b - 10.73f * b * b * b +
                                     5.574f * b * b * b * b + 0.245f * b * b * b * b * b;

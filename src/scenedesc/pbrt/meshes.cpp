@@ -88,7 +88,7 @@ std::optional<ShapeKind> bilinear_mesh(Reader& reader, Params& p) {
   const auto corners = indices(p, control.positions.size(), 4);
   if (p.has("emissionfilename")) {
     p.ignore({"emissionfilename"});
-    reader.warn(p.where_of("emissionfilename"), "pictures of the light that patches emit", "its mean colour");
+    reader.warn(p.where_of("emissionfilename"), "pictures of the light that patches emit", "its mean color");
   }
   p.numbers("faceIndices", ParamType::integer);
   MeshData mesh;

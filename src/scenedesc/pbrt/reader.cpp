@@ -224,7 +224,7 @@ bool Reader::option_directive(Tokens& tokens, const Token& word) {
     const std::string text = take_text(tokens, word, "name");
     const auto space = color_space(text);
     if (!space)
-      throw InputError(where, "the colour space " + in_quotes(text) + " is not known",
+      throw InputError(where, "the color space " + in_quotes(text) + " is not known",
                        "srgb, dci-p3, rec2020 and aces2065-1 are");
     state_.space = *space;
   } else {

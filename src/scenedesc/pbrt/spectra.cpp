@@ -120,12 +120,11 @@ std::optional<Rgb> constant_color(Params& p, const char* name, Intent intent) {
   if (parameter->type == ParamType::blackbody) {
     if (parameter->numbers.size() != 1 || !(parameter->numbers[0] > 0))
       p.fail(name, "is not one temperature above 0", "give it in kelvin");
-    if (intent != Intent::illuminant)
-      p.fail(name, "is a blackbody, and not of a light", "give an rgb colour");
+    if (intent != Intent::illuminant) p.fail(name, "is a blackbody, and not of a light", "give an rgb color");
     return unit_luminance(p, name, not_negative(blackbody_to_rgb(static_cast<float>(parameter->numbers[0]))));
   }
   if (parameter->type != ParamType::spectrum)
-    p.fail(name, "is declared as " + parameter->type_name + ", and a colour is needed",
+    p.fail(name, "is declared as " + parameter->type_name + ", and a color is needed",
            std::string("write \"rgb ") + name + "\" or \"spectrum " + name + "\"");
   if (!parameter->texts.empty() && intent == Intent::illuminant)
     if (const auto known = named_illuminant(parameter->texts[0])) return not_negative(*known);
@@ -165,7 +164,7 @@ ConductorIndex conductor_index(Params& p, const char* eta, const char* k) {
                     : *constant_color(p, name, Intent::unbounded);
   };
   for (const char* name : {eta, k})
-    if (p.is_texture(name)) p.fail(name, "is a texture", "give a colour or a spectrum");
+    if (p.is_texture(name)) p.fail(name, "is a texture", "give a color or a spectrum");
   p.find(eta), p.find(k);
   const auto n_of = spectral(eta), k_of = spectral(k);
   ConductorIndex out{constant(eta, n_of), constant(k, k_of)};

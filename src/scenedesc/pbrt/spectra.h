@@ -2,7 +2,7 @@
 //
 // pbrt renders with spectra and integrates its film with the CIE 1931 observer such that a light of
 // "rgb" (1, 1, 1) has the pixel value (1, 1, 1): lights are divided by the luminance of their own spectrum,
-// an rgb colour by that of its colour space's white (DiffuseAreaLight, PointLight, … of pbrt-v4, lights.cpp).
+// an rgb color by that of its color space's white (DiffuseAreaLight, PointLight, … of pbrt-v4, lights.cpp).
 // So every light given as a spectrum, a blackbody or a name has luminance 1 before its "scale", and only its
 // chromaticity counts.
 #pragma once
@@ -23,9 +23,9 @@ std::optional<ColorSpace> color_space(const std::string& name);
 enum class Intent {
   albedo,      // between 0 and 1
   unbounded,   // 0 or more: indices of refraction, absorption
-  illuminant,  // of luminance 1 unless it is an rgb colour
+  illuminant,  // of luminance 1 unless it is an rgb color
 };
-// `rgb` in that space as Rec. 709; whites stay white for albedos, and keep their own colour for lights.
+// `rgb` in that space as Rec. 709; whites stay white for albedos, and keep their own color for lights.
 Rgb from_space(Rgb rgb, ColorSpace space, Intent intent);
 
 // A parameter of type rgb, spectrum or blackbody; empty if it is not there or is a texture. Numbers out of
@@ -42,7 +42,7 @@ struct ConductorIndex {
 // normal incidence is that of the spectra under D65.
 ConductorIndex conductor_index(Params& p, const char* eta, const char* k);
 
-// Nanometres and values from a text file of pairs.
+// Nanometers and values from a text file of pairs.
 SampledSpectrum spectrum_file(Params& p, const char* name, const std::string& file);
 
 }  // namespace lumirank::scenedesc::pbrt

@@ -117,7 +117,7 @@ FloatInput Reader::scalar(Params& p, const char* name, FloatInput fallback) {
 
 namespace {
 
-// One code for both types of textures: a float is the grey of a colour.
+// One code for both types of textures: a float is the gray of a color.
 class TextureMaker {
  public:
   TextureMaker(Reader& reader, Params& p, const std::string& name, bool spectrum)
@@ -141,14 +141,14 @@ class TextureMaker {
       throw InputError(p_.where(), "the texture class " + in_quotes(kind) + " is not known",
                        "constant, imagemap, scale, mix, directionmix, checkerboard, bilerp, dots, fbm, "
                        "wrinkled, windy, marble and ptex are");
-    reader_.warn(p_.where(), "the texture \"" + kind + "\"", "the grey 0.5");
+    reader_.warn(p_.where(), "the texture \"" + kind + "\"", "the gray 0.5");
     p_.ignore_all();
     return {Rgb(0.5f), kNone};
   }
 
  private:
   static ColorInput gray(FloatInput f) { return {Rgb(f.value), f.texture}; }
-  // A number where a colour is meant is its grey.
+  // A number where a color is meant is its gray.
   ColorInput input(const char* name, float fallback) {
     return spectrum_ && !is_number(name) ? reader_.color(p_, name, {Rgb(fallback), kNone}, Intent::unbounded)
                                          : gray(reader_.scalar(p_, name, {fallback}));
@@ -158,14 +158,14 @@ class TextureMaker {
     return p && (p->type == ParamType::number || p->type == ParamType::integer);
   }
   // "scale" of the class "scale" is a float or a float texture, for both types of textures
-  // (SpectrumScaledTexture::Create of pbrt-v4). Colours, which pbrt passes over, are taken at their word.
+  // (SpectrumScaledTexture::Create of pbrt-v4). Colors, which pbrt passes over, are taken at their word.
   ColorInput factor() {
     const Parameter* p = p_.find("scale");
     const bool texture = p && p->type == ParamType::texture;
     if (texture && p->texts.size() == 1 && reader_.is_float_texture(p->texts[0]))
       return gray(reader_.scalar(p_, "scale", {1}));
     const ColorInput out = input("scale", 1);
-    // A bump's height may be turned over; a colour below 0 is none.
+    // A bump's height may be turned over; a color below 0 is none.
     if (spectrum_ && out.texture == kNone && (out.value.r < 0 || out.value.g < 0 || out.value.b < 0))
       p_.fail("scale", "is negative", "give 0 or more");
     return out;

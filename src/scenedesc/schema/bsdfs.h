@@ -99,7 +99,7 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
   bool nonlinear = false;
   Distribution distribution = Distribution::beckmann;
   FloatInput alpha{0};
-  // The base gets all that the layer does not reflect (a colour of 1 loses nothing, whatever the roughness);
+  // The base gets all that the layer does not reflect (a color of 1 loses nothing, whatever the roughness);
   // otherwise what single scattering by a rough interface lets through: much less, if it is rough. glTF;
   // overrides nonlinear.
   bool lossless = false;

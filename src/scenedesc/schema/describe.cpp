@@ -70,7 +70,7 @@ std::string kind(const TextureDesc& t) {
           },
           [](const RootTextureDesc& x) { return "square root of " + show(x.input); },
           [](const ThresholdTextureDesc& x) { return show(x.input) + " cut at " + num(x.threshold); },
-          [](const VertexColorTextureDesc& x) { return "vertex colours \"" + x.attribute + "\""; }},
+          [](const VertexColorTextureDesc& x) { return "vertex colors \"" + x.attribute + "\""; }},
       t.kind);
 }
 

@@ -9,7 +9,7 @@
 
 namespace lumirank::scenedesc {
 
-// `name` taken from the folder of `file`, unless it is absolute; normalised.
+// `name` taken from the folder of `file`, unless it is absolute; normalized.
 std::string resolve_path(const std::string& name, const std::string& file);
 
 // The bytes of the file, and "" or what is wrong with it: "does not exist", say.

@@ -8,7 +8,7 @@
 namespace lumirank::scenedesc {
 namespace {
 
-// Unpolarised reflectance of a dielectric of relative index eta > 0 at cosine c.
+// Unpolarized reflectance of a dielectric of relative index eta > 0 at cosine c.
 double fresnel(double c, double eta) {
   const double s2 = (1 - c * c) / (eta * eta);
   if (s2 >= 1) return 1;

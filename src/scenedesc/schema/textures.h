@@ -55,7 +55,7 @@ struct BitmapTextureDesc {
   // true: values are used as they are; false: an 8-bit file is decoded from sRGB (float files are linear
   // anyway).
   bool raw = false;
-  TextureChannel channel = TextureChannel::rgb;  // another: that one alone, as grey (cut-outs by alpha)
+  TextureChannel channel = TextureChannel::rgb;  // another: that one alone, as gray (cut-outs by alpha)
   bool alpha_may_lack = false;                   // an alpha channel that the file does not have is 1
   FilterMode filter = FilterMode::bilinear;
   WrapMode wrap_u = WrapMode::repeat, wrap_v = WrapMode::repeat;
@@ -69,7 +69,7 @@ struct ScaleTextureDesc {
   ColorInput input;
   Rgb scale{1};
 };
-struct ProductTextureDesc {  // of two inputs, channel by channel: vertex colours and a texture, say
+struct ProductTextureDesc {  // of two inputs, channel by channel: vertex colors and a texture, say
   ColorInput a{Rgb(1)}, b{Rgb(1)};
 };
 struct MixTextureDesc {  // (1 - amount) · a + amount · b, channel by channel

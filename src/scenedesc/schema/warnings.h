@@ -23,7 +23,7 @@ void missing_file(SceneDesc& scene, const ReadOptions& options, const SourceLoca
 
 // What is shown in place of pictures; TextureBuilder and MaterialBuilder do it.
 inline constexpr const char* kMissingPicture =
-    "squares of magenta and grey (as a number 0.5, as an opacity 1, as bumps none)";
+    "squares of magenta and gray (as a number 0.5, as an opacity 1, as bumps none)";
 // In place of BSDFs whose file is missing.
 inline constexpr const char* kMissingBsdf = "diffuse, gray 0.5";
 // In place of environments: `scale` times this.

@@ -210,7 +210,7 @@ void MitsubaWriter::write(const NormalMapDesc& d, const BsdfDesc& desc, const st
 void MitsubaWriter::lossless_plastic(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id) {
   warn(desc.where, "rough plastic that loses nothing", "principled");
   if (d.specular_reflectance.texture != kNone || !(d.specular_reflectance.value == Rgb(1)))
-    warn(desc.where, "a colour of the reflection of plastic", "white");
+    warn(desc.where, "a color of the reflection of plastic", "white");
   open_bsdf("principled", id);
   color("base_color", d.diffuse_reflectance);
   // Its roughness is the square root of alpha.

@@ -41,7 +41,7 @@ bool MitsubaWriter::painted(int index) {
   return it->second.has_value();
 }
 
-// Mitsuba 3 has pictures, checkerboards and vertex colours; what is made of pictures alone is painted, and
+// Mitsuba 3 has pictures, checkerboards and vertex colors; what is made of pictures alone is painted, and
 // what is made of others is followed to one of these.
 MitsubaWriter::Input MitsubaWriter::resolve(int index) {
   const TextureDesc& t = scene_.textures[static_cast<std::size_t>(index)];

@@ -52,7 +52,7 @@ class PairBlock {
   // After set_row_tile. bound: of a_j·G·(π f_x)(π f_y) beside X, where the column stands for others as well.
   void set_column(std::uint32_t column_slot, float bound = kInfinity);
   void set_row(std::uint32_t row_slot);  // after set_column_tile
-  // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbour; `used`: a
+  // All pairs of a group have one class of receiver and one of light. Padding repeats a neighbor; `used`: a
   // bit per lane that is not padding, by group. The spans must last until E has been read.
   void set_list(std::span<const std::uint32_t> row_slots, std::span<const std::uint32_t> column_slots,
                 std::span<const std::uint16_t> used);

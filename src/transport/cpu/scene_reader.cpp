@@ -1,5 +1,5 @@
 // Entries of a SceneMatrix for one thread: a slice's receivers are copied together once, so that each column
-// then meets them as it meets a tile of neighbours.
+// then meets them as it meets a tile of neighbors.
 #include <algorithm>
 #include <numeric>
 #include <utility>

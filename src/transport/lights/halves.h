@@ -1,6 +1,6 @@
 // The two independent halves of the lights, from whose difference the error of too few lights is known.
 //
-// Samples belong to halves in turn. Each half is an evenly spread set by itself, randomised apart from the
+// Samples belong to halves in turn. Each half is an evenly spread set by itself, randomized apart from the
 // other: twice the sum over one half estimates the same as twice the sum over the other, independently.
 #pragma once
 

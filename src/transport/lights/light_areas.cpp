@@ -1,6 +1,6 @@
 #include "transport/lights/light_areas.h"
 
-#include "base/neighbour_distance.h"
+#include "base/neighbor_distance.h"
 
 namespace lumirank::transport {
 
@@ -19,9 +19,9 @@ void measure_areas(VirtualLights& lights, float scene_radius) {
   const auto all = static_cast<float>(which[0].size() + which[1].size());
   for (std::size_t h = 0; h < 2; ++h) {
     const float share = static_cast<float>(which[h].size()) / all;
-    const std::vector<Neighbour> found = neighbours(points[h], paths[h], kTenth);
+    const std::vector<Neighbor> found = neighbors(points[h], paths[h], kTenth);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const Neighbour& n = found[i];
+      const Neighbor& n = found[i];
       const float disc =
           n.count > 0 ? n.distance_squared / static_cast<float>(n.count) : square(scene_radius);
       lights.area[which[h][i]] = kPi * disc * share;

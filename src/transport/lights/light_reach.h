@@ -23,7 +23,7 @@ class LightReach {
 
  private:
   std::optional<PointTree> tree_;
-  int neighbour_ = 0;
+  int neighbor_ = 0;
   float scale_, radii_, extent_;
 };
 

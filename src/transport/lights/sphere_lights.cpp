@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/frame.h"
-#include "base/neighbour_distance.h"
+#include "base/neighbor_distance.h"
 #include "base/parallel.h"
 #include "base/random.h"
 
@@ -18,7 +18,7 @@ constexpr int kSectors = 8;
 // How far above the surface a light looks along it, in radii: past the facets of curved surfaces.
 constexpr float kLift = 0.05f;
 
-// Which part of the disc in the tangent plane other surfaces hide from its centre: what lies beyond them in
+// Which part of the disc in the tangent plane other surfaces hide from its center: what lies beyond them in
 // each sector.
 float hidden_share(const world::World& world, Vec3f p, Vec3f ng, float radius, Rng& rng) {
   const Frame frame = Frame::from_normal(ng);
@@ -41,9 +41,9 @@ float automatic_radius_scale(std::size_t surface_lights) {
   return static_cast<float>(std::max(1.0, std::cbrt(static_cast<double>(surface_lights) / kLightsAtOne)));
 }
 
-float sphere_radius(float neighbour_distance_squared, float scale, float extent) {
+float sphere_radius(float neighbor_distance_squared, float scale, float extent) {
   // Lights may coincide where particles are few; a sphere without extent would be a point with its spikes.
-  return std::clamp(scale * std::sqrt(neighbour_distance_squared), 1e-5f * extent, extent);
+  return std::clamp(scale * std::sqrt(neighbor_distance_squared), 1e-5f * extent, extent);
 }
 
 float make_spherical(VirtualLights& lights, const world::World& world, const SphereSettings& settings,
@@ -58,7 +58,7 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
   }
   lights.radius.assign(lights.size(), 0);
   lights.hidden.assign(lights.size(), 0);
-  const std::vector<Neighbour> found = neighbours(points, paths, kSphereNeighbour);
+  const std::vector<Neighbor> found = neighbors(points, paths, kSphereNeighbor);
   const float scale =
       settings.radius_scale > 0 ? settings.radius_scale : automatic_radius_scale(which.size());
   const float max_radius = world.bounds().radius();

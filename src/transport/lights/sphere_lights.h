@@ -21,10 +21,10 @@ struct SphereSettings {
 // (radius ∝ N^(-1/6); Silverman 1986, section 4.3). Never below 1.
 float automatic_radius_scale(std::size_t surface_lights);
 
-// Which neighbour's distance the radius follows.
-inline constexpr int kSphereNeighbour = 10;
-// The radius for the squared distance to that neighbour. `extent`: radius of the scene's bounding sphere.
-float sphere_radius(float neighbour_distance_squared, float scale, float extent);
+// Which neighbor's distance the radius follows.
+inline constexpr int kSphereNeighbor = 10;
+// The radius for the squared distance to that neighbor. `extent`: radius of the scene's bounding sphere.
+float sphere_radius(float neighbor_distance_squared, float scale, float extent);
 
 // Turns the surface lights into spherical ones: fills `radius` and `hidden`. The others stay points. Returns
 // the scale.

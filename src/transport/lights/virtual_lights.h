@@ -66,7 +66,7 @@ struct LightSettings {
 // sort.
 struct VirtualLights {
   std::vector<LightKind> kind;
-  std::vector<Vec3f> position;  // directional: where its ray to the scene's centre enters the bounding sphere
+  std::vector<Vec3f> position;  // directional: where its ray to the scene's center enters the bounding sphere
   std::vector<Vec3f> normal;    // unit; zero for omni. Surface: shading normal on the side of `incoming`
   // Geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds; zero on a fibre.
   std::vector<Vec3f> ng;

@@ -22,7 +22,7 @@ Lane schlick_weight(Lane cosine) {
   return m2 * m2 * m;
 }
 
-// scatter::ward_value; the constants of each variant are in the colour.
+// scatter::ward_value; the constants of each variant are in the color.
 Lane ward(const ScatterGroup& group, int variant, const LobeLanes& lobe, const LocalGeometry& at) {
   const Lane z2 = at.cos_m * at.cos_m;
   const Lane gaussian = exp_negative(-(shrunk(group, at.m, lobe) / z2));
@@ -123,7 +123,7 @@ Lane3 value(const ScatterGroup& group, const LobeForm& form, const LobeLanes& lo
   return lobe.color;
 }
 
-// Folds what a lobe makes of wo alone into its colour and its constants.
+// Folds what a lobe makes of wo alone into its color and its constants.
 void prepare(const ScatterGroup& group, const LobeForm& form, LobeLanes& lobe, const Lane3& wo, Lane cos_o) {
   const Lane inv_pi = splat(kInvPi);
   switch (form.lanes) {

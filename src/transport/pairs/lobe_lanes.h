@@ -6,7 +6,7 @@
 
 namespace lumirank::transport {
 
-// Folds what depends on wo alone into the lobes' colours and sets `answers`. All plain parameters are in
+// Folds what depends on wo alone into the lobes' colors and sets `answers`. All plain parameters are in
 // place.
 void prepare(ScatterGroup& group, LobeLanes* lobes, CoatLanes* coats);
 

@@ -56,7 +56,7 @@ inline float spot_share(const SpotShape& spot, float cosine, Vec3f direction) {
 // What depends on the places and normals alone.
 struct PairGeometry {
   LaneMask alive;     // E may differ from 0
-  Lane3 w;            // from receiver to light, not normalised; directional: towards the light
+  Lane3 w;            // from receiver to light, not normalized; directional: towards the light
   Lane inv, inv_d;    // 1/d², 1/d; directional: 1
   Lane cos_x, cos_y;  // cosines (of a fibre: sines), times d; see VirtualLights::power about ng
   Lane spot_cosine;   // spots: between the axis and the way to the receiver

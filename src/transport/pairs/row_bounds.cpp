@@ -35,7 +35,7 @@ Differences differences(const Bounds3f& rows, const Bounds3f& lights) {
 
 // At least the cosine between `axis` and any w in the box of differences. Turned so that the axis is z, w has
 // z of at most that of the box, and is off the axis by at least, or where all z are negative by at most, what
-// the box is in the direction across in which its centre lies. If all z are negative and `front`, no more is
+// the box is in the direction across in which its center lies. If all z are negative and `front`, no more is
 // said.
 float max_cosine(Vec3f axis, const Differences& d, bool front) {
   const auto extent = [&](Vec3f v) {
@@ -171,7 +171,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
       parts.far = std::min(parts.near, parts.far);
       const bool near = d.distance2 < square(kDiscReach * set.radius) * 1.00001f;
       if (near && rules_.spheres.indicator == SphereRules::Indicator::disc) has_cosine = false;
-      // The centre's distance alone says whether a row is inside, where light comes from everywhere.
+      // The center's distance alone says whether a row is inside, where light comes from everywhere.
       if (d.distance2 <= set.radius * set.radius * 1.00001f) cone.angle = kPi, cosine = 1;
       if (sharp_) factor *= 3.5f;  // see SceneMatrix::column_set()
     }

@@ -29,7 +29,7 @@ enum class Sides : std::uint8_t {
 
 struct ScatterForm {
   std::vector<LobeForm> lobes;
-  bool in_lanes = false;  // there is vectorised code for all lobes; otherwise scatter::eval_f, lane by lane
+  bool in_lanes = false;  // there is vectorized code for all lobes; otherwise scatter::eval_f, lane by lane
   bool microfacets = false;  // some lobe needs the half vector
   bool anisotropic = false;  // some lobe needs the tangent
   bool coated = false;       // some lobe has a coat

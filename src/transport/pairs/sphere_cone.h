@@ -34,7 +34,7 @@ inline SphereGeometry sphere_geometry(const RowGroup& r, const ColumnGroup& c, c
   at.alive &= at.d2 > splat(1e-30f);
   const Lane reach = c.radius * splat(extras.spheres->rules.beyond);
   at.alive &= at.d2 >= reach * reach;
-  // The centre must be seen past both surfaces, and some of the cone past the shading normals' horizons.
+  // The center must be seen past both surfaces, and some of the cone past the shading normals' horizons.
   if (row_kind == kRowLambertian || extras.row_sides == Sides::front)
     at.alive &= (dot(r.ng, at.w) > Lane{}) & (dot(r.n, at.w) > -c.radius);
   if (column_kind == kColumnSphere || extras.column_sides == Sides::front)

@@ -17,7 +17,7 @@ struct SphereEnds {
   Vec3f incoming;             // back along the light's path
   Vec3f n;                    // the receiver's shading normal; of a fibre, the direction to the light
   Vec3f ng;                   // the light's geometric normal
-  Vec3f w;                    // from receiver to light, not normalised
+  Vec3f w;                    // from receiver to light, not normalized
   float radius;
   bool disc;  // I: whether l meets the disc; else cosθy. Never on a fibre
 };

@@ -34,11 +34,11 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
   const Lane cosine = sqrt(max(one - sin2, zero));
   const Lane below = select(at.inside, one, sin2 / (one + cosine));
   const Lane inv_d = one / sqrt(select(alive, at.d2, one));
-  const Lane3 centre = at.w * inv_d;
+  const Lane3 center = at.w * inv_d;
   // From inside, the hemisphere of the receiver; of a fibre, the one towards the light.
   const bool row_fibre = scattering_row && extras.row_sides == Sides::fibre;
   const Lane side = select(dot(r.n, at.w) < zero, -one, one);
-  const Lane3 axis = row_fibre ? centre : select(at.inside, r.n * side, centre);
+  const Lane3 axis = row_fibre ? center : select(at.inside, r.n * side, center);
 
   // How many directions, and who takes them.
   const bool by_cone = rules.samples == SphereRules::Samples::cone;
@@ -97,7 +97,7 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
     const VirtualLights& lights = *extras.spheres->lights;
     const scatter::Closure x = receivers.closure_at(i), y = lights.closure_at(j);
     const Vec3f facing =
-        row_fibre ? Vec3f{centre.x[k], centre.y[k], centre.z[k]} : Vec3f{r.n.x[k], r.n.y[k], r.n.z[k]};
+        row_fibre ? Vec3f{center.x[k], center.y[k], center.z[k]} : Vec3f{r.n.x[k], r.n.y[k], r.n.z[k]};
     const SphereEnds ends{x,
                           y,
                           receivers.wo[i],

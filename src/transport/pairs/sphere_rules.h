@@ -21,7 +21,7 @@ struct SphereRules {
   // overlap: samples by how many lobes' widths the cone has where they overlap; cone: by the cone alone, 100
   // for 2π.
   enum class Samples : std::uint8_t { overlap, cone } samples = Samples::overlap;
-  // In radii: receivers closer to the centre get nothing, because their light is traced (LightReach).
+  // In radii: receivers closer to the center get nothing, because their light is traced (LightReach).
   float beyond = 0;
 };
 

@@ -1,4 +1,4 @@
-// How receivers (or lights) are laid out for the kernels: tiles of neighbours, within a tile one run per
+// How receivers (or lights) are laid out for the kernels: tiles of neighbors, within a tile one run per
 // class, each run padded to whole groups of 16. A place in this layout is a "slot".
 #pragma once
 

@@ -25,7 +25,7 @@ struct ReceiverSettings {
   int max_splits = 3;
 };
 
-// Sorted in Morton order of 4×4-pixel tiles, so that neighbours in the image are neighbours in memory.
+// Sorted in Morton order of 4×4-pixel tiles, so that neighbors in the image are neighbors in memory.
 // A film sample may have several receivers (glass, smooth coatings) or none (it sees only emitters or the
 // background).
 struct Receivers {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
 constexpr float kMinEntry = 1e-17f;          // its square is a number still
-constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no colour to scale
+constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no color to scale
 constexpr float kMaxSliceGain = 4;           // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
@@ -44,10 +44,10 @@ const Fields<SliceLightSettings>& slice_light_fields() {
                       "Of all columns by the rows of all slices, before slices split them further; 0: three "
                       "tenths of `columns`."},
                      &S::initial_clusters, 0, kMaxColumns),
-      count_field<S>({"neighbours", "slices",
+      count_field<S>({"neighbors", "slices",
                       "Slices by whose rows one splits its clusters: the nearest, itself among them. Time of "
                       "the clustering is in proportion."},
-                     &S::neighbours, 1, 1000),
+                     &S::neighbors, 1, 1000),
       count_field<S>({"projection", "dimensions",
                       "Dimensions to which columns are projected for the clusters of all slices; 0: none."},
                      &S::projection, 0, 1000),
@@ -89,7 +89,7 @@ SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions&
   const bool all = read_rows(options, clock, row_sum);
   seconds_rows_ = clock.seconds() - begin;
   if (!all) return;
-  find_neighbours();
+  find_neighbors();
   cluster();
   seconds_clustering_ = clock.seconds() - begin - seconds_rows_;
   ready_ = true;
@@ -127,33 +127,32 @@ bool SliceLights::read_rows(const RunOptions& options, const RunClock& clock, st
 }
 
 // Slices are few thousands: all pairs.
-void SliceLights::find_neighbours() {
+void SliceLights::find_neighbors() {
   const std::size_t count = slices_.count();
   const SlicePoints points(matrix_.row_features(), matrix_.rows());
-  std::vector<SlicePoints::Point> centre(count);
+  std::vector<SlicePoints::Point> center(count);
   parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       std::array<double, 6> sum{};
       for (const Index i : slices_.slice(s))
         for (std::size_t d = 0; d < sum.size(); ++d) sum[d] += static_cast<double>(points[i][d]);
       for (std::size_t d = 0; d < sum.size(); ++d)
-        centre[s][d] = static_cast<float>(sum[d] / static_cast<double>(slices_.slice(s).size()));
+        center[s][d] = static_cast<float>(sum[d] / static_cast<double>(slices_.slice(s).size()));
     }
   });
-  neighbour_count_ = std::min(settings_.neighbours, count);
-  neighbours_.resize(count * neighbour_count_);
+  neighbor_count_ = std::min(settings_.neighbors, count);
+  neighbors_.resize(count * neighbor_count_);
   parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<float, std::uint32_t>> near(count);
     for (std::size_t s = begin; s < end; ++s) {
       for (std::size_t t = 0; t < count; ++t) {
         float squared = 0;
-        for (std::size_t d = 0; d < 6; ++d) squared += square(centre[s][d] - centre[t][d]);
+        for (std::size_t d = 0; d < 6; ++d) squared += square(center[s][d] - center[t][d]);
         near[t] = {t == s ? -1.0f : squared, static_cast<std::uint32_t>(t)};
       }
-      const auto last = near.begin() + static_cast<std::ptrdiff_t>(neighbour_count_);
+      const auto last = near.begin() + static_cast<std::ptrdiff_t>(neighbor_count_);
       std::partial_sort(near.begin(), last, near.end());
-      for (std::size_t k = 0; k < neighbour_count_; ++k)
-        neighbours_[s * neighbour_count_ + k] = near[k].second;
+      for (std::size_t k = 0; k < neighbor_count_; ++k) neighbors_[s * neighbor_count_ + k] = near[k].second;
     }
   });
 }
@@ -181,7 +180,7 @@ void SliceLights::cluster() {
 
 // The columns as the slice's rows see them, cluster by cluster; apart from them those that are zero there.
 void SliceLights::gather(std::size_t slice, Workspace& w) const {
-  const std::size_t rows = neighbour_count_;
+  const std::size_t rows = neighbor_count_;
   w.splitter.clear(rows);
   w.zero.assign(dark_.begin(), dark_.end());
   w.entries.resize(rows * kSliceStretch);
@@ -190,7 +189,7 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
   for (std::size_t begin = 0; begin < initial_.order.size(); begin += kSliceStretch) {
     const std::size_t size = std::min(kSliceStretch, initial_.order.size() - begin);
     for (std::size_t r = 0; r < rows; ++r)
-      rows_.read(neighbours_[slice * rows + r], begin, std::span(w.entries).subspan(r * kSliceStretch, size));
+      rows_.read(neighbors_[slice * rows + r], begin, std::span(w.entries).subspan(r * kSliceStretch, size));
     for (std::size_t k = 0; k < size; ++k) {
       if (begin + k == initial_.starts[cluster]) {
         w.splitter.begin_cluster();
@@ -257,8 +256,8 @@ void SliceLights::set_turn(std::size_t columns, std::uint64_t turn) {
 void SliceLights::choose(std::size_t slice, Workspace& w) const {
   w.chosen.clear();
   float max_sum = 0;
-  for (std::size_t r = 0; r < neighbour_count_; ++r)
-    max_sum = std::max(max_sum, norm2(known().rows()[neighbours_[slice * neighbour_count_ + r]].sum));
+  for (std::size_t r = 0; r < neighbor_count_; ++r)
+    max_sum = std::max(max_sum, norm2(known().rows()[neighbors_[slice * neighbor_count_ + r]].sum));
   w.max_added = static_cast<float>(settings_.max_sum_share) * max_sum;
   if (settings_.columns >= matrix_.columns()) {
     for (std::size_t j = 0; j < matrix_.columns(); ++j) w.chosen.push_back({static_cast<Index>(j)});

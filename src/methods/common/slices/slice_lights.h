@@ -30,7 +30,7 @@ namespace lumirank::methods {
 struct SliceLightSettings {
   std::size_t columns = 300;         // of a slice
   std::size_t initial_clusters = 0;  // 0: three tenths of `columns`
-  std::size_t neighbours = 16;       // slices by which one is refined, itself among them
+  std::size_t neighbors = 16;        // slices by which one is refined, itself among them
   std::size_t slice_rows = 0;        // at most; 0: as many as cost a slice as much as its row
   std::size_t projection = 50;
   ColorMode color = ColorMode::averaged;
@@ -96,7 +96,7 @@ class SliceLights {
 
  private:
   bool read_rows(const RunOptions& options, const RunClock& clock, std::span<Rgb> row_sum);
-  void find_neighbours();
+  void find_neighbors();
   void cluster();
   void gather(std::size_t slice, Workspace& workspace) const;
   matrix::ScaledColumn draw(std::size_t slice, std::size_t cluster, double local_sum, double global_sum,
@@ -113,9 +113,9 @@ class SliceLights {
   struct Norms {
     float all, channel[3];  // the channels relative to all
   };
-  std::vector<Norms> norms_;               // over all rows, per column
-  std::vector<std::uint32_t> neighbours_;  // per slice, itself first
-  std::size_t neighbour_count_ = 0;
+  std::vector<Norms> norms_;              // over all rows, per column
+  std::vector<std::uint32_t> neighbors_;  // per slice, itself first
+  std::size_t neighbor_count_ = 0;
   double seconds_rows_ = 0, seconds_clustering_ = 0;
   bool ready_ = false;
 };

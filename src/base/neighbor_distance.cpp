@@ -1,4 +1,4 @@
-#include "base/neighbour_distance.h"
+#include "base/neighbor_distance.h"
 
 #include <numeric>
 
@@ -7,9 +7,8 @@
 
 namespace lumirank {
 
-std::vector<Neighbour> neighbours(std::span<const Vec3f> points, std::span<const std::uint32_t> group,
-                                  int k) {
-  std::vector<Neighbour> result(points.size());
+std::vector<Neighbor> neighbors(std::span<const Vec3f> points, std::span<const std::uint32_t> group, int k) {
+  std::vector<Neighbor> result(points.size());
   if (points.size() < 2) return result;
   std::vector<std::uint32_t> own;
   if (group.empty()) {

@@ -1,4 +1,4 @@
-// Nearest neighbours by Hilbert's curve: points in the plane are sorted along it, and neighbours are found by
+// Nearest neighbors by Hilbert's curve: points in the plane are sorted along it, and neighbors are found by
 // walking along shifted copies of it (Liao, Lopez and Leutenegger 2001; Huo et al. 2015, section 5.1).
 #pragma once
 
@@ -33,7 +33,7 @@ class HilbertCurves {
 };
 
 // For every point its nearest sampled points, nearest first.
-class SampledNeighbours {
+class SampledNeighbors {
  public:
   static constexpr std::size_t kCount = 3;
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -45,7 +45,7 @@ class SampledNeighbours {
   // Without any sample yet.
   void clear(std::size_t points);
   // The same after more points have been sampled; of these it misses none. `before` may be this one.
-  void extend(const SampledNeighbours& before, const HilbertCurves& curves,
+  void extend(const SampledNeighbors& before, const HilbertCurves& curves,
               std::span<const std::uint32_t> more);
   std::span<const Few> of() const { return nearest_; }  // kNone where there are fewer samples
 

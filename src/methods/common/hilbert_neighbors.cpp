@@ -1,4 +1,4 @@
-#include "methods/common/hilbert_neighbours.h"
+#include "methods/common/hilbert_neighbors.h"
 
 #include <algorithm>
 
@@ -9,8 +9,8 @@ namespace lumirank::methods {
 
 namespace {
 
-using Few = SampledNeighbours::Few;
-constexpr std::size_t kCount = SampledNeighbours::kCount;
+using Few = SampledNeighbors::Few;
+constexpr std::size_t kCount = SampledNeighbors::kCount;
 constexpr std::size_t kSortStretch = 16;
 
 // Inserts a candidate among the nearest unless it is there already.
@@ -65,12 +65,12 @@ void HilbertCurves::build(std::span<const Vec2f> points) {
   }
 }
 
-void SampledNeighbours::clear(std::size_t points) {
+void SampledNeighbors::clear(std::size_t points) {
   nearest_.assign(points, Few{kNone, kNone, kNone});
   distance_.assign(points, {kInfinity, kInfinity, kInfinity});
 }
 
-void SampledNeighbours::find(const HilbertCurves& curves, std::span<const std::uint8_t> sampled) {
+void SampledNeighbors::find(const HilbertCurves& curves, std::span<const std::uint8_t> sampled) {
   const auto points = curves.points();
   clear(points.size());
   for (std::size_t c = 0; c < HilbertCurves::kCurves; ++c)
@@ -90,8 +90,8 @@ void SampledNeighbours::find(const HilbertCurves& curves, std::span<const std::u
     }
 }
 
-void SampledNeighbours::extend(const SampledNeighbours& before, const HilbertCurves& curves,
-                               std::span<const std::uint32_t> more) {
+void SampledNeighbors::extend(const SampledNeighbors& before, const HilbertCurves& curves,
+                              std::span<const std::uint32_t> more) {
   if (&before != this) {
     nearest_ = before.nearest_;
     distance_ = before.distance_;
@@ -107,7 +107,7 @@ void SampledNeighbours::extend(const SampledNeighbours& before, const HilbertCur
       const float x = points[i].x - at.x, y = points[i].y - at.y;
       to_[i] = x * x + y * y;
     }
-    // Few points have a new neighbour: sixteen at a time are looked over for one.
+    // Few points have a new neighbor: sixteen at a time are looked over for one.
     for (std::size_t begin = 0; begin < n; begin += kSortStretch) {
       const std::size_t end = std::min(n, begin + kSortStretch);
       const float *const to = &to_[begin], *const farthest = &farthest_[begin];

@@ -1,4 +1,4 @@
-// Distances to the k-th nearest neighbour among many points.
+// Distances to the k-th nearest neighbor among many points.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace lumirank {
 
-struct Neighbour {
+struct Neighbor {
   float distance_squared = 0;
-  int count = 0;  // which neighbour it is: k, or as many as there are
+  int count = 0;  // which neighbor it is: k, or as many as there are
 };
 
 // From each point to the k-th nearest one that belongs to another group (k ≥ 1); `group` is empty (each point
 // by itself) or has one number per point. How dense particles' lights lie is a question about particles: one
-// that is caught in fur leaves ten lights within a millimetre, which say nothing about where other light is.
+// that is caught in fur leaves ten lights within a millimeter, which say nothing about where other light is.
 // Exact; O(n log n) by a k-d tree as long as groups are small; parallel.
-std::vector<Neighbour> neighbours(std::span<const Vec3f> points, std::span<const std::uint32_t> group, int k);
+std::vector<Neighbor> neighbors(std::span<const Vec3f> points, std::span<const std::uint32_t> group, int k);
 
 }  // namespace lumirank

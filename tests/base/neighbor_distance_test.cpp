@@ -1,4 +1,4 @@
-#include "base/neighbour_distance.h"
+#include "base/neighbor_distance.h"
 
 #include <gtest/gtest.h>
 
@@ -22,14 +22,14 @@ std::vector<float> brute_force(const std::vector<Vec3f>& points, const std::vect
   return result;
 }
 
-std::vector<float> distances(const std::vector<Neighbour>& found) {
+std::vector<float> distances(const std::vector<Neighbor>& found) {
   std::vector<float> result;
-  for (const Neighbour& n : found) result.push_back(n.distance_squared);
+  for (const Neighbor& n : found) result.push_back(n.distance_squared);
   return result;
 }
 
 // Equal to the last bit: both take the same differences of the same points.
-TEST(NeighbourDistance, IsThatOfBruteForce) {
+TEST(NeighborDistance, IsThatOfBruteForce) {
   for (const std::size_t n : {11u, 12u, 16u, 17u, 100u, 1500u}) {
     Rng rng(n, Stage::test);
     std::vector<Vec3f> points;
@@ -39,12 +39,12 @@ TEST(NeighbourDistance, IsThatOfBruteForce) {
       if (i % 7 == 0 && i > 0) p = points[i / 2];  // some twice
       points.push_back(p);
     }
-    EXPECT_EQ(distances(neighbours(points, {}, 10)), brute_force(points, {}, 10)) << n << " points";
+    EXPECT_EQ(distances(neighbors(points, {}, 10)), brute_force(points, {}, 10)) << n << " points";
   }
 }
 
 // Points come in groups of up to 40: more than ten of its own lie around each.
-TEST(NeighbourDistance, LeavesOutTheOwnGroup) {
+TEST(NeighborDistance, LeavesOutTheOwnGroup) {
   Rng rng(1, Stage::test);
   std::vector<Vec3f> points;
   std::vector<std::uint32_t> group;
@@ -55,26 +55,26 @@ TEST(NeighbourDistance, LeavesOutTheOwnGroup) {
       group.push_back(g);
     }
   }
-  const auto found = neighbours(points, group, 10);
+  const auto found = neighbors(points, group, 10);
   EXPECT_EQ(distances(found), brute_force(points, group, 10));
-  for (const Neighbour& n : found) EXPECT_EQ(n.count, 10);
+  for (const Neighbor& n : found) EXPECT_EQ(n.count, 10);
 }
 
-TEST(NeighbourDistance, FewPoints) {
+TEST(NeighborDistance, FewPoints) {
   const std::vector<Vec3f> three{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
-  const auto found = neighbours(three, {}, 10);
+  const auto found = neighbors(three, {}, 10);
   EXPECT_EQ(distances(found), (std::vector<float>{9, 4, 9}));
   EXPECT_EQ(found[0].count, 2);
   const std::vector<std::uint32_t> two_groups{5, 5, 7}, one_group{5, 5, 5};
-  EXPECT_EQ(distances(neighbours(three, two_groups, 10)), (std::vector<float>{9, 4, 9}));
-  for (const Neighbour& n : neighbours(three, one_group, 10)) EXPECT_EQ(n.count, 0);
-  EXPECT_EQ(neighbours(std::vector<Vec3f>{{1, 2, 3}}, {}, 10).at(0).count, 0);
-  EXPECT_TRUE(neighbours({}, {}, 10).empty());
+  EXPECT_EQ(distances(neighbors(three, two_groups, 10)), (std::vector<float>{9, 4, 9}));
+  for (const Neighbor& n : neighbors(three, one_group, 10)) EXPECT_EQ(n.count, 0);
+  EXPECT_EQ(neighbors(std::vector<Vec3f>{{1, 2, 3}}, {}, 10).at(0).count, 0);
+  EXPECT_TRUE(neighbors({}, {}, 10).empty());
 }
 
-TEST(NeighbourDistance, ManyEqualPoints) {
+TEST(NeighborDistance, ManyEqualPoints) {
   const std::vector<Vec3f> same(500, Vec3f{1, 1, 1});
-  EXPECT_EQ(distances(neighbours(same, {}, 10)), std::vector<float>(500, 0.0f));
+  EXPECT_EQ(distances(neighbors(same, {}, 10)), std::vector<float>(500, 0.0f));
 }
 
 }  // namespace
