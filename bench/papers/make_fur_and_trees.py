@@ -4,7 +4,7 @@
     bench/papers/make_fur_and_trees.py OUT [trees fur] [--hairs 48000] [--leaves 48000] [--mitsuba-hair]
 
   trees  some trees with tens of thousands of small leaves on a lawn, under sun and sky
-  fur    a rounded animal with long ears in tens of thousands of fibres, under sun and sky and one lamp
+  fur    a rounded animal with long ears in tens of thousands of fibers, under sun and sky and one lamp
 
 Neighboring pixels see other leaves or hairs in other shadows: the rows of the matrix, and its columns, are of high frequency.
 The fur has the BSDF "kajiyakay", which Mitsuba does not have; --mitsuba-hair writes its "hair" instead.
@@ -171,7 +171,7 @@ EYES = [(0.205, 1.17, 0.735), (-0.205, 1.17, 0.735)]
 NOSE = (0, 1.06, 0.895)
 
 
-def fibre(rng, part, root, normal):
+def fiber(rng, part, root, normal):
     """Control points of a cubic b-spline with radii; the curve begins just under the skin."""
     comb = add(part.comb, mul(on_sphere(rng), 0.35))
     comb = sub(comb, mul(normal, dot(comb, normal)))
@@ -208,7 +208,7 @@ def fur(args):
         bald = bald or any(dot(sub(root, e), sub(root, e)) < 0.085 ** 2 for e in EYES) or dot(sub(root, NOSE), sub(root, NOSE)) < 0.06 ** 2
         if bald:
             continue
-        points = fibre(rng, part, root, normal)
+        points = fiber(rng, part, root, normal)
         if any(p[1] < 0.002 for p, _ in points[2:]):  # not through the floor
             points = [((p[0], max(p[1], 0.004), p[2]), r) for p, r in points]
         lines += [f"{p[0]:.5f} {p[1]:.5f} {p[2]:.5f} {r:.5f}" for p, r in points] + [""]

@@ -23,7 +23,7 @@ nlohmann::ordered_json info_object(const Scene& scene, const Sinks& sinks) {
   const auto& info = world.info();
   json["triangles"] = info.triangles;
   json["triangles.unique"] = info.unique_triangles;
-  json["fibre_segments"] = info.segments;
+  json["fiber_segments"] = info.segments;
   json["meshes"] = info.meshes;
   json["meshes.left_out"] = info.meshes_left_out;
   json["instances"] = info.instances;

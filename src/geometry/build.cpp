@@ -28,12 +28,12 @@ void validate(const TriangleMesh& mesh, std::size_t k) {
       throw InternalError(name + ": index " + std::to_string(i) + " of " + std::to_string(n) + " vertices");
   for (const std::size_t size : {mesh.normals.size(), mesh.uvs.size(), mesh.colors.size()})
     if (size != 0 && size != n) throw InternalError(name + ": a vertex attribute has the wrong length");
-  if (!mesh.fibres.empty() && !mesh.indices.empty())
-    throw InternalError(name + ": both triangles and fibres");
-  if (mesh.fibres.parameter.size() != mesh.fibres.points.size())
-    throw InternalError(name + ": the fibres' parameters have the wrong length");
-  for (const std::uint32_t i : mesh.fibres.segments)
-    if (i + std::size_t{1} >= mesh.fibres.points.size())
+  if (!mesh.fibers.empty() && !mesh.indices.empty())
+    throw InternalError(name + ": both triangles and fibers");
+  if (mesh.fibers.parameter.size() != mesh.fibers.points.size())
+    throw InternalError(name + ": the fibers' parameters have the wrong length");
+  for (const std::uint32_t i : mesh.fibers.segments)
+    if (i + std::size_t{1} >= mesh.fibers.points.size())
       throw InternalError(name + ": a segment without an end");
 }
 
@@ -42,11 +42,11 @@ void validate(const TriangleMesh& mesh, std::size_t k) {
 }
 
 // In world space. An instance keeps its radii and turns rays into its own space, so what counts is by how
-// much it lengthens most; what has been moved has its radii changed as Fibres::transform() says, which is
+// much it lengthens most; what has been moved has its radii changed as Fibers::transform() says, which is
 // less.
-float widest_radius(const Fibres& fibres, const Transform& to_world) {
+float widest_radius(const Fibers& fibers, const Transform& to_world) {
   float widest = 0;
-  for (const Fibres::Point& p : fibres.points) widest = std::max(widest, p.radius);
+  for (const Fibers::Point& p : fibers.points) widest = std::max(widest, p.radius);
   float squares = 0;
   for (const Vec3f& axis : {Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}})
     squares += length_squared(to_world.vector(axis));
@@ -105,34 +105,34 @@ embree::Geometry RayScene::Impl::triangles_of(const TriangleMesh& mesh, const Tr
   return geometry;
 }
 
-embree::Geometry RayScene::Impl::fibres_of(const Fibres& fibres, const Transform* baked) {
+embree::Geometry RayScene::Impl::fibers_of(const Fibers& fibers, const Transform* baked) {
   embree::Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE));
-  const std::size_t n = fibres.points.size();
-  const Fibres::Point* points = fibres.points.data();
+  const std::size_t n = fibers.points.size();
+  const Fibers::Point* points = fibers.points.data();
   if (baked) {
-    auto* out = static_cast<Fibres::Point*>(rtcSetNewGeometryBuffer(
-        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Fibres::Point), n));
+    auto* out = static_cast<Fibers::Point*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Fibers::Point), n));
     if (!out) out_of_memory();
-    Fibres moved = fibres;
+    Fibers moved = fibers;
     moved.transform(*baked);
     std::copy(moved.points.begin(), moved.points.end(), out);
     points = out;
   } else {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                               fibres.points.data(), 0, sizeof(Fibres::Point), n);
+                               fibers.points.data(), 0, sizeof(Fibers::Point), n);
   }
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
-                             fibres.segments.data(), 0, sizeof(std::uint32_t), fibres.segments.size());
-  traced.push_back({&fibres, points});
+                             fibers.segments.data(), 0, sizeof(std::uint32_t), fibers.segments.size());
+  traced.push_back({&fibers, points});
   rtcSetGeometryUserData(geometry.get(), &traced.back());
-  rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_fibre_caps);
-  rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_fibre_caps);
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_fiber_caps);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_fiber_caps);
   return geometry;
 }
 
 embree::Geometry RayScene::Impl::geometry_of(const TriangleMesh& mesh, const Transform* baked,
                                              Blocking blocking_kind) {
-  embree::Geometry geometry = mesh.fibres.empty() ? triangles_of(mesh, baked) : fibres_of(mesh.fibres, baked);
+  embree::Geometry geometry = mesh.fibers.empty() ? triangles_of(mesh, baked) : fibers_of(mesh.fibers, baked);
   if (blocking_kind == Blocking::cutout)
     rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_cutout);
   else if (blocking_kind == Blocking::smooth)
@@ -173,7 +173,7 @@ void RayScene::Impl::build(std::size_t flatten_limit) {
     const Placement& p = placements[k];
     const TriangleMesh& mesh = meshes[p.mesh];
     if (mesh.empty()) continue;
-    if (!mesh.fibres.empty()) run_up = std::max(run_up, 2.1f * widest_radius(mesh.fibres, p.to_world));
+    if (!mesh.fibers.empty()) run_up = std::max(run_up, 2.1f * widest_radius(mesh.fibers, p.to_world));
     embree::Scene& top = p.blocking == Blocking::smooth ? smooth : blocking;
     if (!top) top = new_scene();
     const auto id = static_cast<unsigned>(k);

@@ -1,4 +1,4 @@
-// Called by Embree at hits on fibres and on surfaces that do not simply block. A filter may be called more
+// Called by Embree at hits on fibers and on surfaces that do not simply block. A filter may be called more
 // than once for the same crossing, and in any order, so what it decides is a function of the crossing alone.
 #include "base/random.h"
 #include "geometry/ray_scene_impl.h"
@@ -18,17 +18,17 @@ Hit hit_of(const RTCFilterFunctionNArguments& a, unsigned lane, const RayScene::
 }
 
 // Embree rounds both ends of every segment, by its radius there. What of that lies over the next segment's
-// own strip, or beyond the end of the curve, belongs to no part of the fibre's length: light along a fibre
+// own strip, or beyond the end of the curve, belongs to no part of the fiber's length: light along a fiber
 // would meet more of it than light from the side knows of, and a ray that leaves the axis would be caught in
 // the cap of the segment ahead, so that paths would differ by the end from which they are traced. What
 // remains is the wedge that a bend leaves open on its outer side.
 bool is_spurious(const RTCFilterFunctionNArguments& a, unsigned lane) {
   const float u = RTCHitN_u(a.hit, a.N, lane);
   if (u > 0 && u < 1) return false;
-  const auto& traced = *static_cast<const TracedFibres*>(a.geometryUserPtr);
-  const Fibres& fibres = *traced.fibres;
-  const std::uint32_t segment = RTCHitN_primID(a.hit, a.N, lane), first = fibres.segments[segment];
-  if (u <= 0 ? !fibres.follows(segment) : !fibres.goes_on(segment)) return true;
+  const auto& traced = *static_cast<const TracedFibers*>(a.geometryUserPtr);
+  const Fibers& fibers = *traced.fibers;
+  const std::uint32_t segment = RTCHitN_primID(a.hit, a.N, lane), first = fibers.segments[segment];
+  if (u <= 0 ? !fibers.follows(segment) : !fibers.goes_on(segment)) return true;
   const Vec3f joint = traced.points[u <= 0 ? first : first + 1].position;
   const Vec3f next = traced.points[u <= 0 ? first - 1 : first + 2].position - joint;
   const Vec3f d{RTCRayN_dir_x(a.ray, a.N, lane), RTCRayN_dir_y(a.ray, a.N, lane),
@@ -42,7 +42,7 @@ bool is_spurious(const RTCFilterFunctionNArguments& a, unsigned lane) {
 
 }  // namespace
 
-void filter_fibre_caps(const RTCFilterFunctionNArguments* arguments) {
+void filter_fiber_caps(const RTCFilterFunctionNArguments* arguments) {
   const RTCFilterFunctionNArguments& a = *arguments;
   if (!a.geometryUserPtr) return;
   for (unsigned lane = 0; lane < a.N; ++lane)
@@ -50,7 +50,7 @@ void filter_fibre_caps(const RTCFilterFunctionNArguments* arguments) {
 }
 
 void filter_cutout(const RTCFilterFunctionNArguments* arguments) {
-  filter_fibre_caps(arguments);
+  filter_fiber_caps(arguments);
   const RTCFilterFunctionNArguments& a = *arguments;
   const auto& query = *reinterpret_cast<const QueryContext*>(a.context);
   for (unsigned lane = 0; lane < a.N; ++lane) {
@@ -64,7 +64,7 @@ void filter_cutout(const RTCFilterFunctionNArguments* arguments) {
 }
 
 void filter_smooth(const RTCFilterFunctionNArguments* arguments) {
-  filter_fibre_caps(arguments);
+  filter_fiber_caps(arguments);
   const RTCFilterFunctionNArguments& a = *arguments;
   const auto& query = *reinterpret_cast<const QueryContext*>(a.context);
   if (!query.crossed) return;  // asked only whether there is anything: let the hit count

@@ -9,7 +9,7 @@ Vec3f TriangleMesh::area_vector(std::size_t triangle) const {
 }
 
 Bounds3f TriangleMesh::bounds() const {
-  Bounds3f box = fibres.bounds();
+  Bounds3f box = fibers.bounds();
   for (const Vec3f& p : positions) box.extend(p);
   return box;
 }

@@ -7,7 +7,7 @@
 #include "base/bounds.h"
 #include "base/rgb.h"
 #include "base/vec.h"
-#include "geometry/fibres.h"
+#include "geometry/fibers.h"
 
 namespace lumirank::geometry {
 
@@ -17,10 +17,10 @@ struct TriangleMesh {
   std::vector<Vec2f> uvs;      // empty or one per position
   std::vector<Rgb> colors;     // empty or one per position
   std::vector<std::uint32_t> indices;
-  Fibres fibres;  // if it has any, the mesh consists of them and has no triangles
+  Fibers fibers;  // if it has any, the mesh consists of them and has no triangles
 
-  bool empty() const { return indices.empty() && fibres.empty(); }
-  std::size_t primitive_count() const { return triangle_count() + fibres.segments.size(); }
+  bool empty() const { return indices.empty() && fibers.empty(); }
+  std::size_t primitive_count() const { return triangle_count() + fibers.segments.size(); }
   std::size_t triangle_count() const { return indices.size() / 3; }
   // Twice the area times the unit normal, by the order of the corners.
   Vec3f area_vector(std::size_t triangle) const;

@@ -64,10 +64,10 @@ QueryContext context_for(const RayScene::Impl& scene) {
   return context;
 }
 
-// How far across a fibre a ray meets it, see Hit. Radii change with the placement as Fibres::transform()
+// How far across a fiber a ray meets it, see Hit. Radii change with the placement as Fibers::transform()
 // says.
-float across(const Fibres& fibres, const Transform& to_world, const Hit& hit, const Ray& ray) {
-  const FibrePoint at = fibre_point(fibres, hit.triangle, hit.barycentric.x);
+float across(const Fibers& fibers, const Transform& to_world, const Hit& hit, const Ray& ray) {
+  const FiberPoint at = fiber_point(fibers, hit.triangle, hit.barycentric.x);
   Vec3f axis = at.axis, along = at.along;
   float radius = at.radius;
   if (!to_world.is_identity()) {
@@ -155,8 +155,8 @@ std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   hit.mesh = impl_->placements[hit.instance].mesh;
   hit.triangle = query.hit.primID;
   hit.barycentric = {query.hit.u, query.hit.v};
-  const Fibres& fibres = impl_->meshes[hit.mesh].fibres;
-  if (!fibres.empty()) hit.barycentric.y = across(fibres, impl_->placements[hit.instance].to_world, hit, ray);
+  const Fibers& fibers = impl_->meshes[hit.mesh].fibers;
+  if (!fibers.empty()) hit.barycentric.y = across(fibers, impl_->placements[hit.instance].to_world, hit, ray);
   return hit;
 }
 

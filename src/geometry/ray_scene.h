@@ -25,8 +25,8 @@ struct Hit {
   float t = 0;
   std::uint32_t instance = 0;  // index into the instances of the scene
   std::uint32_t mesh = 0;
-  std::uint32_t triangle = 0;  // or segment of fibres
-  // Weights of the second and third corner. Fibres: how far along the segment, and (intersect() only) how far
+  std::uint32_t triangle = 0;  // or segment of fibers
+  // Weights of the second and third corner. Fibers: how far along the segment, and (intersect() only) how far
   // across, from -1 to 1 over the width: the position is axis + y · radius · normalize(along × -direction).
   Vec2f barycentric;
 };

@@ -12,11 +12,11 @@
 
 namespace lumirank::geometry {
 
-// What filters know of fibres: where Embree sees their points, which is not where the mesh has them if a
+// What filters know of fibers: where Embree sees their points, which is not where the mesh has them if a
 // transform has been applied.
-struct TracedFibres {
-  const Fibres* fibres;
-  const Fibres::Point* points;
+struct TracedFibers {
+  const Fibers* fibers;
+  const Fibers::Point* points;
 };
 
 struct RayScene::Impl {
@@ -24,7 +24,7 @@ struct RayScene::Impl {
   std::vector<Placement> placements;
   PassageCallbacks callbacks;
 
-  std::deque<TracedFibres> traced;  // Embree holds pointers to them
+  std::deque<TracedFibers> traced;  // Embree holds pointers to them
 
   std::atomic<long long> bytes{0};
   std::string first_error;  // of Embree, if any
@@ -33,8 +33,8 @@ struct RayScene::Impl {
   std::vector<embree::Scene> parts;  // scenes of the meshes that are instanced
   embree::Scene blocking, smooth;    // smooth is null if no placement attenuates
   Bounds3f bounds;
-  // Embree leaves out what a ray meets of fibres within two radii of its origin. So rays are handed to it
-  // from so much farther behind: over twice the radius of the widest fibre, in world space. 0: there are
+  // Embree leaves out what a ray meets of fibers within two radii of its origin. So rays are handed to it
+  // from so much farther behind: over twice the radius of the widest fiber, in world space. 0: there are
   // none.
   float run_up = 0;
 
@@ -45,7 +45,7 @@ struct RayScene::Impl {
   embree::Scene new_scene();
   void commit(RTCScene scene);
   embree::Geometry triangles_of(const TriangleMesh& mesh, const Transform* baked);
-  embree::Geometry fibres_of(const Fibres& fibres, const Transform* baked);
+  embree::Geometry fibers_of(const Fibers& fibers, const Transform* baked);
   embree::Geometry geometry_of(const TriangleMesh& mesh, const Transform* baked, Blocking blocking_kind);
   embree::Scene build_part(std::uint32_t mesh, Blocking blocking_kind);
 };
@@ -61,9 +61,9 @@ struct QueryContext {
   std::vector<Hit>* crossed = nullptr;   // smooth hits are noted here; null: any of them ends the ray
 };
 
-// Refuses hits on round caps of segments that are no part of the fibre. The geometry's user pointer is its
-// TracedFibres (null: triangles). The two below do so too.
-void filter_fibre_caps(const RTCFilterFunctionNArguments* arguments);
+// Refuses hits on round caps of segments that are no part of the fiber. The geometry's user pointer is its
+// TracedFibers (null: triangles). The two below do so too.
+void filter_fiber_caps(const RTCFilterFunctionNArguments* arguments);
 // Lets a hit on a cut-out count with the probability of its opacity.
 void filter_cutout(const RTCFilterFunctionNArguments* arguments);
 // Notes a hit on a smooth surface and lets the ray go on.

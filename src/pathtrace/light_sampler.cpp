@@ -59,7 +59,7 @@ LightBound bound_of(const emitters::ProfileEmitter& e) {
 }  // namespace
 
 emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Vec3f wo) {
-  if (closure.is_fibre()) return {position, Vec3f{}, true};
+  if (closure.is_fiber()) return {position, Vec3f{}, true};
   bool both_sides = false;
   for (int k = 0; k < closure.count; ++k) both_sides |= scatter::shines_through(closure.lobes[k].kind);
   const Vec3f n = closure.frame.n;

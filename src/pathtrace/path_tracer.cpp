@@ -156,7 +156,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   float connection = 0;
   if (first_after_receiver && settings_.carried.bound > 0)
     connection = walk.receiver_term *
-                 (closure.is_fibre() ? closure.cosine(walk.ray.direction)
+                 (closure.is_fiber() ? closure.cosine(walk.ray.direction)
                                      : std::abs(dot(hit.point.ng, walk.ray.direction))) /
                  square(walk.traveled);
   const auto [u_light, u_lobe] = walk.random.next_fine();

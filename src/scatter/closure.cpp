@@ -10,17 +10,17 @@ namespace {
 // Cosines below this are grazing: nothing is evaluated there.
 constexpr float kGrazing = 1e-6f;
 
-// wo in the local frame, mirrored so that z > 0 (not on a fibre).
+// wo in the local frame, mirrored so that z > 0 (not on a fiber).
 struct Incident {
   Vec3f wo;
   float side;  // of wo: +1 outside, -1 inside
   bool valid;  // shading and geometric normal agree about the side
-  bool fibre;
+  bool fiber;
 };
 
 Incident incident(const Closure& c, Vec3f wo) {
   Vec3f local = c.frame.to_local(wo);
-  if (c.is_fibre()) return {local, 1, fibre_sine(local) > kGrazing, true};
+  if (c.is_fiber()) return {local, 1, fiber_sine(local) > kGrazing, true};
   const float side = local.z > 0 ? 1.0f : -1.0f;
   local.z *= side;
   return {local, side, local.z > kGrazing && dot(wo, c.ng) * side > 0, false};
@@ -32,14 +32,14 @@ bool sides_agree(const Closure& c, Vec3f wi, float local_z) { return dot(wi, c.n
 // wi in the local frame, mirrored as wo is; false where nothing arrives.
 bool arriving(const Closure& c, const Incident& in, Vec3f wi, Vec3f& local) {
   local = c.frame.to_local(wi);
-  if (in.fibre) return fibre_sine(local) > kGrazing;
+  if (in.fiber) return fiber_sine(local) > kGrazing;
   if (!(std::abs(local.z) > kGrazing) || !sides_agree(c, wi, local.z)) return false;
   local.z *= in.side;
   return true;
 }
 
 // The lobes of a surface look to one side each.
-bool meets(LobeKind kind, const Incident& in, Vec3f wi) { return in.fibre || transmits(kind) == (wi.z < 0); }
+bool meets(LobeKind kind, const Incident& in, Vec3f wi) { return in.fiber || transmits(kind) == (wi.z < 0); }
 
 bool wanted(LobeKind kind, Lobes which) {
   return which == Lobes::all || (which == Lobes::delta) == is_delta(kind);
@@ -111,7 +111,7 @@ float density_of_all(const Closure& c, const Incident& in, Vec3f wi, const Selec
 }
 
 float crossed_eta(const Closure& c, const Incident& in, Vec3f wi) {
-  if (wi.z > 0 || in.fibre) return 1;
+  if (wi.z > 0 || in.fiber) return 1;
   for (int k = 0; k < c.count; ++k)
     if (!is_delta(c.lobes[k].kind) && family_of(c.lobes[k].kind).refracts)
       return view_from(c.lobes[k], in.side > 0).eta;
@@ -138,17 +138,17 @@ bool Closure::has_delta() const {
   return false;
 }
 
-bool Closure::is_fibre() const {
+bool Closure::is_fiber() const {
   for (int k = 0; k < count; ++k)
     if (is_hair(lobes[k].kind)) return true;
   return false;
 }
 
 float Closure::cosine(Vec3f w) const {
-  return is_fibre() ? fibre_sine(frame.to_local(w)) : std::abs(dot(w, frame.n));
+  return is_fiber() ? fiber_sine(frame.to_local(w)) : std::abs(dot(w, frame.n));
 }
 
-bool Closure::sides_agree(Vec3f w) const { return is_fibre() || dot(w, frame.n) * dot(w, ng) > 0; }
+bool Closure::sides_agree(Vec3f w) const { return is_fiber() || dot(w, frame.n) * dot(w, ng) > 0; }
 
 bool Closure::is_lambertian() const {
   int smooth = 0;
@@ -237,13 +237,13 @@ std::optional<BsdfSample> sample(const Closure& closure, Vec3f wo, float u1, Vec
   }
   Vec3f local;
   if (!lobe_sample(view_from(lobe, in.side > 0), in.wo, u2, local)) return std::nullopt;
-  const float cosine = in.fibre ? fibre_sine(local) : std::abs(local.z);
+  const float cosine = in.fiber ? fiber_sine(local) : std::abs(local.z);
   if (!(cosine > kGrazing)) return std::nullopt;
   out.wi = closure.frame.to_world({local.x, local.y, local.z * in.side});
-  if (!in.fibre && !sides_agree(closure, out.wi, local.z * in.side)) return std::nullopt;
+  if (!in.fiber && !sides_agree(closure, out.wi, local.z * in.side)) return std::nullopt;
   out.pdf = density_of_all(closure, in, local, s);
   if (!(out.pdf > 0) || !std::isfinite(out.pdf)) return std::nullopt;
-  out.transmitted = local.z < 0 && !in.fibre;
+  out.transmitted = local.z < 0 && !in.fiber;
   out.eta = crossed_eta(closure, in, local);
   out.weight = value_of_all(closure, in, local) * (cosine / out.pdf);
   // Radiance scales by the squared index when it crosses; the value above is that of radiance.
@@ -281,7 +281,7 @@ Rgb albedo(const Closure& closure, Vec3f wo) {
 }
 
 float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi) {
-  if (closure.is_fibre()) return 1;
+  if (closure.is_fiber()) return 1;
   const float numerator = std::abs(dot(wo, closure.frame.n) * dot(wi, closure.ng));
   const float denominator = std::abs(dot(wo, closure.ng) * dot(wi, closure.frame.n));
   return denominator > 0 ? numerator / denominator : 0.0f;

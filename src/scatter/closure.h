@@ -27,7 +27,7 @@ namespace lumirank::scatter {
 enum class LobeSort : std::uint8_t {
   reflects,        // smooth in direction, on wo's side
   shines_through,  // smooth, to the other side
-  fibre,           // smooth, of a fibre along frame.s whatever the side; stands with no other smooth lobes
+  fiber,           // smooth, of a fiber along frame.s whatever the side; stands with no other smooth lobes
   delta_reflects,  // delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations()
                    // meet them
   delta_through,
@@ -66,9 +66,9 @@ enum class LobeSort : std::uint8_t {
   /* ... and microfacet_reflect with wi mirrored to wo's side and 1 - F instead of F */                         \
   KIND(thin_transmit, shines_through)                                                                           \
   /* color/π² */                                                                                                \
-  KIND(hair_diffuse, fibre)                                                                                     \
+  KIND(hair_diffuse, fiber)                                                                                     \
   /* Kajiya and Kay's, normalized; alpha_u = exponent, alpha_v = hair_specular_scale() */                       \
-  KIND(hair_specular, fibre)                                                                                    \
+  KIND(hair_specular, fiber)                                                                                    \
   /* color · F by `fresnel`; variant kThinSlab: 2F/(1 + F) */                                                   \
   KIND(delta_reflect, delta_reflects)                                                                           \
   /* color · (1 - F), refracts by eta */                                                                        \
@@ -88,7 +88,7 @@ inline constexpr int kLobeKinds = sizeof kLobeSorts / sizeof kLobeSorts[0];
 
 inline LobeSort sort_of(LobeKind kind) { return kLobeSorts[static_cast<int>(kind)]; }
 inline bool is_delta(LobeKind kind) { return sort_of(kind) >= LobeSort::delta_reflects; }
-inline bool is_hair(LobeKind kind) { return sort_of(kind) == LobeSort::fibre; }
+inline bool is_hair(LobeKind kind) { return sort_of(kind) == LobeSort::fiber; }
 inline bool shines_through(LobeKind kind) { return sort_of(kind) == LobeSort::shines_through; }
 
 enum class FresnelKind : std::uint8_t { none, dielectric, conductor, schlick };
@@ -149,7 +149,7 @@ float lobe_roughness(const Lobe& lobe);
 
 struct Closure {
   Frame frame;        // shading frame; frame.n on the outside (towards wo if two-sided)
-  Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n; zero on a fibre
+  Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n; zero on a fiber
   int count = 0;
   Lobe lobes[kMaxLobes];
 
@@ -157,13 +157,13 @@ struct Closure {
   bool empty() const { return count == 0; }
   bool has_smooth() const;  // any lobe that is not delta
   bool has_delta() const;
-  // A thin fibre along frame.s instead of a surface: it has no sides, light arrives and leaves all around,
-  // and wherever a surface has the cosine of the normal, a fibre has the sine of the angle to frame.s (its
+  // A thin fiber along frame.s instead of a surface: it has no sides, light arrives and leaves all around,
+  // and wherever a surface has the cosine of the normal, a fiber has the sine of the angle to frame.s (its
   // width as light sees it). frame.n is any normal.
-  bool is_fibre() const;
-  // |cos(w, n)|, or of a fibre the sine.
+  bool is_fiber() const;
+  // |cos(w, n)|, or of a fiber the sine.
   float cosine(Vec3f w) const;
-  // n and ng agree about the side of w; on a fibre always.
+  // n and ng agree about the side of w; on a fiber always.
   bool sides_agree(Vec3f w) const;
   // The only smooth lobe is `diffuse` (delta lobes may stand beside it).
   bool is_lambertian() const;
@@ -223,7 +223,7 @@ Rgb albedo(const Closure& closure, Vec3f wo);
 
 // Factor by which a particle's throughput must be multiplied beside sample(…, adjoint)'s weight where the
 // shading normal is not the geometric one: |wo·ns||wi·ng| / (|wo·ng||wi·ns|) (Veach 1997, section 5.3). wo:
-// where the particle came from; wi: where it goes. 1 on a fibre.
+// where the particle came from; wi: where it goes. 1 on a fiber.
 float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi);
 
 }  // namespace lumirank::scatter

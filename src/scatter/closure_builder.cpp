@@ -38,7 +38,7 @@ Closure ClosureBuilder::finish(const SurfacePoint& at) {
   if (frame_weight_ == 0) out_.frame = at.shading, out_.ng = at.ng;
   // Turned frames are left-handed until here.
   out_.frame.t = cross(out_.frame.n, out_.frame.s);
-  if (out_.is_fibre()) out_.ng = {};
+  if (out_.is_fiber()) out_.ng = {};
   return out_;
 }
 

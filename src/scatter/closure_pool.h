@@ -41,7 +41,7 @@ class ClosurePool {
   // dielectric seen from inside). The same holds for ng.
   float side(std::uint32_t i) const { return entries_[i].recipe_and_side & 1 ? -1.0f : 1.0f; }
   // Direction of frame.s, to 16 bits per octahedral coordinate, so within 1e-4 of the given one; matters to
-  // anisotropic lobes and to fibres only.
+  // anisotropic lobes and to fibers only.
   Vec3f tangent(std::uint32_t i) const;
 
   // Closure i as it was added, without delta lobes; `normal` and `ng` are those that the owner keeps.

@@ -15,7 +15,7 @@ Rgb quadrature_albedo(LobeView view, Vec3f wo) {
     Vec3f wi;
     if (!lobe_sample(view, wo, u, wi)) continue;
     const float pdf = lobe_pdf(view, wo, wi);
-    const float cosine = is_hair(view.lobe.kind) ? fibre_sine(wi) : std::abs(wi.z);
+    const float cosine = is_hair(view.lobe.kind) ? fiber_sine(wi) : std::abs(wi.z);
     if (pdf > 0) sum += lobe_value(view, wo, wi) * (cosine / pdf);
   }
   // As a share of energy: without the scaling of radiance.

@@ -3,7 +3,7 @@
 //
 // A lobe acts alike on both sides of the surface (one-sidedness is the material's business): the callers
 // mirror directions so that wo.z > 0. Then wi.z > 0 for reflection and wi.z < 0 for transmission. `eta` is
-// the relative index as seen from wo's side. (Lobes of fibres know no sides, and nothing is mirrored.) Values
+// the relative index as seen from wo's side. (Lobes of fibers know no sides, and nothing is mirrored.) Values
 // are f alone, without the cosine; densities are per solid angle of wi.
 #pragma once
 
@@ -60,8 +60,8 @@ bool draws_cosine(LobeKind kind);
 // Albedo by a fixed rule of 55 draws.
 Rgb quadrature_albedo(LobeView view, Vec3f wo);
 
-// Of fibres: local x runs along them, and wo is not mirrored.
+// Of fibers: local x runs along them, and wo is not mirrored.
 float hair_specular_scale(float exponent);  // what alpha_v must be
-float fibre_sine(Vec3f w);                  // of the angle between w and the fibre
+float fiber_sine(Vec3f w);                  // of the angle between w and the fiber
 
 }  // namespace lumirank::scatter

@@ -34,8 +34,8 @@ bool cosines(Angle theta, const ConeWidth& width, float& lo, float& hi) {
 
 float angle_of(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); }
 
-// Precise near the fibre too.
-float latitude(Vec3f w, Vec3f fibre) { return std::atan2(dot(w, fibre), length(cross(w, fibre))); }
+// Precise near the fiber too.
+float latitude(Vec3f w, Vec3f fiber) { return std::atan2(dot(w, fiber), length(cross(w, fiber))); }
 
 // Where w is on the side of wo and within a cone about a.
 AngleRange range_about(Vec3f n, const LobeTerm& t, Vec3f a, const ConeWidth& width, float cos_lo,
@@ -106,8 +106,8 @@ ClosureBound::ClosureBound(const Closure& closure, Vec3f wo, bool adjoint)
 ClosureBound::ClosureBound(std::span<const Lobe> lobes, std::span<const Rgb> colors, Vec3f n, Vec3f tangent,
                            Vec3f wo, bool outside, bool adjoint)
     : n_(n), wo_(wo), outside_(outside) {
-  for (const Lobe& lobe : lobes) fibre_ = fibre_ || is_hair(lobe.kind);
-  if (fibre_) {
+  for (const Lobe& lobe : lobes) fiber_ = fiber_ || is_hair(lobe.kind);
+  if (fiber_) {
     n_ = tangent;
     cos_o_ = length(cross(n_, wo));
   } else {
@@ -161,10 +161,10 @@ float ClosureBound::crossed(const LobeTerm& t, float cos_lo) const {
   return coat_return(coat, coat_cosine(coat, cos_lo));
 }
 
-Rgb ClosureBound::on_fibre(const LobeTerm& t, const DirectionCone& cone, CosineFactor factor) const {
+Rgb ClosureBound::on_fiber(const LobeTerm& t, const DirectionCone& cone, CosineFactor factor) const {
   const float about = latitude(cone.axis, n_);
   return family_of(t.lobe->kind)
-      .fibre_bound(t, latitude(wo_, n_), std::max(-kPi / 2, about - cone.angle - kAngleSlack),
+      .fiber_bound(t, latitude(wo_, n_), std::max(-kPi / 2, about - cone.angle - kAngleSlack),
                    std::min(kPi / 2, about + cone.angle + kAngleSlack), factor);
 }
 
@@ -225,13 +225,13 @@ Rgb ClosureBound::within(const DirectionCone& cone, CosineFactor factor, float s
   const ConeWidth width(cone.angle);
   const Angle theta = Angle::of_cosine(dot(cone.axis, n_));
   float lo = 0, hi = 0, behind_lo = 0, behind_hi = 0;
-  const bool before = !fibre_ && cosines(theta, width, lo, hi);
+  const bool before = !fiber_ && cosines(theta, width, lo, hi);
   const bool behind = through_ && cosines({theta.sine, -theta.cosine}, width, behind_lo, behind_hi);
   for (int k = 0; k < count_; ++k) {
     const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
     if (t.roughness < sharp) continue;
-    if (fibre_) {
-      sum += on_fibre(t, cone, factor);
+    if (fiber_) {
+      sum += on_fiber(t, cone, factor);
     } else if (!shines_through(t.lobe->kind)) {
       if (before) sum += reflected(t, cone, width, lo, hi, factor);
     } else if (behind) {
@@ -271,8 +271,8 @@ Rgb ClosureBound::anywhere(CosineFactor factor, float sharp) const {
   for (int k = 0; k < count_; ++k) {
     const LobeTerm& t = terms_[static_cast<std::size_t>(k)];
     if (t.roughness < sharp) continue;
-    if (fibre_) {
-      sum += on_fibre(t, {n_, kPi}, factor);
+    if (fiber_) {
+      sum += on_fiber(t, {n_, kPi}, factor);
     } else if (family_of(t.lobe->kind).refracts) {
       sum += refracted(t, {-n_, kPi}, 0, 1, factor);
     } else {

@@ -39,7 +39,7 @@ struct LobeTerm {
 class ClosureBound {
  public:
   ClosureBound() = default;
-  // `n` is the shading normal on either side, `tangent` the fibre's direction where it is one; colors: of the
+  // `n` is the shading normal on either side, `tangent` the fiber's direction where it is one; colors: of the
   // lobes, instead of their own, if any; `outside`: whether wo is on the closure's outer side; `adjoint` as
   // in eval_f().
   ClosureBound(std::span<const Lobe> lobes, std::span<const Rgb> colors, Vec3f n, Vec3f tangent, Vec3f wo,
@@ -56,7 +56,7 @@ class ClosureBound {
 
  private:
   void add(const Lobe& lobe, Rgb color, bool adjoint);
-  Rgb on_fibre(const LobeTerm& term, const DirectionCone& cone, CosineFactor factor) const;
+  Rgb on_fiber(const LobeTerm& term, const DirectionCone& cone, CosineFactor factor) const;
   Rgb reflected(const LobeTerm& term, const DirectionCone& cone, const ConeWidth& width, float cos_lo,
                 float cos_hi, CosineFactor factor) const;
   Rgb refracted(const LobeTerm& term, const DirectionCone& cone, float cos_lo, float cos_hi,
@@ -69,9 +69,9 @@ class ClosureBound {
 
   std::array<LobeTerm, kMaxLobes> terms_;
   int count_ = 0;
-  Vec3f n_{0, 0, 1}, wo_{0, 0, 1};  // n on the side of wo; on a fibre its direction
+  Vec3f n_{0, 0, 1}, wo_{0, 0, 1};  // n on the side of wo; on a fiber its direction
   float cos_o_ = 1;
-  bool outside_ = true, fibre_ = false, through_ = false;  // through_: some lobe shines through
+  bool outside_ = true, fiber_ = false, through_ = false;  // through_: some lobe shines through
 };
 
 }  // namespace lumirank::scatter

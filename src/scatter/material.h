@@ -153,7 +153,7 @@ struct SheenMaterial {
 };
 void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
-struct HairMaterial {  // for fibres only: the point's shading.s runs along them
+struct HairMaterial {  // for fibers only: the point's shading.s runs along them
   ColorInput diffuse_reflectance, specular_reflectance;
   FloatInput exponent;
 };
@@ -211,7 +211,7 @@ struct MaterialSet {
   // BSDFs). A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
   Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
 
-  // A BSDF of fibres: all smooth lobes of its closures are hair lobes (Closure::is_fibre()).
+  // A BSDF of fibers: all smooth lobes of its closures are hair lobes (Closure::is_fiber()).
   bool is_hair(int material) const;
 
   // Whether shadow rays may pass straight through somewhere (null, thin dielectric, mask): such geometry gets

@@ -11,7 +11,7 @@ namespace lumirank::world {
 struct World::Impl {
   struct PlacementData {
     bool identity = true;
-    bool hair = false;  // fibres of hair: points lie on the axis and have no geometric normal
+    bool hair = false;  // fibers of hair: points lie on the axis and have no geometric normal
     bool flip = false;  // the outside is against the order of the corners in the mesh's own frame
     Transform to_world, inverse;
   };
@@ -30,8 +30,8 @@ struct World::Impl {
   // Everything at a point of a triangle; normals towards the outside.
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   scatter::SurfaceUv uv(const geometry::Hit& hit) const;
-  // The same for a segment of a fibre (fibre_surface.cpp); position, normals and tangents only.
-  scatter::SurfacePoint fibre_surface(const geometry::Hit& hit, Vec3f ray_direction) const;
+  // The same for a segment of a fiber (fiber_surface.cpp); position, normals and tangents only.
+  scatter::SurfacePoint fiber_surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   Rgb emitted_at(int emitter, std::uint32_t triangle, Vec2f barycentric) const;
 };
 

@@ -51,7 +51,7 @@ MaterialBuilder::MaterialBuilder(const sd::SceneDesc& desc, TextureBuilder& text
       textures_(textures),
       notes_(notes),
       index_(desc.bsdfs.size(), kNotBuilt),
-      index_on_fibres_(index_) {}
+      index_on_fibers_(index_) {}
 
 int MaterialBuilder::add(sc::Material material) {
   traits_.push_back(traits_of(material));
@@ -68,15 +68,15 @@ int MaterialBuilder::use(int bsdf, const SourceLocation& user, Carrier carrier) 
     throw InputError(user, "a BSDF is referred to that the scene does not have", "define it");
   const auto slot = static_cast<std::size_t>(bsdf);
   const auto& b = desc_.bsdfs[slot];
-  if (carrier == Carrier::fibres && !holds_hair(bsdf)) carrier = Carrier::surface;
-  std::vector<int>& index = carrier == Carrier::fibres ? index_on_fibres_ : index_;
+  if (carrier == Carrier::fibers && !holds_hair(bsdf)) carrier = Carrier::surface;
+  std::vector<int>& index = carrier == Carrier::fibers ? index_on_fibers_ : index_;
   if (index[slot] >= 0) return index[slot];
   if (index[slot] == kInProgress)
     throw InputError(b.where, "the BSDF '" + b.id + "' is, through others, nested in itself",
                      "break the cycle");
   index[slot] = kInProgress;
   int built = -1;
-  if (carrier == Carrier::fibres) {
+  if (carrier == Carrier::fibers) {
     if (const int other = instead_around_hair(b); other != sd::kNone) built = use(other, b.where, carrier);
   } else if (const auto* two = std::get_if<sd::TwoSidedDesc>(&b.kind)) {
     built = instead_of_two_sided(*two, b.where);
@@ -94,7 +94,7 @@ bool MaterialBuilder::holds_hair(int bsdf, std::size_t depth) const {
     return false;
   const auto& kind = desc_.bsdfs[static_cast<std::size_t>(bsdf)].kind;
   if (std::holds_alternative<sd::HairDesc>(kind)) return true;
-  // Of two sides the front alone lies on fibres.
+  // Of two sides the front alone lies on fibers.
   if (const auto* m = std::get_if<sd::TwoSidedDesc>(&kind)) return holds_hair(m->front, depth + 1);
   bool found = false;
   sd::for_each_nested(kind, [&](int nested) { found = found || holds_hair(nested, depth + 1); });
@@ -254,7 +254,7 @@ sc::Material MaterialBuilder::convert(const sd::BsdfDesc& b, Carrier on) {
       return m;
     }
     sc::Material operator()(const sd::HairDesc& d) const {
-      if (carrier == Carrier::fibres)
+      if (carrier == Carrier::fibers)
         return sc::HairMaterial{color(d.diffuse_reflectance), color(d.specular_reflectance),
                                 number(d.exponent)};
       self.notes_.warn(where, "a hair BSDF on a surface", "diffuse of its diffuse reflectance");

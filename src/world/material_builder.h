@@ -10,8 +10,8 @@
 
 namespace lumirank::world {
 
-// What a material lies on: hair is for fibres only.
-enum class Carrier { surface, fibres };
+// What a material lies on: hair is for fibers only.
+enum class Carrier { surface, fibers };
 
 class MaterialBuilder {
  public:
@@ -34,7 +34,7 @@ class MaterialBuilder {
 
   scatter::Material convert(const scenedesc::BsdfDesc& b, Carrier carrier);
   bool holds_hair(int bsdf, std::size_t depth = 0) const;
-  // On fibres: hair has no sides, no bumps and does not mix with the BSDFs of surfaces. kNone: it may stay.
+  // On fibers: hair has no sides, no bumps and does not mix with the BSDFs of surfaces. kNone: it may stay.
   int instead_around_hair(const scenedesc::BsdfDesc& b);
   // A two-sided wrapper around something that lets light through is replaced by its contents: -1 if it may
   // stay.
@@ -46,7 +46,7 @@ class MaterialBuilder {
   std::vector<scatter::Material> materials_;
   std::vector<Traits> traits_;
   // Of each description: ≥ 0 built, -1 not yet, -2 being built. Those with hair differ between the carriers.
-  std::vector<int> index_, index_on_fibres_;
+  std::vector<int> index_, index_on_fibers_;
   int default_ = -1;
 };
 

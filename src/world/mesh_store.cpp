@@ -78,7 +78,7 @@ geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesD
                      : curves.basis == Basis::bezier ? geometry::CurveBasis::bezier
                                                      : geometry::CurveBasis::linear;
   geometry::TriangleMesh mesh;
-  mesh.fibres = geometry::make_fibres(basis, curves.points, curves.radii, curves.first);
+  mesh.fibers = geometry::make_fibers(basis, curves.points, curves.radii, curves.first);
   return mesh;
 }
 
@@ -191,7 +191,7 @@ void MeshStore::load(Notes& notes) {
   parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) try {
         meshes_[i] = make(sources_[i], origins_[i]);
-        sources_[i].empty = meshes_[i].indices.empty() && meshes_[i].fibres.empty();
+        sources_[i].empty = meshes_[i].indices.empty() && meshes_[i].fibers.empty();
       } catch (const InputError& e) {
         // What the scene's own numbers are to blame for has its place in the scene already.
         const sd::ShapeDesc& shape = *sources_[i].shape;

@@ -55,7 +55,7 @@ void place_instance(const sd::SceneDesc& desc, const sd::ShapeDesc& instance, Me
 // corners.
 void bake(geometry::TriangleMesh& mesh, const Transform& to_world, bool flip) {
   const std::optional<Transform> inverse = to_world.inverse();
-  mesh.fibres.transform(to_world);
+  mesh.fibers.transform(to_world);
   const bool reverse = (to_world.determinant3() < 0) != flip;
   if (!to_world.is_identity()) {
     parallel_for(mesh.positions.size(), 1 << 16, [&](std::size_t b, std::size_t e) {
@@ -79,7 +79,7 @@ void bake(geometry::TriangleMesh& mesh, const Transform& to_world, bool flip) {
 }
 
 double total_area(const geometry::TriangleMesh& mesh) {
-  if (!mesh.fibres.empty()) return mesh.fibres.area();
+  if (!mesh.fibers.empty()) return mesh.fibers.area();
   return parallel_sum(mesh.triangle_count(), std::size_t{1} << 16, 0.0, [&](std::size_t b, std::size_t e) {
     double sum = 0;
     for (std::size_t t = b; t < e; ++t) sum += 0.5 * static_cast<double>(length(mesh.area_vector(t)));
@@ -90,7 +90,7 @@ double total_area(const geometry::TriangleMesh& mesh) {
 bool all_finite(const geometry::TriangleMesh& mesh) {
   for (const Vec3f& p : mesh.positions)
     if (!is_finite(p)) return false;
-  for (const geometry::Fibres::Point& p : mesh.fibres.points)
+  for (const geometry::Fibers::Point& p : mesh.fibers.points)
     if (!is_finite(p.position) || !std::isfinite(p.radius)) return false;
   return true;
 }
@@ -119,7 +119,7 @@ Units units_for(const std::vector<Placed>& placed, const MeshStore& store) {
   parallel_for(boxes.size(), 1, [&](std::size_t b, std::size_t e) {
     for (std::size_t s = b; s < e; ++s) {
       const geometry::TriangleMesh& mesh = store.mesh(static_cast<int>(s));
-      boxes[s] = mesh.fibres.bounds();
+      boxes[s] = mesh.fibers.bounds();
       for (const std::uint32_t k : mesh.indices) boxes[s].extend(mesh.positions[k]);  // of those in use
     }
   });
@@ -157,7 +157,7 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& uni
   for (Placed& p : placed) {
     const auto source = static_cast<std::size_t>(p.source);
     const geometry::TriangleMesh& original = store.mesh(p.source);
-    const std::size_t triangles = original.triangle_count(), segments = original.fibres.segments.size();
+    const std::size_t triangles = original.triangle_count(), segments = original.fibers.segments.size();
     const bool copy = p.shines || uses[source] == 1 || !p.to_world.inverse();
     geometry::Placement placement;
     bool flip = false;

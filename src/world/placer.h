@@ -35,7 +35,7 @@ struct Geometry {
   std::vector<Placed> placed;  // what is left of them: those without any area are warned about
   std::vector<bool> flip;      // per placement: the outside is against the corners' order
   std::size_t unique_triangles = 0, triangles = 0;
-  std::size_t segments = 0;  // of fibres
+  std::size_t segments = 0;  // of fibers
 };
 Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& units, Notes& notes);
 

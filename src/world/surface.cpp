@@ -58,11 +58,11 @@ scatter::SurfaceUv interpolate_uv(const geometry::TriangleMesh& mesh, std::uint3
 }
 
 scatter::SurfaceUv World::Impl::uv(const geometry::Hit& hit) const {
-  const geometry::Fibres& fibres = rays->meshes()[hit.mesh].fibres;
-  if (!fibres.empty()) {
-    // Asked of every crossing, for its opacity: across the fibre nothing varies.
+  const geometry::Fibers& fibers = rays->meshes()[hit.mesh].fibers;
+  if (!fibers.empty()) {
+    // Asked of every crossing, for its opacity: across the fiber nothing varies.
     scatter::SurfaceUv at;
-    at.uv = {geometry::fibre_point(fibres, hit.triangle, hit.barycentric.x).parameter, 0.5f};
+    at.uv = {geometry::fiber_point(fibers, hit.triangle, hit.barycentric.x).parameter, 0.5f};
     return at;
   }
   return interpolate_uv(rays->meshes()[hit.mesh], hit.triangle, hit.barycentric);
@@ -77,8 +77,8 @@ SurfaceHit World::Impl::surface(const geometry::Hit& hit, Vec3f ray_direction) c
   out.hit = hit;
   out.material = static_cast<int>(placement.material);
   out.emitter = placement.emitter == 0xffffffffu ? -1 : static_cast<int>(placement.emitter);
-  if (!mesh.fibres.empty()) {
-    out.point = fibre_surface(hit, ray_direction);
+  if (!mesh.fibers.empty()) {
+    out.point = fiber_surface(hit, ray_direction);
     return out;
   }
   const Corners c = corners(mesh, hit.triangle);

@@ -35,8 +35,8 @@ std::size_t bytes_of(const geometry::TriangleMesh& m) {
   return m.positions.size() * sizeof(Vec3f) + m.normals.size() * sizeof(Vec3f) +
          m.uvs.size() * sizeof(Vec2f) + m.colors.size() * sizeof(Rgb) +
          m.indices.size() * sizeof(std::uint32_t) +
-         m.fibres.points.size() * (sizeof(geometry::Fibres::Point) + sizeof(float)) +
-         m.fibres.segments.size() * sizeof(std::uint32_t);
+         m.fibers.points.size() * (sizeof(geometry::Fibers::Point) + sizeof(float)) +
+         m.fibers.segments.size() * sizeof(std::uint32_t);
 }
 
 std::size_t bytes_of(const emitters::Emitter& emitter) {
@@ -48,7 +48,7 @@ std::size_t bytes_of(const emitters::Emitter& emitter) {
 }
 
 Carrier carrier(const sd::ShapeDesc& shape) {
-  return std::holds_alternative<sd::CurvesDesc>(shape.kind) ? Carrier::fibres : Carrier::surface;
+  return std::holds_alternative<sd::CurvesDesc>(shape.kind) ? Carrier::fibers : Carrier::surface;
 }
 
 void step(const Sinks& sinks, double fraction) {

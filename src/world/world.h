@@ -25,7 +25,7 @@ struct BuildOptions {
 struct WorldInfo {
   std::size_t meshes = 0, instances = 0, triangles = 0, unique_triangles = 0;
   std::size_t meshes_left_out = 0;  // without a triangle, or without their file; not among `meshes`
-  std::size_t segments = 0;         // of fibres
+  std::size_t segments = 0;         // of fibers
   std::size_t textures = 0, materials = 0, emitters = 0;
   std::size_t memory_bytes = 0;  // meshes, textures and acceleration structure
 };
@@ -58,7 +58,7 @@ class World {
 
   std::optional<SurfaceHit> intersect(const geometry::Ray& ray) const;
   // The surface point for a known placement, triangle and barycentric coordinates. The direction matters to
-  // fibres only: they are seen all around.
+  // fibers only: they are seen all around.
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;
   // Radiance leaving an emitting hit towards wo (0 on the dark side), texture included.
   Rgb emitted(const SurfaceHit& at, Vec3f wo) const;
@@ -77,7 +77,7 @@ class World {
   emitters::Emission sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const;
 
   // Where a ray from `p` should start so that it does not meet its own surface: offset along ng to the side
-  // of `direction`. Where ng is zero (Closure::is_fibre()) along `direction`, of any length.
+  // of `direction`. Where ng is zero (Closure::is_fiber()) along `direction`, of any length.
   static Vec3f offset_origin(Vec3f p, Vec3f ng, Vec3f direction);
 
  private:

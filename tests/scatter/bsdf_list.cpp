@@ -115,7 +115,7 @@ BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
 
 BsdfCase hair(std::string name, float diffuse, float specular, float exponent) {
   BsdfCase c = single("hair_" + name, HairMaterial{gray(diffuse), gray(specular), number(exponent)});
-  c.inside_too = c.fibre = true;
+  c.inside_too = c.fiber = true;
   return c;
 }
 
@@ -266,7 +266,7 @@ std::vector<BsdfCase> build() {
   list.push_back(hair("brown", 0.4f, 0.2f, 40));
   list.push_back(
       nested("mask_hair", HairMaterial{gray(0.3f), gray(0.5f), number(20)}, MaskMaterial{number(0.6f), 0}));
-  list.back().inside_too = list.back().fibre = true;
+  list.back().inside_too = list.back().fiber = true;
 
   list.push_back(nested("mask_half", DiffuseMaterial{gray(0.5f)}, MaskMaterial{number(0.5f), 0}));
   list.push_back(nested("mask_plastic", plastic(kGgx, 0.2f, false), MaskMaterial{number(0.7f), 0}));

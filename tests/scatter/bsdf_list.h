@@ -16,7 +16,7 @@ struct BsdfCase {
   bool lossless = false;      // reflects and transmits together exactly what arrives
   bool inside_too = false;    // has lobes for wo on the inside
   float eta = 1;              // index inside over outside, for the reciprocity of transmission
-  bool fibre = false;         // has no sides: lobes all around
+  bool fiber = false;         // has no sides: lobes all around
   std::string energy_exempt;  // why the model may make energy; empty: it may not
 };
 

@@ -68,7 +68,7 @@ TEST_P(EveryBsdfPair, WeightIsValueOverPdf) {
         if (!s || s->delta) continue;
         EXPECT_NEAR(pdf(closure, wo, s->wi, which), s->pdf, 1e-4f * s->pdf) << c.name;
         expect_close(eval(closure, wo, s->wi, adjoint), s->weight * s->pdf, 1e-4f, c.name);
-        EXPECT_EQ(s->transmitted, !c.fibre && wo.z * s->wi.z < 0) << c.name;
+        EXPECT_EQ(s->transmitted, !c.fiber && wo.z * s->wi.z < 0) << c.name;
       }
     }
     // Radiance is scaled by the squared relative index where it crosses the surface, particles are not.
@@ -158,7 +158,7 @@ TEST_P(EveryBsdfPair, ExtremeRandomNumbersAreSafe) {
 // transmitted.
 TEST_P(EveryBsdfPair, NoLeaksUnderTiltedShadingNormals) {
   const BsdfCase& c = bsdf();
-  if (c.fibre) return;  // it has no sides
+  if (c.fiber) return;  // it has no sides
   SurfacePoint at = point_with_normal({0, 0, 1});
   at.shading = Frame::from_normal(normalize({0.6f, 0.2f, 0.7f}));
   Rng r = rng();

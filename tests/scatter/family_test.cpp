@@ -13,7 +13,7 @@ TEST(LobeFamilies, AreWhole) {
     EXPECT_TRUE(family.value && family.pdf && family.sample && family.albedo && family.importance) << k;
     EXPECT_TRUE(family.factor_of_wo && family.bound && family.reach) << k;
     EXPECT_EQ(family.direction != nullptr, is_delta(kind)) << k;
-    EXPECT_EQ(family.fibre_bound != nullptr, is_hair(kind)) << k;
+    EXPECT_EQ(family.fiber_bound != nullptr, is_hair(kind)) << k;
     // Lanes mirror what shines through to wo's side, and know nothing else of the other side.
     EXPECT_FALSE(family.lanes != LaneForm::none && (is_delta(kind) || is_hair(kind) || family.refracts)) << k;
     EXPECT_FALSE(family.matt && (family.roughness || transmits(kind))) << k;

@@ -15,10 +15,10 @@ Closure hair(float diffuse, float specular, float exponent, MaterialSet& set) {
   return set.closure(0, point_with_normal({0, 0, 1}), {0, 0, 1});
 }
 
-TEST(Hair, LooksTheSameAllAroundTheFibre) {
+TEST(Hair, LooksTheSameAllAroundTheFiber) {
   MaterialSet set;
   const Closure c = hair(0.3f, 0.5f, 30, set);
-  EXPECT_TRUE(c.is_fibre());
+  EXPECT_TRUE(c.is_fiber());
   EXPECT_EQ(c.ng, Vec3f{});
   Rng rng(1, Stage::test);
   for (int k = 0; k < 500; ++k) {
@@ -49,7 +49,7 @@ TEST(Hair, SpecularPeakLiesOnTheConeOfMirrorDirections) {
   }
 }
 
-// At light across the fibre the share that comes back is W(n + 2)/W(n) = (n + 1)/(n + 2): cos²φ under cosⁿ.
+// At light across the fiber the share that comes back is W(n + 2)/W(n) = (n + 1)/(n + 2): cos²φ under cosⁿ.
 TEST(Hair, ShareOfTheSpecularLobeAtLightAcross) {
   for (const float n : {0.0f, 1.0f, 10.0f, 300.0f}) {
     MaterialSet set;

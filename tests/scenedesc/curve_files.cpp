@@ -142,8 +142,8 @@ TEST(MitsubaCurves, HairIsReplacedByKajiyaKayAndSaysSo) {
                InputError);
 }
 
-// Without absorption nothing is lost: Σ over reflections and passages is 1 for every ray through the fibre.
-TEST(HairFromAbsorption, KeepsTheEnergyOfTheFibre) {
+// Without absorption nothing is lost: Σ over reflections and passages is 1 for every ray through the fiber.
+TEST(HairFromAbsorption, KeepsTheEnergyOfTheFiber) {
   const HairDesc white = hair_from_absorption(Rgb(0), 1.55f, 0.3f);
   EXPECT_NEAR(white.diffuse_reflectance.value.g + white.specular_reflectance.value.g, 1, 1e-5f);
   // β = 0.3: v = (0.726·0.3 + 0.812·0.09)² = 0.0846, and cosⁿ has a variance of 1/n.

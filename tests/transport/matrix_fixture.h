@@ -208,12 +208,12 @@ inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
   for (const float exponent : {8.0f, 60.0f}) {
     HairDesc hair;
     hair.exponent = value(exponent);
-    CurvesDesc fibre;
-    fibre.basis = CurvesDesc::Basis::linear;
-    fibre.points = {{1000, 1010, 1000}, {1001, 1010, 1000}};
-    fibre.radii = {0.1f, 0.1f};
-    fibre.first = {0, 2};
-    add_shape(desc, fibre, {}, add_bsdf(desc, hair));
+    CurvesDesc fiber;
+    fiber.basis = CurvesDesc::Basis::linear;
+    fiber.points = {{1000, 1010, 1000}, {1001, 1010, 1000}};
+    fiber.radii = {0.1f, 0.1f};
+    fiber.first = {0, 2};
+    add_shape(desc, fiber, {}, add_bsdf(desc, hair));
   }
   for (std::size_t k = 0; k < all.size(); ++k)
     add_shape(desc, RectangleDesc{}, Transform::translate(1000 + 3.0 * static_cast<double>(k), 1000, 1000),

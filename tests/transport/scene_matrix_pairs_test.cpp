@@ -75,9 +75,9 @@ Pair one_pair(const RandomEnds& ends, Index i, Index j) {
   const double d = far ? 1 : length(w);
   w = w / static_cast<float>(d);
   const Rgb fx = scatter::eval_f(r.closure_at(i), r.wo[i], w);
-  // A fibre has the sine of the angle to it instead.
+  // A fiber has the sine of the angle to it instead.
   const double cos_x = r.closure_at(i).cosine(w);
-  const double cos_y = l.kind[j] == LightKind::surface && l.closure_at(j).is_fibre()
+  const double cos_y = l.kind[j] == LightKind::surface && l.closure_at(j).is_fiber()
                            ? l.closure_at(j).cosine(w)
                            : std::abs(dot(w, l.ng[j]));
   double g = cos_x / (d * d);

@@ -95,8 +95,8 @@ TEST_P(SphericalPairs, EntriesAreOnAverageTheIntegral) {
     const float side = dot(receivers.normal[i], receivers.wo[i]) < 0 ? -1.0f : 1.0f;
     SphereEnds ends{
         x, y, receivers.wo[i], lights.incoming[j],
-        // A fibre has no hemisphere but that of the light.
-        x.is_fibre() ? normalize(w) : receivers.normal[i] * side, lights.ng[j], w, r,
+        // A fiber has no hemisphere but that of the light.
+        x.is_fiber() ? normalize(w) : receivers.normal[i] * side, lights.ng[j], w, r,
         GetParam().indicator == SphereRules::Indicator::disc && length_squared(w) < square(kDiscReach * r)};
     const double per = static_cast<double>(lights.power[j].r) / (kPi * static_cast<double>(r) * r);
     const double fine = quadrature(ends, kPoints), coarse = quadrature(ends, kPoints / 4);

@@ -1,4 +1,4 @@
-// Sheen of cloth: fibres that stand up from a base. Estevez and Kulla 2017, "Production Friendly Microfacet
+// Sheen of cloth: fibers that stand up from a base. Estevez and Kulla 2017, "Production Friendly Microfacet
 // Sheen BRDF" (their distribution "Charlie"), with the visibility of Ashikhmin and Premoze 2007, as
 // KHR_materials_sheen has it. Inside this room only.
 //

@@ -77,8 +77,8 @@ struct LobeFamily {
   float (*factor_of_wo)(const Lobe& lobe, float cos_o, float narrowest) = inverse_pi;
   Rgb (*bound)(const LobeTerm& term, const AngleRange& range, CosineFactor factor) = constant_bound;
   float (*reach)(const LobeTerm& term) = reach_of_alpha;
-  // The same of a fibre, at all w whose latitudes (radians) lie between the two.
-  Rgb (*fibre_bound)(const LobeTerm& term, float latitude_o, float lo, float hi,
+  // The same of a fiber, at all w whose latitudes (radians) lie between the two.
+  Rgb (*fiber_bound)(const LobeTerm& term, float latitude_o, float lo, float hi,
                      CosineFactor factor) = nullptr;
   bool bound_by_cosine = false;  // the bound takes of the range the cosines alone
   bool bound_by_mirror = false;  // it takes the cosine with the mirror direction

@@ -1,10 +1,10 @@
 // Kajiya and Kay's hair (1989, section "A new lighting model for hair"): a diffuse part in proportion to the
-// sine of the angle between fibre and light, and a specular part about the cone of mirror directions. Theirs
+// sine of the angle between fiber and light, and a specular part about the cone of mirror directions. Theirs
 // makes energy; here both are normalized and reciprocal.
 //
-// Local x runs along the fibre. For a direction w, x = w·x is the sine of its latitude φ and c = √(1 - x²)
-// the sine of its angle to the fibre, which is also the share of the fibre's width that light along w meets.
-// So the cosine of a surface is replaced by c: radiance = ∫ f·L·c dω, and of the light from wi a fibre sends
+// Local x runs along the fiber. For a direction w, x = w·x is the sine of its latitude φ and c = √(1 - x²)
+// the sine of its angle to the fiber, which is also the share of the fiber's width that light along w meets.
+// So the cosine of a surface is replaced by c: radiance = ∫ f·L·c dω, and of the light from wi a fiber sends
 // on the share ∫ f·c dω ≤ 1 (Marschner et al. 2003, section 3).
 //
 // diffuse   f = color/π²: ∫ c dω = 2π·∫cos²φ dφ = π², so the share is exactly the color.
@@ -25,7 +25,7 @@ constexpr float kInvPi2 = kInvPi * kInvPi;
 // c² never counts as less: f grows like 1/c².
 constexpr float kMinSine2 = 1e-8f;
 
-// Not 1 - x²: near the fibre that difference has no digits left.
+// Not 1 - x²: near the fiber that difference has no digits left.
 float sine2(Vec3f w) { return std::max(kMinSine2, w.y * w.y + w.z * w.z); }
 float latitude(Vec3f w) { return std::atan2(w.x, std::sqrt(w.y * w.y + w.z * w.z)); }
 
@@ -61,7 +61,7 @@ float hair_specular_scale(float exponent) {
   return 1 / (2 * kPi * std::sqrt(kPi) * std::exp(log_w));
 }
 
-float fibre_sine(Vec3f w) { return std::sqrt(w.y * w.y + w.z * w.z); }
+float fiber_sine(Vec3f w) { return std::sqrt(w.y * w.y + w.z * w.z); }
 
 namespace {
 
@@ -99,7 +99,7 @@ bool hair_specular_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 
 float hair_diffuse_factor(const Lobe&, float, float) { return kInvPi * kInvPi; }
 float hair_specular_factor(const Lobe& lobe, float, float) { return lobe.alpha_v; }
-// Greatest sine of the angle to the fibre.
+// Greatest sine of the angle to the fiber.
 float max_sine_of(float lo, float hi) {
   return lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
 }
@@ -107,7 +107,7 @@ Rgb hair_diffuse_bound(const LobeTerm& t, float, float lo, float hi, CosineFacto
   return t.scale * (factor == CosineFactor::cosine ? max_sine_of(lo, hi) : 1.0f);
 }
 Rgb hair_specular_bound(const LobeTerm& t, float latitude_o, float lo, float hi, CosineFactor factor) {
-  const float min_sine = std::min(std::cos(lo), std::cos(hi));  // of the angle to the fibre
+  const float min_sine = std::min(std::cos(lo), std::cos(hi));  // of the angle to the fiber
   const float max_sine = max_sine_of(lo, hi);
   const float from = latitude_o + lo, to = latitude_o + hi;
   const float off = from > 0 ? from : to < 0 ? -to : 0.0f;
@@ -128,13 +128,13 @@ constinit const LobeFamily hair_diffuse_family{.value = hair_diffuse_value,
                                                .sample = hair_diffuse_sample,
                                                .albedo = color_albedo,
                                                .factor_of_wo = hair_diffuse_factor,
-                                               .fibre_bound = hair_diffuse_bound};
+                                               .fiber_bound = hair_diffuse_bound};
 
 constinit const LobeFamily hair_specular_family{.value = hair_specular_value,
                                                 .pdf = hair_specular_pdf,
                                                 .sample = hair_specular_sample,
                                                 .factor_of_wo = hair_specular_factor,
-                                                .fibre_bound = hair_specular_bound,
+                                                .fiber_bound = hair_specular_bound,
                                                 .power = true,
                                                 .roughness = hair_specular_roughness};
 

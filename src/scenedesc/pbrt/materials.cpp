@@ -221,7 +221,7 @@ class MaterialMaker {
   const bool remap_;
 };
 
-// Kajiya-Kay of the same energy in place of pbrt's model (Chiang et al. 2016), both in radii of the fibre.
+// Kajiya-Kay of the same energy in place of pbrt's model (Chiang et al. 2016), both in radii of the fiber.
 int MaterialMaker::hair() {
   const float beta_m = p_.number("beta_m", 0.3f), beta_n = p_.number("beta_n", 0.3f);
   const float eta = p_.number("eta", 1.55f);
@@ -253,7 +253,7 @@ int MaterialMaker::hair() {
   if (painted.texture != kNone) out.diffuse_reflectance = painted;
   reader_.warn_once(
       p_.where(), "pbrt's model of hair",
-      "Kajiya-Kay hair of the same brightness, which sends light that went through a fibre back "
+      "Kajiya-Kay hair of the same brightness, which sends light that went through a fiber back "
       "as well as on, and has no second highlight and no glints");
   return add(out);
 }

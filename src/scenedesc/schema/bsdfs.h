@@ -163,7 +163,7 @@ struct PrincipledDesc {  // Mitsuba 3's "principled"
                       Field{"eta", &PrincipledDesc::eta, Role::own}};
   }
 };
-struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fibre
+struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fiber
   ColorInput diffuse_reflectance{Rgb(0.4f)}, specular_reflectance{Rgb(0.1f)};
   FloatInput exponent{40};  // the specular lobe falls like cosⁿ of the angle to the mirror cone
 

@@ -17,7 +17,7 @@ double fresnel(double c, double eta) {
   return 0.5 * (p * p + s * s);
 }
 
-// Of light across the fibre, over its width, h from -1 to 1: F is reflected at once; (1 - F)² T (1 + FT +
+// Of light across the fiber, over its width, h from -1 to 1: F is reflected at once; (1 - F)² T (1 + FT +
 // F²T²
 // + …) leaves after 1, 2, 3, … passages, T being the transmittance of one.
 struct Shares {

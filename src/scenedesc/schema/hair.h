@@ -6,11 +6,11 @@
 
 namespace lumirank::scenedesc {
 
-// Absorption per radius of a fibre with so much of the two pigments of hair (d'Eon et al. 2011, section 6.1).
+// Absorption per radius of a fiber with so much of the two pigments of hair (d'Eon et al. 2011, section 6.1).
 Rgb hair_absorption(float eumelanin, float pheomelanin);
 
 // For the model of Marschner et al. 2003 in the parameters of Chiang et al. 2016: absorption `sigma_a` per
-// radius, relative index `eta`, longitudinal roughness `beta_m` in [0, 1]. At light across the fibre the
+// radius, relative index `eta`, longitudinal roughness `beta_m` in [0, 1]. At light across the fiber the
 // result has the same share of energy, split alike: what is reflected at the surface is specular, with an
 // exponent of the same width, and what has been inside is diffuse.
 HairDesc hair_from_absorption(Rgb sigma_a, float eta, float beta_m);

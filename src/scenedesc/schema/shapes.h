@@ -48,7 +48,7 @@ struct CylinderDesc {
   Vec3d p0{0, 0, 0}, p1{0, 0, 1};
   float radius = 1;
 };
-// Fibres: many curves with a radius at each of their points. Cubic ones have uniform knots: a b-spline of n
+// Fibers: many curves with a radius at each of their points. Cubic ones have uniform knots: a b-spline of n
 // points has n - 3 pieces and does not reach its outer points; a bezier curve of 3k + 1 points has k pieces.
 struct CurvesDesc {
   enum class Basis { bspline, bezier, linear };

@@ -159,11 +159,11 @@ void MitsubaWriter::write(const HairDesc& d, const BsdfDesc& desc, const std::st
   if (plain.exponent.texture != kNone) plain.exponent = HairDesc{}.exponent;
   warn(desc.where, "Kajiya and Kay's hair",
        painted ? "Mitsuba's hair, of one gloss" : "Mitsuba's hair of the same brightness");
-  const HairAbsorption fibre = hair_to_absorption(plain);
+  const HairAbsorption fiber = hair_to_absorption(plain);
   open_bsdf("hair", id);
-  xml_.color("sigma_a", fibre.sigma_a);
-  xml_.number("int_ior", fibre.eta), xml_.number("ext_ior", 1);
-  xml_.number("longitudinal_roughness", fibre.beta_m);
+  xml_.color("sigma_a", fiber.sigma_a);
+  xml_.number("int_ior", fiber.eta), xml_.number("ext_ior", 1);
+  xml_.number("longitudinal_roughness", fiber.beta_m);
   xml_.close();
 }
 

@@ -152,8 +152,8 @@ void MitsubaWriter::shape(int index) {
     open_shape("cylinder", id);
     xml_.place("point", "p0", cylinder->p0), xml_.place("point", "p1", cylinder->p1);
     xml_.number("radius", cylinder->radius);
-  } else if (const auto* fibres = std::get_if<CurvesDesc>(&s.kind)) {
-    curves(s, *fibres, id);
+  } else if (const auto* fibers = std::get_if<CurvesDesc>(&s.kind)) {
+    curves(s, *fibers, id);
   } else if (const auto* members = std::get_if<ShapeGroupDesc>(&s.kind)) {
     group = true;
     open_shape("shapegroup", id);

@@ -30,7 +30,7 @@ struct PairContext {
   SphereBackground spheres;
   bool has_smooth;  // rays need transmittances
   bool has_directional;
-  bool has_two_sided;  // some surface shines through or is a fibre, see GroupStore::two_sided
+  bool has_two_sided;  // some surface shines through or is a fiber, see GroupStore::two_sided
 };
 
 // The pairs of a block in one of three shapes. Places count from 0 within the block, 16 to a group.

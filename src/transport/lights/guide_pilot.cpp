@@ -45,7 +45,7 @@ class Relevance {
   }
 
  private:
-  // A fibre (without a geometric normal) is met from everywhere, and π/4 is the mean of its sine.
+  // A fiber (without a geometric normal) is met from everywhere, and π/4 is the mean of its sine.
   static float cosine(Vec3f n, Vec3f ng, Vec3f w) {
     return ng == Vec3f{} ? kPi / 4 : std::max(0.0f, dot(n, w));
   }

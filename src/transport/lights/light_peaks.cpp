@@ -18,15 +18,15 @@ std::vector<LightPeak> light_peaks(const VirtualLights& lights) {
                                         outside, true);
       LightPeak& peak = peaks[c];
       peak.one_sided = true;
-      bool fibre = false;
+      bool fiber = false;
       for (const scatter::Lobe& lobe : lobes) {
-        fibre = fibre || scatter::is_hair(lobe.kind);
-        peak.one_sided = peak.one_sided && !fibre && !scatter::shines_through(lobe.kind);
+        fiber = fiber || scatter::is_hair(lobe.kind);
+        peak.one_sided = peak.one_sided && !fiber && !scatter::shines_through(lobe.kind);
       }
       peak.max_f = bound.anywhere(scatter::CosineFactor::none);
       peak.max_f_cos = bound.anywhere(scatter::CosineFactor::cosine);
       // The two normals' cosines differ by no more than the normals do.
-      if (!fibre) peak.max_f_cos += peak.max_f * length(n - lights.ng[j]);
+      if (!fiber) peak.max_f_cos += peak.max_f * length(n - lights.ng[j]);
     }
   });
   return peaks;

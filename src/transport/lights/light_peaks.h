@@ -9,7 +9,7 @@
 namespace lumirank::transport {
 
 // At least f_y towards any receiver, for light from `incoming`, and at least f_y times the cosine with the
-// geometric normal (of a fibre: the sine).
+// geometric normal (of a fiber: the sine).
 struct LightPeak {
   Rgb max_f, max_f_cos;
   bool one_sided;  // nothing comes out behind the geometric normal

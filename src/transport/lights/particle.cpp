@@ -24,7 +24,7 @@ constexpr std::size_t kMaxPending = 256;
 // this part of Veach's correction (1997, section 5.3) belongs to the light, the rest to the direction in
 // which light leaves it.
 float incident_correction(const Closure& closure, Vec3f incoming) {
-  if (closure.is_fibre()) return 1;
+  if (closure.is_fiber()) return 1;
   return std::abs(dot(incoming, closure.frame.n) / dot(incoming, closure.ng));
 }
 

@@ -146,7 +146,7 @@ ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice&
       const float weight = max_component(receivers.weight[i]);
       const Lit here{receivers.position[i], receivers.normal[i], receivers.ng[i]};
       piece.places.push_back({here.position, here.normal, 0, true});
-      // A fibre has no side to look from; the surfaces around it tell enough.
+      // A fiber has no side to look from; the surfaces around it tell enough.
       if (here.ng == Vec3f{}) continue;
       const float part = part_by_columns(receivers, i, traced_below);
       for (int k = 0; k < kDirectSamples; ++k)
@@ -159,7 +159,7 @@ ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice&
         const auto hit = world.intersect({world::World::offset_origin(here.position, here.ng, w), w});
         if (!hit) continue;
         const scatter::Closure closure = world.materials().closure(hit->material, hit->point, -w);
-        if (!closure.has_smooth() || closure.is_fibre() || !closure.sides_agree(-w)) continue;
+        if (!closure.has_smooth() || closure.is_fiber() || !closure.sides_agree(-w)) continue;
         const float side = dot(closure.frame.n, w) < 0 ? 1.0f : -1.0f;
         const Lit there{hit->point.position, closure.frame.n * side, closure.ng * side};
         piece.places.push_back({there.position, there.normal, 0, true});

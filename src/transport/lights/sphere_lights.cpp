@@ -68,7 +68,7 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
       const std::size_t j = which[k];
       lights.radius[j] =
           found[k].count > 0 ? sphere_radius(found[k].distance_squared, scale, max_radius) : max_radius;
-      if (lights.ng[j] == Vec3f{}) continue;  // a fibre has no tangent plane
+      if (lights.ng[j] == Vec3f{}) continue;  // a fiber has no tangent plane
       Rng rng(0, Stage::spheres, j);
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);
     }

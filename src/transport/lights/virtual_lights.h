@@ -68,7 +68,7 @@ struct VirtualLights {
   std::vector<LightKind> kind;
   std::vector<Vec3f> position;  // directional: where its ray to the scene's center enters the bounding sphere
   std::vector<Vec3f> normal;    // unit; zero for omni. Surface: shading normal on the side of `incoming`
-  // Geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds; zero on a fibre.
+  // Geometric normal, in the hemisphere of `normal`; equals `normal` for other kinds; zero on a fiber.
   std::vector<Vec3f> ng;
   std::vector<Rgb> power;   // by kind, see above
   std::vector<float> area;  // a_j: the area that the light stands for (clamping); 0: never clamped

@@ -60,7 +60,7 @@ void fill_row(const Receivers& receivers, Sides sides, const SceneMatrixSettings
   const Vec3f wo = receivers.wo[i];
   const float side = dot(receivers.normal[i], wo) < 0 ? -1.0f : 1.0f;
   const Vec3f ng = receivers.ng[i] * side;
-  const Vec3f n = sides == Sides::fibre ? receivers.closure_at(i).frame.s : receivers.normal[i] * side;
+  const Vec3f n = sides == Sides::fiber ? receivers.closure_at(i).frame.s : receivers.normal[i] * side;
   const bool lambertian = receivers.closure[i] == Receivers::kLambertian;
   const bool black = lambertian
                          ? max_component(receivers.albedo[i]) <= 0
@@ -69,7 +69,7 @@ void fill_row(const Receivers& receivers, Sides sides, const SceneMatrixSettings
   set_lane(group.n, lane, n), set_lane(group.ng, lane, ng);
   set_lane(group.origin, lane, world::World::offset_origin(receivers.position[i], ng, n));
   if (lambertian) set_lane(group.f, lane, as_vector(receivers.albedo[i] * kInvPi));
-  if (black || (sides != Sides::fibre && !answers(n, ng, wo))) return;
+  if (black || (sides != Sides::fiber && !answers(n, ng, wo))) return;
   // Lobes have a roughness of 1 at most: above it, all direct light is traced.
   group.depth_min[lane] = settings.traced_direct_below > 1 ? 1.0f : 0.0f;
   group.depth_max[lane] = settings.max_depth < 0 ? kNoLimit
@@ -109,8 +109,8 @@ ColumnFields surface_fields(const VirtualLights& lights, Sides sides, std::size_
   if (dot(c.n, wo) < 0) c.n = -c.n, c.ng = -c.ng;
   c.target = world::World::offset_origin(lights.position[j], c.ng, c.n);
   const bool lambertian = lights.closure[j] == VirtualLights::kLambertian;
-  if (sides == Sides::fibre) c.n = lights.closure_at(j).frame.s;
-  if ((sides != Sides::fibre && !answers(c.n, c.ng, wo)) ||
+  if (sides == Sides::fiber) c.n = lights.closure_at(j).frame.s;
+  if ((sides != Sides::fiber && !answers(c.n, c.ng, wo)) ||
       (!lambertian && lights.closures.lobes(lights.closures.recipe(lights.closure[j])).empty()))
     c.power = Rgb(0);
   if (lambertian) {

@@ -15,7 +15,7 @@
 namespace lumirank::transport {
 
 struct RowGroup {
-  // Position; shading and geometric normal, both on the side of wo. Fibres: n is the tangent, ng zero.
+  // Position; shading and geometric normal, both on the side of wo. Fibers: n is the tangent, ng zero.
   Lane3 p, n, ng;
   Lane3 origin;               // where shadow rays start
   Lane3 f;                    // lambertian receivers: albedo/π

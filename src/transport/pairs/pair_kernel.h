@@ -58,12 +58,12 @@ struct PairGeometry {
   LaneMask alive;     // E may differ from 0
   Lane3 w;            // from receiver to light, not normalized; directional: towards the light
   Lane inv, inv_d;    // 1/d², 1/d; directional: 1
-  Lane cos_x, cos_y;  // cosines (of a fibre: sines), times d; see VirtualLights::power about ng
+  Lane cos_x, cos_y;  // cosines (of a fiber: sines), times d; see VirtualLights::power about ng
   Lane spot_cosine;   // spots: between the axis and the way to the receiver
 };
 
-// The length of t × w: the sine of the angle between a fibre and a direction, times the latter's length.
-inline Lane fibre_sine(const Lane3& t, const Lane3& w) {
+// The length of t × w: the sine of the angle between a fiber and a direction, times the latter's length.
+inline Lane fiber_sine(const Lane3& t, const Lane3& w) {
   const Lane3 c{t.y * w.z - t.z * w.y, t.z * w.x - t.x * w.z, t.x * w.y - t.y * w.x};
   return sqrt(dot(c, c));
 }
@@ -85,16 +85,16 @@ inline PairGeometry pair_geometry(const RowGroup& r, const ColumnGroup& c, const
     at.inv = splat(1) / select(at.alive, d2, splat(1));
     at.inv_d = sqrt(at.inv);
   }
-  if (row_kind != kRowLambertian && extras.row_sides == Sides::fibre) {
-    at.cos_x = fibre_sine(r.n, at.w);
+  if (row_kind != kRowLambertian && extras.row_sides == Sides::fiber) {
+    at.cos_x = fiber_sine(r.n, at.w);
   } else {
     at.cos_x = dot(r.n, at.w);
     if (row_kind == kRowLambertian || extras.row_sides == Sides::front)
       at.alive &= (at.cos_x > zero) & (dot(r.ng, at.w) > zero);
   }
   if constexpr (sided_column) {
-    if (column_kind == kColumnScatter && extras.column_sides == Sides::fibre) {
-      at.cos_y = fibre_sine(c.n, at.w);
+    if (column_kind == kColumnScatter && extras.column_sides == Sides::fiber) {
+      at.cos_y = fiber_sine(c.n, at.w);
     } else {
       at.cos_y = -dot(c.ng, at.w);
       if (column_kind == kColumnFacing || extras.column_sides == Sides::front)

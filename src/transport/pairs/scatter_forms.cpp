@@ -21,7 +21,7 @@ ScatterForm form_of(std::span<const scatter::Lobe> lobes) {
   for (const scatter::Lobe& lobe : lobes) {
     const scatter::LobeFamily& family = scatter::family_of(lobe.kind);
     if (scatter::shines_through(lobe.kind)) form.sides = Sides::both;
-    if (scatter::is_hair(lobe.kind)) form.sides = Sides::fibre;
+    if (scatter::is_hair(lobe.kind)) form.sides = Sides::fiber;
     const bool coated = static_cast<bool>(lobe.coat);
     form.microfacets = form.microfacets || (family.half_vector && !coated);
     form.anisotropic = form.anisotropic || is_anisotropic(lobe);

@@ -24,7 +24,7 @@ struct LobeForm {
 enum class Sides : std::uint8_t {
   front,
   both,   // some lobe shines through the surface
-  fibre,  // all around, and the sine of the angle to the tangent takes the place of the cosine
+  fiber,  // all around, and the sine of the angle to the tangent takes the place of the cosine
 };
 
 struct ScatterForm {

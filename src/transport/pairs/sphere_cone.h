@@ -43,8 +43,8 @@ inline SphereGeometry sphere_geometry(const RowGroup& r, const ColumnGroup& c, c
   at.inside = at.d2 <= r2;
   at.disc = at.d2 < r2 * splat(kDiscReach * kDiscReach);
   if (extras.spheres->rules.indicator == SphereRules::Indicator::cosine) at.disc = LaneMask{};
-  // A fibre has no tangent plane.
-  if (column_kind == kColumnScatterSphere && extras.column_sides == Sides::fibre) at.disc = LaneMask{};
+  // A fiber has no tangent plane.
+  if (column_kind == kColumnScatterSphere && extras.column_sides == Sides::fiber) at.disc = LaneMask{};
   return at;
 }
 

@@ -28,7 +28,7 @@ SphereCone sphere_cone(Vec3f n, Vec3f w, float radius) {
 Rgb sphere_integrand(const SphereEnds& ends, Vec3f l) {
   const float slope = dot(ends.ng, l), height = dot(ends.ng, ends.w);
   float indicator = std::abs(slope);
-  if (ends.y.is_fibre()) {
+  if (ends.y.is_fiber()) {
     indicator = ends.y.cosine(l);
   } else if (slope * height <= 0) {
     return Rgb(0);

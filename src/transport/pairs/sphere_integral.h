@@ -15,11 +15,11 @@ struct SphereEnds {
   const scatter::Closure& y;  // light
   Vec3f wo;                   // towards the eye
   Vec3f incoming;             // back along the light's path
-  Vec3f n;                    // the receiver's shading normal; of a fibre, the direction to the light
+  Vec3f n;                    // the receiver's shading normal; of a fiber, the direction to the light
   Vec3f ng;                   // the light's geometric normal
   Vec3f w;                    // from receiver to light, not normalized
   float radius;
-  bool disc;  // I: whether l meets the disc; else cosθy. Never on a fibre
+  bool disc;  // I: whether l meets the disc; else cosθy. Never on a fiber
 };
 
 // How many samples each strategy gets: uniform in the cone, BSDF at the receiver, BSDF at the light.

@@ -35,10 +35,10 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
   const Lane below = select(at.inside, one, sin2 / (one + cosine));
   const Lane inv_d = one / sqrt(select(alive, at.d2, one));
   const Lane3 center = at.w * inv_d;
-  // From inside, the hemisphere of the receiver; of a fibre, the one towards the light.
-  const bool row_fibre = scattering_row && extras.row_sides == Sides::fibre;
+  // From inside, the hemisphere of the receiver; of a fiber, the one towards the light.
+  const bool row_fiber = scattering_row && extras.row_sides == Sides::fiber;
   const Lane side = select(dot(r.n, at.w) < zero, -one, one);
-  const Lane3 axis = row_fibre ? center : select(at.inside, r.n * side, center);
+  const Lane3 axis = row_fiber ? center : select(at.inside, r.n * side, center);
 
   // How many directions, and who takes them.
   const bool by_cone = rules.samples == SphereRules::Samples::cone;
@@ -97,7 +97,7 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
     const VirtualLights& lights = *extras.spheres->lights;
     const scatter::Closure x = receivers.closure_at(i), y = lights.closure_at(j);
     const Vec3f facing =
-        row_fibre ? Vec3f{center.x[k], center.y[k], center.z[k]} : Vec3f{r.n.x[k], r.n.y[k], r.n.z[k]};
+        row_fiber ? Vec3f{center.x[k], center.y[k], center.z[k]} : Vec3f{r.n.x[k], r.n.y[k], r.n.z[k]};
     const SphereEnds ends{x,
                           y,
                           receivers.wo[i],
@@ -128,7 +128,7 @@ inline PairResult evaluate_sphere(const RowGroup& r, const ColumnGroup& c, const
   Lane3 f = c.power;
   if constexpr (!scattering_row) f = f * r.f;
   Lane3 e = f * value;
-  if (bits(alive & at.disc) != 0 && !row_fibre) e = e * (one / shown_share(r, c, at));
+  if (bits(alive & at.disc) != 0 && !row_fiber) e = e * (one / shown_share(r, c, at));
   if (extras.clamp < kInfinity) {
     // a_j·G·(π f_x)(π f_y) as for points, averaged over the sphere.
     Lane bound = c.clamp_area * max_component(value) / r2;

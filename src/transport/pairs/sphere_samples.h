@@ -88,7 +88,7 @@ struct SphereIntegrand {
   const PairExtras& extras;
   const SphereGeometry& at;
   Lane height, r2;
-  bool discs, row_fibre, column_fibre;
+  bool discs, row_fiber, column_fiber;
 
   SphereIntegrand(const RowGroup& r_, const ColumnGroup& c_, const PairExtras& extras_,
                   const SphereGeometry& at_)
@@ -99,20 +99,20 @@ struct SphereIntegrand {
         height(dot(c.ng, at.w)),
         r2(c.radius * c.radius),
         discs(bits(at.disc) != 0),
-        row_fibre(scattering_row && extras.row_sides == Sides::fibre),
-        column_fibre(scattering_column && extras.column_sides == Sides::fibre) {}
+        row_fiber(scattering_row && extras.row_sides == Sides::fiber),
+        column_fiber(scattering_column && extras.column_sides == Sides::fiber) {}
 
   // sum += f_x cosθx f_y I · scale() at the direction l where `wanted`, f_x or f_y left out where lambertian.
   template <typename Scale>
   void add(Lane3& sum, const Lane3& l, LaneMask wanted, Scale&& scale) const {
     const Lane zero{};
-    const Lane slope = column_fibre ? fibre_sine(c.n, l) : dot(c.ng, l);
-    LaneMask lit = column_fibre ? wanted : wanted & (slope * height > zero);
+    const Lane slope = column_fiber ? fiber_sine(c.n, l) : dot(c.ng, l);
+    LaneMask lit = column_fiber ? wanted : wanted & (slope * height > zero);
     if (discs) {
       const Lane3 off = l * (height / select(lit, slope, splat(1))) - at.w;
       lit &= ~at.disc | (dot(off, off) < r2);
     }
-    const Lane cos_x = row_fibre ? fibre_sine(r.n, l) : dot(r.n, l);
+    const Lane cos_x = row_fiber ? fiber_sine(r.n, l) : dot(r.n, l);
     if constexpr (!scattering_row) lit &= (cos_x > zero) & (dot(r.ng, l) > zero);
     if constexpr (!scattering_column) lit &= dot(c.n, l) < zero;
     if (bits(lit) == 0) return;

@@ -30,8 +30,8 @@ struct ReceiverSettings {
 // background).
 struct Receivers {
   std::vector<Vec3f> position;
-  // Shading and geometric, in the hemisphere of wo where they agree. On a fibre ng is zero
-  // (Closure::is_fibre()).
+  // Shading and geometric, in the hemisphere of wo where they agree. On a fiber ng is zero
+  // (Closure::is_fiber()).
   std::vector<Vec3f> normal, ng;
   std::vector<Vec3f> wo;    // unit, back along the eye path
   std::vector<Rgb> weight;  // throughput of the specular chain

@@ -1,4 +1,4 @@
-// Curves in a world: where shading sees a fibre, what may lie on one, and what is refused.
+// Curves in a world: where shading sees a fiber, what may lie on one, and what is refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ sd::SceneDesc one_rod(int* bsdf = nullptr) {
   return desc;
 }
 
-TEST(WorldFibres, HairLiesOnTheAxisAndHasNoSides) {
+TEST(WorldFibers, HairLiesOnTheAxisAndHasNoSides) {
   const world::World world = build(one_rod());
   const auto hit = world.intersect(ray({0.5f, 0.06f, -3}, {0, 0, 1}));
   ASSERT_TRUE(hit);
@@ -39,12 +39,12 @@ TEST(WorldFibres, HairLiesOnTheAxisAndHasNoSides) {
   EXPECT_LT(length(hit->point.shading.n - Vec3f{0, 0, -1}), 1e-5f);
   EXPECT_NEAR(hit->point.uv.uv.x, 0.75f, 1e-6f);
   const auto closure = world.materials().closure(hit->material, hit->point, {0, 0, -1});
-  EXPECT_TRUE(closure.is_fibre());
+  EXPECT_TRUE(closure.is_fiber());
   EXPECT_FALSE(is_black(scatter::eval(closure, {0, 0, -1}, {0, 0, 1})));
 }
 
 // The ribbon turns to the ray; the thread that other BSDFs see does not.
-TEST(WorldFibres, OtherBsdfsSeeARoundThread) {
+TEST(WorldFibers, OtherBsdfsSeeARoundThread) {
   sd::SceneDesc desc = empty_scene();
   const Transform to_world =
       Transform::translate(3, -1, 2) * Transform::rotate(1, 1, 0, 33) * Transform::scale(2, 2, 2);
@@ -77,7 +77,7 @@ TEST(WorldFibres, OtherBsdfsSeeARoundThread) {
   EXPECT_GT(hits, 300);
 }
 
-TEST(WorldFibres, InstancesScaleTheRadius) {
+TEST(WorldFibers, InstancesScaleTheRadius) {
   sd::SceneDesc desc = empty_scene();
   const int member = add_shape(desc, rod({-1, 0, 0}, {1, 0, 0}, 0.1f));
   desc.shapes[static_cast<std::size_t>(member)].in_group = true;
@@ -93,7 +93,7 @@ TEST(WorldFibres, InstancesScaleTheRadius) {
   EXPECT_LT(length(hit->point.position - Vec3f{0, 5, -0.05f}), 1e-5f);
 }
 
-TEST(WorldFibres, WhatHairCannotBeIsReplacedByName) {
+TEST(WorldFibers, WhatHairCannotBeIsReplacedByName) {
   int hair = 0;
   sd::SceneDesc desc = one_rod(&hair);
   auto& rod_bsdf = desc.shapes[0].bsdf;
@@ -120,7 +120,7 @@ TEST(WorldFibres, WhatHairCannotBeIsReplacedByName) {
   EXPECT_NE(words().find("an emitter on curves -> the curves without it"), std::string::npos);
 }
 
-TEST(WorldFibres, CurvesThatMakeNoSenseAreRefused) {
+TEST(WorldFibers, CurvesThatMakeNoSenseAreRefused) {
   const auto refused = [](const sd::CurvesDesc& curves, const char* says) {
     sd::SceneDesc desc = empty_scene();
     add_shape(desc, curves, {}, 12);

@@ -1,9 +1,9 @@
-// Fibres: chains of thin straight segments with a radius at each point. What curves of any kind are traced
+// Fibers: chains of thin straight segments with a radius at each point. What curves of any kind are traced
 // as.
 //
-// A fibre is a ribbon that turns its face to every ray (Embree's flat curves): as wide as the round thread, a
+// A fiber is a ribbon that turns its face to every ray (Embree's flat curves): as wide as the round thread, a
 // third of the cost, and without an inside in which a ray could be caught. It is cut off straight at both
-// ends of a curve, so that all around it shows 2∫r·sinθ dl, θ the angle between fibre and view, and is
+// ends of a curve, so that all around it shows 2∫r·sinθ dl, θ the angle between fiber and view, and is
 // rounded on the outer side of its bends.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace lumirank::geometry {
 
-struct Fibres {
+struct Fibers {
   struct Point {  // as Embree reads it
     Vec3f position;
     float radius = 0;
@@ -45,17 +45,17 @@ enum class CurveBasis { bspline, bezier, linear };
 // Cuts curves into straight segments. `first`: where each curve begins, and the number of points at the end;
 // a cubic b-spline needs at least 4 points, a bezier curve 3k + 1, a polyline 2 (InternalError otherwise). A
 // cubic piece gets as many segments as it turns by 5°, 24 at most. Segments without length are left out.
-Fibres make_fibres(CurveBasis basis, std::span<const Vec3f> points, std::span<const float> radii,
+Fibers make_fibers(CurveBasis basis, std::span<const Vec3f> points, std::span<const float> radii,
                    std::span<const std::uint32_t> first);
 
 // Part u of the way along a segment.
-struct FibrePoint {
+struct FiberPoint {
   Vec3f axis;     // on the segment
   Vec3f along;    // unit; the direction of the segment
   Vec3f tangent;  // unit; the same, or interpolated
   float radius = 0;
   float parameter = 0;
 };
-FibrePoint fibre_point(const Fibres& fibres, std::uint32_t segment, float u);
+FiberPoint fiber_point(const Fibers& fibers, std::uint32_t segment, float u);
 
 }  // namespace lumirank::geometry

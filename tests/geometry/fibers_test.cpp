@@ -1,5 +1,5 @@
 // Curves cut into segments, and the ribbons that Embree traces in their place.
-#include "geometry/fibres.h"
+#include "geometry/fibers.h"
 
 #include <gtest/gtest.h>
 
@@ -14,22 +14,22 @@
 namespace lumirank::geometry {
 namespace {
 
-Fibres straight(Vec3f a, Vec3f b, float ra, float rb) {
-  return make_fibres(CurveBasis::linear, std::vector<Vec3f>{a, b}, std::vector<float>{ra, rb},
+Fibers straight(Vec3f a, Vec3f b, float ra, float rb) {
+  return make_fibers(CurveBasis::linear, std::vector<Vec3f>{a, b}, std::vector<float>{ra, rb},
                      std::vector<std::uint32_t>{0, 2});
 }
 
-RayScene scene_of(Fibres fibres, std::vector<Placement> placements = {{}},
+RayScene scene_of(Fibers fibers, std::vector<Placement> placements = {{}},
                   Blocking blocking = Blocking::opaque, std::size_t flatten = RayScene::kFlattenLimit) {
   std::vector<TriangleMesh> meshes(1);
-  meshes[0].fibres = std::move(fibres);
+  meshes[0].fibers = std::move(fibers);
   for (Placement& p : placements) p.blocking = blocking;
   return RayScene(std::move(meshes), std::move(placements),
                   {[](const Hit&) { return 0.5f; }, [](const Hit&, Vec3f) { return Rgb(0.25f); }}, flatten);
 }
 
-// 200 short fibres in a unit cube.
-Fibres tangle(std::uint64_t seed) {
+// 200 short fibers in a unit cube.
+Fibers tangle(std::uint64_t seed) {
   Rng rng(seed, Stage::test);
   std::vector<Vec3f> points;
   std::vector<float> radii;
@@ -42,15 +42,15 @@ Fibres tangle(std::uint64_t seed) {
     }
     first.push_back(static_cast<std::uint32_t>(points.size()));
   }
-  return make_fibres(CurveBasis::linear, points, radii, first);
+  return make_fibers(CurveBasis::linear, points, radii, first);
 }
 
 // The definition of a ribbon that faces the ray: the point of the segment that comes nearest to the line of
 // the ray, seen along it. Beyond a segment's ends only the wedge counts that a bend leaves open: where the
 // segment next to it ends at that point too, seen so. Within `margin` of a rim either answer is right.
-std::optional<float> ribbon_hit(const Fibres& f, std::uint32_t segment, const Ray& ray, float margin) {
+std::optional<float> ribbon_hit(const Fibers& f, std::uint32_t segment, const Ray& ray, float margin) {
   const Vec3f d = normalize(ray.direction);
-  const Fibres::Point a = f.points[f.segments[segment]], b = f.points[f.segments[segment] + 1];
+  const Fibers::Point a = f.points[f.segments[segment]], b = f.points[f.segments[segment] + 1];
   const auto flat = [&](Vec3f p) { return p - ray.origin - d * dot(p - ray.origin, d); };
   const Vec3f p = flat(a.position), q = flat(b.position) - p;
   const float free_u = -dot(p, q) / dot(q, q), u = std::clamp(free_u, 0.0f, 1.0f);
@@ -67,7 +67,7 @@ std::optional<float> ribbon_hit(const Fibres& f, std::uint32_t segment, const Ra
   return t > 0 ? std::optional(t) : std::nullopt;
 }
 
-TEST(Fibres, CubicBsplineFollowsItsCurve) {
+TEST(Fibers, CubicBsplineFollowsItsCurve) {
   // A helix; the uniform b-spline at parameter t of piece k by the basis polynomials.
   std::vector<Vec3f> c;
   for (int k = 0; k < 9; ++k) {
@@ -75,7 +75,7 @@ TEST(Fibres, CubicBsplineFollowsItsCurve) {
     c.push_back({std::cos(a), std::sin(a), 0.2f * a});
   }
   const std::vector<float> r(9, 0.01f);
-  const Fibres f = make_fibres(CurveBasis::bspline, c, r, std::vector<std::uint32_t>{0, 9});
+  const Fibers f = make_fibers(CurveBasis::bspline, c, r, std::vector<std::uint32_t>{0, 9});
   ASSERT_TRUE(f.smooth);
   const auto on_curve = [&](std::size_t k, float t) {
     const float s = 1 - t, w0 = s * s * s / 6, w3 = t * t * t / 6;
@@ -97,12 +97,12 @@ TEST(Fibres, CubicBsplineFollowsItsCurve) {
     }
   // Tangents are continuous from segment to segment.
   for (std::uint32_t s = 0; s + 1 < f.segments.size(); ++s)
-    EXPECT_LT(length(fibre_point(f, s, 1).tangent - fibre_point(f, s + 1, 0).tangent), 1e-6f);
+    EXPECT_LT(length(fiber_point(f, s, 1).tangent - fiber_point(f, s + 1, 0).tangent), 1e-6f);
 }
 
-TEST(Fibres, BezierPiecesShareTheirEnds) {
+TEST(Fibers, BezierPiecesShareTheirEnds) {
   const std::vector<Vec3f> c{{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {2, 2, 0}, {2, 3, 0}, {1, 4, 0}, {0, 4, 0}};
-  const Fibres f = make_fibres(CurveBasis::bezier, c, std::vector<float>{1, 1, 1, 0.5f, 0, 0, 0},
+  const Fibers f = make_fibers(CurveBasis::bezier, c, std::vector<float>{1, 1, 1, 0.5f, 0, 0, 0},
                                std::vector<std::uint32_t>{0, 7});
   EXPECT_EQ(f.points.front().position, c[0]);
   EXPECT_EQ(f.points.back().position, c[6]);
@@ -113,17 +113,17 @@ TEST(Fibres, BezierPiecesShareTheirEnds) {
   EXPECT_EQ(f.segments.size() + 1, f.points.size());
 }
 
-TEST(Fibres, PointsWithoutDistanceAreLeftOutAndWrongCountsRefused) {
+TEST(Fibers, PointsWithoutDistanceAreLeftOutAndWrongCountsRefused) {
   const std::vector<Vec3f> c{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
   const std::vector<float> r(4, 1);
-  EXPECT_EQ(make_fibres(CurveBasis::linear, c, r, std::vector<std::uint32_t>{0, 4}).segments.size(), 1u);
-  EXPECT_TRUE(make_fibres(CurveBasis::linear, c, r, std::vector<std::uint32_t>{0, 2, 4}).empty());
-  EXPECT_THROW(make_fibres(CurveBasis::bspline, c, r, std::vector<std::uint32_t>{0, 3, 4}), InternalError);
-  EXPECT_THROW(make_fibres(CurveBasis::bezier, c, r, std::vector<std::uint32_t>{0, 3, 4}), InternalError);
-  EXPECT_THROW(make_fibres(CurveBasis::linear, c, r, std::vector<std::uint32_t>{0, 4, 3}), InternalError);
+  EXPECT_EQ(make_fibers(CurveBasis::linear, c, r, std::vector<std::uint32_t>{0, 4}).segments.size(), 1u);
+  EXPECT_TRUE(make_fibers(CurveBasis::linear, c, r, std::vector<std::uint32_t>{0, 2, 4}).empty());
+  EXPECT_THROW(make_fibers(CurveBasis::bspline, c, r, std::vector<std::uint32_t>{0, 3, 4}), InternalError);
+  EXPECT_THROW(make_fibers(CurveBasis::bezier, c, r, std::vector<std::uint32_t>{0, 3, 4}), InternalError);
+  EXPECT_THROW(make_fibers(CurveBasis::linear, c, r, std::vector<std::uint32_t>{0, 4, 3}), InternalError);
 }
 
-TEST(Fibres, HitIsWhereTheRayPassesTheAxis) {
+TEST(Fibers, HitIsWhereTheRayPassesTheAxis) {
   const RayScene scene = scene_of(straight({-1, 0, 5}, {3, 0, 5}, 0.1f, 0.2f));
   // At x = 1 the radius is 0.15; the ray passes 0.06 beside the axis.
   const auto hit = scene.intersect({{1, 0.06f, 0}, {0, 0, 2}});
@@ -136,9 +136,9 @@ TEST(Fibres, HitIsWhereTheRayPassesTheAxis) {
   EXPECT_TRUE(scene.intersect({{1, -0.149f, 0}, {0, 0, 1}}));
 }
 
-TEST(Fibres, TracesWhatTheDefinitionOfARibbonSays) {
-  const Fibres fibres = tangle(1);
-  const RayScene scene = scene_of(fibres);
+TEST(Fibers, TracesWhatTheDefinitionOfARibbonSays) {
+  const Fibers fibers = tangle(1);
+  const RayScene scene = scene_of(fibers);
   Rng rng(2, Stage::test);
   int hits = 0;
   for (int k = 0; k < 4000; ++k) {
@@ -147,9 +147,9 @@ TEST(Fibres, TracesWhatTheDefinitionOfARibbonSays) {
     const Ray aimed{ray.origin, (target - ray.origin) * 0.7f};
     // Within a thousandth of the rim either answer is right.
     float surely = kInfinity, perhaps = kInfinity;
-    for (std::uint32_t s = 0; s < fibres.segments.size(); ++s) {
-      if (const auto t = ribbon_hit(fibres, s, aimed, 0.999f)) surely = std::min(surely, *t);
-      if (const auto t = ribbon_hit(fibres, s, aimed, 1.001f)) perhaps = std::min(perhaps, *t);
+    for (std::uint32_t s = 0; s < fibers.segments.size(); ++s) {
+      if (const auto t = ribbon_hit(fibers, s, aimed, 0.999f)) surely = std::min(surely, *t);
+      if (const auto t = ribbon_hit(fibers, s, aimed, 1.001f)) perhaps = std::min(perhaps, *t);
     }
     const auto hit = scene.intersect(aimed);
     const float t = hit ? hit->t * length(aimed.direction) : kInfinity;
@@ -161,12 +161,12 @@ TEST(Fibres, TracesWhatTheDefinitionOfARibbonSays) {
   EXPECT_GT(hits, 1000);
 }
 
-TEST(Fibres, RaysLeaveAndReachTheAxisUnhindered) {
+TEST(Fibers, RaysLeaveAndReachTheAxisUnhindered) {
   const RayScene scene = scene_of(straight({-1, 0.3f, 5}, {3, 0, 4}, 0.1f, 0.2f));
-  const Fibres& fibres = scene.meshes()[0].fibres;
+  const Fibers& fibers = scene.meshes()[0].fibers;
   Rng rng(3, Stage::test);
   for (int k = 0; k < 4000; ++k) {
-    const Vec3f axis = fibre_point(fibres, 0, rng.next_float()).axis, w = warp_sphere(rng.next_2d());
+    const Vec3f axis = fiber_point(fibers, 0, rng.next_float()).axis, w = warp_sphere(rng.next_2d());
     const Vec3f origin = axis + w * 2e-4f;  // as far off as World::offset_origin() puts it here
     EXPECT_FALSE(scene.occluded({origin, w}, 0));
     EXPECT_FALSE(scene.intersect({origin, w}));
@@ -175,7 +175,7 @@ TEST(Fibres, RaysLeaveAndReachTheAxisUnhindered) {
   }
 }
 
-TEST(Fibres, BendsDoNotCatchTheRaysThatLeaveTheirAxis) {
+TEST(Fibers, BendsDoNotCatchTheRaysThatLeaveTheirAxis) {
   // A quarter of a circle in 9 chords. Seen from outside along any direction, the axis is hidden at most
   // where another part of the thread lies in front, which from within its plane and from above its middle
   // none does.
@@ -184,13 +184,13 @@ TEST(Fibres, BendsDoNotCatchTheRaysThatLeaveTheirAxis) {
     const float a = static_cast<float>(k) * kPi / 18;
     points.push_back({std::cos(a), std::sin(a), 0});
   }
-  const Fibres f = make_fibres(CurveBasis::linear, points, std::vector<float>(10, 0.05f),
+  const Fibers f = make_fibers(CurveBasis::linear, points, std::vector<float>(10, 0.05f),
                                std::vector<std::uint32_t>{0, 10});
   const RayScene scene = scene_of(f);
   Rng rng(6, Stage::test);
   for (int k = 0; k < 4000; ++k) {
     const auto s = static_cast<std::uint32_t>(9 * rng.next_float());
-    const FibrePoint at = fibre_point(f, s, rng.next_float());
+    const FiberPoint at = fiber_point(f, s, rng.next_float());
     // Along the tangent but for a little, and outwards: the curve bends away below.
     const Vec3f w = normalize(at.along * (rng.next_float() < 0.5f ? 1.0f : -1.0f) +
                               normalize(at.axis) * (0.2f + 0.2f * rng.next_float()));
@@ -199,12 +199,12 @@ TEST(Fibres, BendsDoNotCatchTheRaysThatLeaveTheirAxis) {
   }
 }
 
-TEST(Fibres, AreaSeenIsTheWidthTimesTheSine) {
+TEST(Fibers, AreaSeenIsTheWidthTimesTheSine) {
   // Of a straight taper, wherever it is looked at from: 2∫r dl·sinθ, without caps. By a grid of rays, so to a
   // cell's width on the rim: 4·(0.4 + 2·0.02)/1000 of 0.02 m².
   const Vec3f a{0, 0, 0}, b{0.2f, 0.3f, 0.1f};
   const RayScene scene =
-      scene_of(make_fibres(CurveBasis::linear, std::vector<Vec3f>{a, lerp(a, b, 0.3f), b},
+      scene_of(make_fibers(CurveBasis::linear, std::vector<Vec3f>{a, lerp(a, b, 0.3f), b},
                            std::vector<float>{0.03f, 0.024f, 0.01f}, std::vector<std::uint32_t>{0, 3}));
   Rng rng(7, Stage::test);
   for (int view = 0; view < 6; ++view) {
@@ -224,7 +224,7 @@ TEST(Fibres, AreaSeenIsTheWidthTimesTheSine) {
   }
 }
 
-TEST(Fibres, NearFibresBlockARay) {
+TEST(Fibers, NearFibersBlockARay) {
   // From within a radius of it.
   const RayScene scene = scene_of(straight({-1, 0, 1}, {1, 0, 1}, 0.1f, 0.1f));
   for (const float gap : {0.001f, 0.01f, 0.15f, 0.25f}) {
@@ -242,14 +242,14 @@ TEST(Fibres, NearFibresBlockARay) {
   }
 }
 
-TEST(Fibres, PacketsAgreeWithSingleRaysInInstancesToo) {
-  const Fibres fibres = tangle(4);
+TEST(Fibers, PacketsAgreeWithSingleRaysInInstancesToo) {
+  const Fibers fibers = tangle(4);
   const std::vector<Placement> two{{0, Transform{}},
                                    {0, Transform::translate(1, 0.5, 0) * Transform::rotate(1, 2, 3, 50) *
                                            Transform::scale(1.5, 1.5, 1.5)}};
   for (const std::size_t flatten : {RayScene::kFlattenLimit, std::size_t{1}}) {
     for (const Blocking blocking : {Blocking::opaque, Blocking::cutout, Blocking::smooth}) {
-      const RayScene scene = scene_of(fibres, two, blocking, flatten);
+      const RayScene scene = scene_of(fibers, two, blocking, flatten);
       Rng rng(5, Stage::test);
       int blocked = 0;
       for (int p = 0; p < 200; ++p) {
@@ -283,8 +283,8 @@ TEST(Fibres, PacketsAgreeWithSingleRaysInInstancesToo) {
   }
 }
 
-TEST(Fibres, AreaAndBoundsAreThoseOfTheRoundThread) {
-  Fibres f = straight({0, 0, 0}, {0, 0, 4}, 0.5f, 0.25f);
+TEST(Fibers, AreaAndBoundsAreThoseOfTheRoundThread) {
+  Fibers f = straight({0, 0, 0}, {0, 0, 4}, 0.5f, 0.25f);
   EXPECT_NEAR(f.area(), 3.14159265 * 4 * 0.75, 1e-5);
   f.transform(Transform::scale(2, 2, 2));
   EXPECT_NEAR(f.area(), 4 * 3.14159265 * 4 * 0.75, 1e-4);

@@ -1,4 +1,4 @@
-// Points of fibres. What the tracer meets is a ribbon that faces the ray; shading sees a round thread.
+// Points of fibers. What the tracer meets is a ribbon that faces the ray; shading sees a round thread.
 #include <cmath>
 
 #include "world/impl.h"
@@ -15,10 +15,10 @@ Vec3f unit_or(Vec3f v, Vec3f fallback) {
 
 // Hair is as thin as a line for all light: its vertices lie on the axis, whichever way they are seen, so that
 // a path is the same traced from either end. Other BSDFs have the surface of the thread, with its normal.
-scatter::SurfacePoint World::Impl::fibre_surface(const geometry::Hit& hit, Vec3f ray_direction) const {
+scatter::SurfacePoint World::Impl::fiber_surface(const geometry::Hit& hit, Vec3f ray_direction) const {
   const PlacementData& data = placements[hit.instance];
-  geometry::FibrePoint at =
-      geometry::fibre_point(rays->meshes()[hit.mesh].fibres, hit.triangle, hit.barycentric.x);
+  geometry::FiberPoint at =
+      geometry::fiber_point(rays->meshes()[hit.mesh].fibers, hit.triangle, hit.barycentric.x);
   if (!data.identity) {
     at.axis = data.to_world.point(at.axis);
     at.along = unit_or(data.to_world.vector(at.along), at.along);
@@ -28,7 +28,7 @@ scatter::SurfacePoint World::Impl::fibre_surface(const geometry::Hit& hit, Vec3f
   scatter::SurfacePoint point;
   point.uv.uv = {at.parameter, 0.5f + 0.5f * hit.barycentric.y};
   // Hair has the segment's own direction: a sine by an interpolated one would not be that of the width which
-  // rays meet. It turns little from segment to segment (make_fibres()).
+  // rays meet. It turns little from segment to segment (make_fibers()).
   const Vec3f tangent = data.hair ? at.along : at.tangent;
   point.dpdu = tangent;
   // Across and towards the ray, as Hit says.

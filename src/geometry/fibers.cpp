@@ -1,4 +1,4 @@
-#include "geometry/fibres.h"
+#include "geometry/fibers.h"
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ struct Cubic {  // Bernstein form
   Vec3f p[4];
   float r[4];
 
-  Fibres::Point at(float t) const {
+  Fibers::Point at(float t) const {
     const float s = 1 - t, b0 = s * s * s, b1 = 3 * s * s * t, b2 = 3 * s * t * t, b3 = t * t * t;
     return {p[0] * b0 + p[1] * b1 + p[2] * b2 + p[3] * b3,
             std::max(0.0f, r[0] * b0 + r[1] * b1 + r[2] * b2 + r[3] * b3)};
@@ -55,10 +55,10 @@ Cubic bspline_piece(const Vec3f* p, const float* r) {
 // Appends points; a point equal to the one before begins no segment.
 class Chain {
  public:
-  explicit Chain(Fibres& out) : out_(out) {}
+  explicit Chain(Fibers& out) : out_(out) {}
   // A curve of so many pieces follows.
   void start(std::size_t pieces) { open_ = false, piece_ = 0, pieces_ = static_cast<float>(pieces); }
-  void add(const Fibres::Point& p, float piece) {
+  void add(const Fibers::Point& p, float piece) {
     if (open_ && out_.points.back().position == p.position) return;
     if (open_) out_.segments.push_back(static_cast<std::uint32_t>(out_.points.size() - 1));
     out_.points.push_back(p);
@@ -76,7 +76,7 @@ class Chain {
   }
 
  private:
-  Fibres& out_;
+  Fibers& out_;
   bool open_ = false;
   float piece_ = 0, pieces_ = 1;
 };
@@ -88,7 +88,7 @@ Vec3f unit_or(Vec3f v, Vec3f fallback) {
 
 }  // namespace
 
-double Fibres::area() const {
+double Fibers::area() const {
   double sum = 0;
   for (const std::uint32_t i : segments)
     sum += static_cast<double>(kPi) * length(points[i + 1].position - points[i].position) *
@@ -96,7 +96,7 @@ double Fibres::area() const {
   return sum;
 }
 
-Bounds3f Fibres::bounds() const {
+Bounds3f Fibers::bounds() const {
   Bounds3f box;
   for (const Point& p : points) {
     const Vec3f r{p.radius, p.radius, p.radius};
@@ -105,25 +105,25 @@ Bounds3f Fibres::bounds() const {
   return box;
 }
 
-void Fibres::transform(const Transform& t) {
+void Fibers::transform(const Transform& t) {
   const auto scale = static_cast<float>(std::cbrt(std::abs(t.determinant3())));
   for (Point& p : points) p = {t.point(p.position), p.radius * scale};
 }
 
-Fibres make_fibres(CurveBasis basis, std::span<const Vec3f> points, std::span<const float> radii,
+Fibers make_fibers(CurveBasis basis, std::span<const Vec3f> points, std::span<const float> radii,
                    std::span<const std::uint32_t> first) {
   if (radii.size() != points.size() || first.empty() || first.back() != points.size())
-    throw InternalError("make_fibres: the lists do not fit together");
-  Fibres out;
+    throw InternalError("make_fibers: the lists do not fit together");
+  Fibers out;
   out.smooth = basis != CurveBasis::linear;
   Chain chain(out);
   for (std::size_t c = 0; c + 1 < first.size(); ++c) {
-    if (first[c] > first[c + 1]) throw InternalError("make_fibres: curves are not in order");
+    if (first[c] > first[c + 1]) throw InternalError("make_fibers: curves are not in order");
     const std::size_t n = first[c + 1] - first[c];
     const bool fits = basis == CurveBasis::linear    ? n >= 2
                       : basis == CurveBasis::bspline ? n >= 4
                                                      : n >= 4 && n % 3 == 1;
-    if (!fits) throw InternalError("make_fibres: a curve of " + std::to_string(n) + " points");
+    if (!fits) throw InternalError("make_fibers: a curve of " + std::to_string(n) + " points");
     const Vec3f* p = &points[first[c]];
     const float* r = &radii[first[c]];
     chain.start(basis == CurveBasis::linear ? n - 1 : basis == CurveBasis::bspline ? n - 3 : (n - 1) / 3);
@@ -137,23 +137,23 @@ Fibres make_fibres(CurveBasis basis, std::span<const Vec3f> points, std::span<co
   return out;
 }
 
-FibrePoint fibre_point(const Fibres& fibres, std::uint32_t segment, float u) {
-  const std::uint32_t i = fibres.segments[segment];
-  const Fibres::Point &a = fibres.points[i], &b = fibres.points[i + 1];
-  FibrePoint out;
+FiberPoint fiber_point(const Fibers& fibers, std::uint32_t segment, float u) {
+  const std::uint32_t i = fibers.segments[segment];
+  const Fibers::Point &a = fibers.points[i], &b = fibers.points[i + 1];
+  FiberPoint out;
   // In double precision: to within one rounding on the segment, however long it is.
   for (int k = 0; k < 3; ++k) {
     const double from = a.position[k], to = b.position[k];
     out.axis[k] = static_cast<float>(from + static_cast<double>(u) * (to - from));
   }
   out.radius = lerp(a.radius, b.radius, u);
-  out.parameter = lerp(fibres.parameter[i], fibres.parameter[i + 1], u);
+  out.parameter = lerp(fibers.parameter[i], fibers.parameter[i + 1], u);
   out.along = out.tangent = unit_or(b.position - a.position, {0, 0, 1});
-  if (!fibres.smooth) return out;
+  if (!fibers.smooth) return out;
   const Vec3f at_a =
-      fibres.follows(segment) ? unit_or(b.position - fibres.points[i - 1].position, out.along) : out.along;
+      fibers.follows(segment) ? unit_or(b.position - fibers.points[i - 1].position, out.along) : out.along;
   const Vec3f at_b =
-      fibres.goes_on(segment) ? unit_or(fibres.points[i + 2].position - a.position, out.along) : out.along;
+      fibers.goes_on(segment) ? unit_or(fibers.points[i + 2].position - a.position, out.along) : out.along;
   out.tangent = unit_or(lerp(at_a, at_b, u), out.along);
   return out;
 }
