@@ -36,7 +36,7 @@ struct BareScene {
   explicit BareScene(const geometry::RayScene& rays) {
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     for (const geometry::Placement& p : rays.placements()) {
-      if (p.blocking == geometry::Blocking::smooth) continue;
+      if (p.blocking == geometry::Blocking::attenuating) continue;
       meshes.push_back(rays.meshes()[p.mesh]);
       for (Vec3f& v : meshes.back().positions) v = p.to_world.point(v);
       meshes.back().positions.reserve(meshes.back().positions.size() + 1);

@@ -75,14 +75,14 @@ void run(const bench::InspectOptions& options) {
   inspector.inspect();
   image::write_pfm((std::filesystem::path(options.folder) / "image.pfm").string(),
                    render(receivers, inspector.sums()));
-  nlohmann::json told = inspector.summary();
-  told["receivers"] = receivers.size();
-  told["lights"] = lights.size();
-  told["predictors"] = inspector.write_pictures();
-  told["few"] = inspector.write_matrices(inspector.slice_at(0.25), "few");
-  told["many"] = inspector.write_matrices(inspector.slice_at(0.9), "many");
+  nlohmann::json report = inspector.summary();
+  report["receivers"] = receivers.size();
+  report["lights"] = lights.size();
+  report["predictors"] = inspector.write_pictures();
+  report["few"] = inspector.write_matrices(inspector.slice_at(0.25), "few");
+  report["many"] = inspector.write_matrices(inspector.slice_at(0.9), "many");
   std::ofstream file(std::filesystem::path(options.folder) / "results.json");
-  file << told.dump(1) << "\n";
+  file << report.dump(1) << "\n";
   file.close();
   if (!file) throw InputError("results.json cannot be written to " + options.folder);
 }

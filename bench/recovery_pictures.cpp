@@ -47,7 +47,7 @@ std::array<double, 3> chosen_by_test(const Findings& f, bool equal) {
 }  // namespace
 
 json RecoveryInspector::write_pictures() const {
-  json told = json::object();
+  json report = json::object();
   for (std::size_t k = 0; k < kPredictors.size(); ++k)
     for (const bool equal : {false, true}) {
       const std::string name = std::string(equal ? "wrong_equal_" : "wrong_") + kPredictors[k];
@@ -69,7 +69,7 @@ json RecoveryInspector::write_pictures() const {
             }))
           best += 1;
       }
-      json& j = told[name] = sum.wrong.summary();
+      json& j = report[name] = sum.wrong.summary();
       j["sampled"] = sum.sampled / entries;
       j["failed_columns"] = sum.failed / columns;
       j["best_in_slices"] = best / static_cast<double>(findings_.size());
@@ -89,7 +89,7 @@ json RecoveryInspector::write_pictures() const {
         }));
   write("mixed",
         paint([](const Findings& f) { return Rgb(static_cast<float>(f.mixed / std::max(f.entries, 1.0))); }));
-  return told;
+  return report;
 }
 
 namespace {

@@ -212,8 +212,8 @@ class Experiments:
             pictures = {p: read_pfm(folder / f"wrong_{p}.pfm") for p in PREDICTORS}
             high = 0.05 * math.ceil(20 * max(max(p[2]) for p in pictures.values()))
             for p, words in PREDICTORS.items():
-                told = found["predictors"][f"wrong_{p}"]
-                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(told['wrong'])} wrong after looking at {percent(told['sampled'])}", nothing=lambda v: v < 0, label=percent)
+                figures = found["predictors"][f"wrong_{p}"]
+                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(figures['wrong'])} wrong after looking at {percent(figures['sampled'])}", nothing=lambda v: v < 0, label=percent)
             choice = read_pfm(folder / "choice.pfm")
             page.raw(f"{name}_choice", choice[0], choice[1], bytes(112 if v < 0 else min(255, round(255 * v)) for v in choice[2]),
                      "Columns by the predictor chosen: red nearest samples, green Bayes, blue plane")
@@ -225,9 +225,9 @@ class Experiments:
             rows = []
             for equal, until in (("", "until the prediction error is met"), ("equal_", "after five rounds")):
                 for p, words in PREDICTORS.items():
-                    told = found["predictors"][f"wrong_{equal}{p}"]
-                    rows.append((f"{words}, {until}", percent(told["wrong"]), percent(told["wrong_light"]), percent(told["sampled"]), "" if p == "all" else percent(told["best_in_slices"]),
-                                 "" if equal else percent(told["failed_columns"]), " / ".join(percent(told["columns"][c]) for c in ("nearest", "plane", "bayes")) if p == "all" else ""))
+                    figures = found["predictors"][f"wrong_{equal}{p}"]
+                    rows.append((f"{words}, {until}", percent(figures["wrong"]), percent(figures["wrong_light"]), percent(figures["sampled"]), "" if p == "all" else percent(figures["best_in_slices"]),
+                                 "" if equal else percent(figures["failed_columns"]), " / ".join(percent(figures["columns"][c]) for c in ("nearest", "plane", "bayes")) if p == "all" else ""))
             page.table(("", "wrong", "weighted by light", "sampled", "best of the three in slices", "columns that failed", "tested columns: nearest / plane / Bayes"), rows)
             page.say(f"Columns that reach too few rows to be tested ({percent(1 - found['predictors']['wrong_all']['tested_columns'])}) are not counted among those that chose.")
             page.write()
@@ -249,10 +249,10 @@ class Experiments:
                     shown[k] = round(shown[k] + 0.6 * v * (tint[k % 3] - shown[k]))
             page.raw(f"{stem}_slices", width, height, bytes(shown), "Where the two slices are: red few differences, blue many")
             for which, words in (("few", "Few differences"), ("many", "Many differences")):
-                told, name = found[which], f"{stem}_{which}"
-                page.say(f"{words}: {told['rows']} × {told['columns']}, {percent(told['hidden'])} hidden, rank {told['rank']:.0f}, {told['iterations']:.0f} iterations; sampled {percent(told['sampled'])} "
-                         f"for prediction, {percent(told['uncertain'])} where a guess would cost much, {percent(told['corrected'])} by correction; Z is above half an entry at {percent(told['nonzero'])}. "
-                         f"Row sums are off by {percent(told['error_drawn'])} as predicted, {percent(told['error_separated'])} as separated, {percent(told['error_final'])} with correction.")
+                figures, name = found[which], f"{stem}_{which}"
+                page.say(f"{words}: {figures['rows']} × {figures['columns']}, {percent(figures['hidden'])} hidden, rank {figures['rank']:.0f}, {figures['iterations']:.0f} iterations; sampled {percent(figures['sampled'])} "
+                         f"for prediction, {percent(figures['uncertain'])} where a guess would cost much, {percent(figures['corrected'])} by correction; Z is above half an entry at {percent(figures['nonzero'])}. "
+                         f"Row sums are off by {percent(figures['error_drawn'])} as predicted, {percent(figures['error_separated'])} as separated, {percent(figures['error_final'])} with correction.")
                 read = lambda what: read_pfm(folder / f"{which}_{what}.pfm")
                 paint = functools.partial(page.scaled, shown=270)
                 paint(f"{name}_predicted", read("predicted"), 0, 1, "(a) D: sampled or predicted")

@@ -100,9 +100,10 @@ std::string Scene::info_text(const Sinks& sinks) const {
     text += "  " + e["name"].get<std::string>() + "  " + e["power"].dump() + " W\n";
   }
   // The description above has listed the reader's own.
-  const auto& told = impl_->desc.warnings;
-  const auto read = static_cast<std::size_t>(
-      std::count_if(told.begin(), told.end(), [](const scenedesc::Warning& w) { return !w.harmless; }));
+  const auto& reader_warnings = impl_->desc.warnings;
+  const auto read =
+      static_cast<std::size_t>(std::count_if(reader_warnings.begin(), reader_warnings.end(),
+                                             [](const scenedesc::Warning& w) { return !w.harmless; }));
   const std::size_t all = json["warnings"].size();
   text += "warnings while building: " + std::to_string(all - read) + "\n";
   for (std::size_t w = read; w < all; ++w) text += "  " + json["warnings"][w].get<std::string>() + "\n";

@@ -135,8 +135,8 @@ embree::Geometry RayScene::Impl::geometry_of(const TriangleMesh& mesh, const Tra
   embree::Geometry geometry = mesh.fibers.empty() ? triangles_of(mesh, baked) : fibers_of(mesh.fibers, baked);
   if (blocking_kind == Blocking::cutout)
     rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_cutout);
-  else if (blocking_kind == Blocking::smooth)
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_smooth);
+  else if (blocking_kind == Blocking::attenuating)
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_attenuating);
   rtcCommitGeometry(geometry.get());
   return geometry;
 }
@@ -174,7 +174,7 @@ void RayScene::Impl::build(std::size_t flatten_limit) {
     const TriangleMesh& mesh = meshes[p.mesh];
     if (mesh.empty()) continue;
     if (!mesh.fibers.empty()) run_up = std::max(run_up, 2.1f * widest_radius(mesh.fibers, p.to_world));
-    embree::Scene& top = p.blocking == Blocking::smooth ? smooth : blocking;
+    embree::Scene& top = p.blocking == Blocking::attenuating ? attenuating : blocking;
     if (!top) top = new_scene();
     const auto id = static_cast<unsigned>(k);
     const std::optional<Transform> inverse = p.to_world.inverse();
@@ -200,7 +200,7 @@ void RayScene::Impl::build(std::size_t flatten_limit) {
     rtcAttachGeometryByID(top.get(), instance.get(), id);
   }
   if (!blocking) blocking = new_scene();
-  for (RTCScene scene : {blocking.get(), smooth.get()}) {
+  for (RTCScene scene : {blocking.get(), attenuating.get()}) {
     if (!scene) continue;
     commit(scene);
     RTCBounds box;

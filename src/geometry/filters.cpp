@@ -63,7 +63,7 @@ void filter_cutout(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-void filter_smooth(const RTCFilterFunctionNArguments* arguments) {
+void filter_attenuating(const RTCFilterFunctionNArguments* arguments) {
   filter_fiber_caps(arguments);
   const RTCFilterFunctionNArguments& a = *arguments;
   const auto& query = *reinterpret_cast<const QueryContext*>(a.context);

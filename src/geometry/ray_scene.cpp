@@ -137,7 +137,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 const std::vector<TriangleMesh>& RayScene::meshes() const { return impl_->meshes; }
 const std::vector<Placement>& RayScene::placements() const { return impl_->placements; }
 Bounds3f RayScene::bounds() const { return impl_->bounds; }
-bool RayScene::has_smooth() const { return impl_->smooth != nullptr; }
+bool RayScene::has_attenuating() const { return impl_->attenuating != nullptr; }
 std::size_t RayScene::memory_bytes() const { return static_cast<std::size_t>(impl_->bytes.load()); }
 
 std::optional<Hit> RayScene::intersect(const Ray& ray) const {
@@ -147,7 +147,7 @@ std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   if (!can_trace(query.ray)) return std::nullopt;
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   closest(impl_->blocking.get(), query);
-  if (impl_->smooth) closest(impl_->smooth.get(), query);
+  if (impl_->attenuating) closest(impl_->attenuating.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   Hit hit;
   hit.t = query.ray.tfar - start;
@@ -177,14 +177,14 @@ std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
 
 Rgb RayScene::transmittance(const Ray& ray) const {
   Rgb product(1);
-  if (!impl_->smooth) return product;
+  if (!impl_->attenuating) return product;
   thread_local std::vector<Hit> crossed;
   crossed.clear();
   QueryContext context = context_for(*impl_);
   context.crossed = &crossed;
   RTCRay query = to_embree(ray, start_of(*impl_, ray.direction));
   if (!can_trace(query)) return product;
-  embree::occluded1(impl_->smooth.get(), context.embree, query);
+  embree::occluded1(impl_->attenuating.get(), context.embree, query);
   // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.
   std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
     return std::tie(a.instance, a.t, a.triangle) < std::tie(b.instance, b.t, b.triangle);
@@ -201,10 +201,10 @@ Rgb RayScene::transmittance(const Ray& ray) const {
 
 void RayScene::transmittance16(const ShadowPacket& packet, Rgb out[16]) const {
   std::fill_n(out, 16, Rgb(1));
-  if (!impl_->smooth) return;
-  // Most segments meet no smooth surface, and one packet tells which.
+  if (!impl_->attenuating) return;
+  // Most segments meet no attenuating surface, and one packet tells which.
   QueryContext context = context_for(*impl_);
-  const unsigned clear = unblocked16(impl_->smooth.get(), packet, context);
+  const unsigned clear = unblocked16(impl_->attenuating.get(), packet, context);
   for (int k = 0; k < 16; ++k)
     if (packet.valid[k] && !(clear >> k & 1)) out[k] = transmittance(segment(packet, k));
 }

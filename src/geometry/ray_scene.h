@@ -35,7 +35,7 @@ struct Hit {
 enum class Blocking : std::uint8_t {
   opaque,  // always blocks: no callback
   cutout,  // blocks with a probability that the callback gives (binary, decided by a hash of the ray's key)
-  smooth,  // never blocks; attenuates by a color that the callback gives
+  attenuating,  // never blocks; attenuates by a color that the callback gives
 };
 
 // One placement of a mesh in the world. Meshes placed once with the identity cost nothing extra.
@@ -68,7 +68,7 @@ struct alignas(64) ShadowPacket {
 class RayScene {
  public:
   // For a segment passing `hit` with direction w (as in the query: any length): the chance that a cut-out
-  // blocks, or (smooth) the transmittance. Called from any thread, through Embree: they must not throw.
+  // blocks, or (attenuating) the transmittance. Called from any thread, through Embree: they must not throw.
   struct PassageCallbacks {
     std::function<float(const Hit&)> opacity;
     std::function<Rgb(const Hit&, Vec3f w)> transmittance;
@@ -89,19 +89,19 @@ class RayScene {
   const std::vector<TriangleMesh>& meshes() const;
   const std::vector<Placement>& placements() const;  // Hit::instance indexes it
   Bounds3f bounds() const;
-  bool has_smooth() const;  // some placement attenuates
+  bool has_attenuating() const;  // some placement attenuates
 
   // Rays that are not finite (or beyond 1.8e18) or have t_min < 0 or t_min > t_max hit nothing and are
   // occluded. The closest hit with t in [t_min, t_max], whatever the placement's blocking.
   std::optional<Hit> intersect(const Ray& ray) const;
   // True if something blocks in [t_min, t_max] (no ε is added); cut-outs are decided by `key`.
   bool occluded(const Ray& ray, std::uint64_t key) const;
-  // Product of the smooth placements' transmittances along the ray (1 if none); ignores everything else.
+  // Product of the attenuating placements' transmittances along the ray (1 if none); ignores everything else.
   Rgb transmittance(const Ray& ray) const;
 
   // Bit k of the result: segment k is traced (valid) and unblocked. Neighboring segments should be alike.
   std::uint16_t visible16(const ShadowPacket& packet) const;
-  // Transmittance of the smooth placements for 16 segments; only worth calling if has_smooth().
+  // Transmittance of the attenuating placements for 16 segments; only worth calling if has_attenuating().
   void transmittance16(const ShadowPacket& packet, Rgb out[16]) const;
 
   std::size_t memory_bytes() const;  // of the acceleration structure

@@ -30,8 +30,8 @@ struct RayScene::Impl {
   std::string first_error;  // of Embree, if any
   // Declared before the scenes, so released after them.
   embree::Device device;
-  std::vector<embree::Scene> parts;  // scenes of the meshes that are instanced
-  embree::Scene blocking, smooth;    // smooth is null if no placement attenuates
+  std::vector<embree::Scene> parts;     // scenes of the meshes that are instanced
+  embree::Scene blocking, attenuating;  // attenuating is null if no placement attenuates
   Bounds3f bounds;
   // Embree leaves out what a ray meets of fibers within two radii of its origin. So rays are handed to it
   // from so much farther behind: over twice the radius of the widest fiber, in world space. 0: there are
@@ -58,7 +58,7 @@ struct QueryContext {
   const RayScene::Impl* scene = nullptr;
   const ShadowPacket* packet = nullptr;  // with the ray's id as the place in it
   std::uint64_t key = 0;                 // of a single ray, if there is no packet
-  std::vector<Hit>* crossed = nullptr;   // smooth hits are noted here; null: any of them ends the ray
+  std::vector<Hit>* crossed = nullptr;   // attenuating hits are noted here; null: any of them ends the ray
 };
 
 // Refuses hits on round caps of segments that are no part of the fiber. The geometry's user pointer is its
@@ -66,7 +66,7 @@ struct QueryContext {
 void filter_fiber_caps(const RTCFilterFunctionNArguments* arguments);
 // Lets a hit on a cut-out count with the probability of its opacity.
 void filter_cutout(const RTCFilterFunctionNArguments* arguments);
-// Notes a hit on a smooth surface and lets the ray go on.
-void filter_smooth(const RTCFilterFunctionNArguments* arguments);
+// Notes a hit on an attenuating surface and lets the ray go on.
+void filter_attenuating(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace lumirank::geometry

@@ -112,9 +112,9 @@ Cost DenseMatrix::accumulate(std::span<const ScaledColumn> columns, std::span<Rg
 }
 
 Capabilities DenseMatrix::capabilities() const {
-  Capabilities told = LightingMatrix::capabilities().with({Ability::bounds});
-  if (binary_) told = told.with({Ability::binary_visibility});
-  return told;
+  Capabilities out = LightingMatrix::capabilities().with({Ability::bounds});
+  if (binary_) out = out.with({Ability::binary_visibility});
+  return out;
 }
 
 ColumnSet DenseMatrix::column_set(Index j) const {

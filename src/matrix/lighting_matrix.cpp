@@ -36,9 +36,9 @@ std::unique_ptr<EntryReader> LightingMatrix::reader() const {
 }
 
 Capabilities LightingMatrix::capabilities() const {
-  Capabilities told;
+  Capabilities out;
   const auto note = [&](auto feature, std::size_t count, Ability ability) {
-    if (feature.size() == count) told = told.with({ability});
+    if (feature.size() == count) out = out.with({ability});
   };
   const RowFeatures r = row_features();
   note(r.pixel, rows(), Ability::row_pixel), note(r.position, rows(), Ability::row_position);
@@ -49,7 +49,7 @@ Capabilities LightingMatrix::capabilities() const {
   note(c.power, columns(), Ability::column_power), note(c.group, columns(), Ability::column_group);
   note(c.indirect, columns(), Ability::column_indirect), note(c.half, columns(), Ability::column_half);
   note(c.emitted, columns(), Ability::column_emitted), note(c.id, columns(), Ability::column_id);
-  return told;
+  return out;
 }
 
 ColumnSet LightingMatrix::column_set(Index) const {

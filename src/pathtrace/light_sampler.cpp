@@ -168,7 +168,7 @@ Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f dire
     ray.t_max = 1 - 1e-4f;
   }
   if (world.rays().occluded(ray, key)) return Rgb{0};
-  return world.rays().has_smooth() ? world.rays().transmittance(ray) : Rgb{1};
+  return world.rays().has_attenuating() ? world.rays().transmittance(ray) : Rgb{1};
 }
 
 }  // namespace lumirank::pathtrace

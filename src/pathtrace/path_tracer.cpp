@@ -15,11 +15,11 @@ struct PathTracer::Walk {
   geometry::Ray ray;
   Rgb throughput{1};
   int segments = 1;             // traced so far, the current one included; straight passes do not count
-  int smooth_vertices = 0;      // non-specular vertices passed
+  int non_delta_vertices = 0;   // non-specular vertices passed
   bool after_receiver = false;  // the vertex that comes next is the first one after the receiver
   bool counts;                  // whether light found now belongs to the wanted paths
   bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
-  float bsdf_pdf = 0;    // of the direction taken at the last smooth vertex
+  float bsdf_pdf = 0;    // of the direction taken at the last non-delta vertex
   emitters::LitPoint from{};    // that vertex
   float traveled = 0;           // since the last vertex
   float receiver_term = 0;      // π f_x·cosθx of the step away from the receiver
@@ -29,7 +29,8 @@ struct PathTracer::Walk {
 
   void add(Rgb value) {
     if (!counts) return;
-    Rgb& part = smooth_vertices == 0 ? sum.emission : (smooth_vertices == 1 ? sum.direct : sum.indirect);
+    Rgb& part =
+        non_delta_vertices == 0 ? sum.emission : (non_delta_vertices == 1 ? sum.direct : sum.indirect);
     part += value;
   }
 };
@@ -53,7 +54,7 @@ Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, 
             .ray = {world::World::offset_origin(departure.position, departure.ng, next.wi), next.wi},
             .throughput = next.weight,
             .segments = departure.depth + 1,
-            .smooth_vertices = 1,
+            .non_delta_vertices = 1,
             .after_receiver = true,
             .counts = true,
             .specular = false,
@@ -140,7 +141,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   const bool may_continue = settings_.max_depth < 0 || walk.segments < settings_.max_depth;
   const bool first_after_receiver = walk.after_receiver;
   if (first_after_receiver && settings_.paths != Paths::all) {
-    // Columns carry this vertex's smooth lobes, the rest its specular ones; both pass straight through.
+    // Columns carry this vertex's non-delta lobes, the rest its specular ones; both pass straight through.
     const bool keep_specular = settings_.paths == Paths::rest;
     const Vec3f place = hit.point.position;
     const bool counts =
@@ -160,11 +161,11 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
                                      : std::abs(dot(hit.point.ng, walk.ray.direction))) /
                  square(walk.traveled);
   const auto [u_light, u_lobe] = walk.random.next_fine();
-  if (closure.has_smooth() && may_continue) {
+  if (closure.has_non_delta() && may_continue) {
     // The vertex itself is non-specular for light that is found here.
-    ++walk.smooth_vertices;
+    ++walk.non_delta_vertices;
     sample_lights(walk, hit, closure, u_light, connection);
-    --walk.smooth_vertices;
+    --walk.non_delta_vertices;
   }
 
   const Vec3f wo = -walk.ray.direction;
@@ -181,7 +182,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     walk.bsdf_pdf = next->pdf;
     if (first_after_receiver && next->delta) walk.counts = settings_.paths != Paths::columns;
     walk.after_receiver = false;
-    if (!next->delta && ++walk.smooth_vertices == 1) {
+    if (!next->delta && ++walk.non_delta_vertices == 1) {
       walk.after_receiver = true;
       if (settings_.carried.bound > 0)
         walk.receiver_term = kPi * max_component(scatter::eval(closure, wo, next->wi));

@@ -65,14 +65,14 @@ Rgb add_direct_at(const world::World& world, const pathtrace::LightSampler& ligh
       const Rgb f = scatter::eval(closure, wo, s.direct.direction);
       if (!is_black(f)) {
         const float bsdf_pdf =
-            s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::smooth);
+            s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::non_delta);
         const Rgb visible = pathtrace::visible_fraction(
             world, position, ng, s.direct.direction, s.direct.distance,
             hash_ids(settings.seed, Stage::opacity, key, static_cast<std::uint64_t>(k)));
         sum += f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf));
       }
     }
-    const auto b = scatter::sample(closure, wo, u_lobe, random.next_2d(), Lobes::smooth);
+    const auto b = scatter::sample(closure, wo, u_lobe, random.next_2d(), Lobes::non_delta);
     if (!b || is_black(b->weight)) continue;
     const Met met =
         emission_along(world, lights, at, world::World::offset_origin(position, ng, b->wi), b->wi, random);

@@ -47,7 +47,7 @@ class Tracing {
       const std::uint64_t number = 2 * static_cast<std::uint64_t>(k) + (pilot ? 1 : 0);
       pathtrace::SampleStream random(settings_.seed, stage, key, number);
       const float u_lobe = random.next_2d().x;
-      const auto next = scatter::sample(closure, wo, u_lobe, random.next_2d(), scatter::Lobes::smooth);
+      const auto next = scatter::sample(closure, wo, u_lobe, random.next_2d(), scatter::Lobes::non_delta);
       if (!next || is_black(next->weight)) continue;
       departure.next = *next;
       const Rgb light =

@@ -90,7 +90,7 @@ Selection select(const Closure& c, const Incident& in, Vec3f wo, Lobes which) {
   return s;
 }
 
-// Value and density of all smooth lobes at one pair; wi local and mirrored as wo is.
+// Value and density of all non-delta lobes at one pair; wi local and mirrored as wo is.
 Rgb value_of_all(const Closure& c, const Incident& in, Vec3f wi) {
   Rgb sum(0);
   for (int k = 0; k < c.count; ++k) {
@@ -126,7 +126,7 @@ void Closure::add(const Lobe& lobe) {
   lobes[count++] = lobe;
 }
 
-bool Closure::has_smooth() const {
+bool Closure::has_non_delta() const {
   for (int k = 0; k < count; ++k)
     if (!is_delta(lobes[k].kind)) return true;
   return false;
@@ -151,13 +151,13 @@ float Closure::cosine(Vec3f w) const {
 bool Closure::sides_agree(Vec3f w) const { return is_fiber() || dot(w, frame.n) * dot(w, ng) > 0; }
 
 bool Closure::is_lambertian() const {
-  int smooth = 0;
+  int non_delta = 0;
   for (int k = 0; k < count; ++k) {
     if (is_delta(lobes[k].kind)) continue;
     if (lobes[k].kind != LobeKind::diffuse || lobes[k].coat || lobes[k].sheen_layer) return false;
-    ++smooth;
+    ++non_delta;
   }
-  return smooth == 1;
+  return non_delta == 1;
 }
 
 Rgb Closure::diffuse_color() const {
@@ -167,7 +167,7 @@ Rgb Closure::diffuse_color() const {
 }
 
 float Closure::roughness() const {
-  float min_roughness = has_smooth() ? 1.0f : 0.0f;
+  float min_roughness = has_non_delta() ? 1.0f : 0.0f;
   for (int k = 0; k < count; ++k)
     if (!is_delta(lobes[k].kind)) min_roughness = std::min(min_roughness, lobe_roughness(lobes[k]));
   return min_roughness;

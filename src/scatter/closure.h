@@ -25,9 +25,9 @@ namespace lumirank::scatter {
 //
 // A family of lobes is a file in lobes/ and a line here: its name, and how it stands to the surface.
 enum class LobeSort : std::uint8_t {
-  reflects,        // smooth in direction, on wo's side
-  shines_through,  // smooth, to the other side
-  fiber,           // smooth, of a fiber along frame.s whatever the side; stands with no other smooth lobes
+  reflects,        // non-delta, on wo's side
+  shines_through,  // non-delta, to the other side
+  fiber,  // non-delta, of a fiber along frame.s whatever the side; stands with no other non-delta lobes
   delta_reflects,  // delta lobes ("specular"): eval and pdf are 0, only sample() and delta_continuations()
                    // meet them
   delta_through,
@@ -155,7 +155,7 @@ struct Closure {
 
   void add(const Lobe& lobe);  // ignored if its color is black; throws InternalError when full
   bool empty() const { return count == 0; }
-  bool has_smooth() const;  // any lobe that is not delta
+  bool has_non_delta() const;  // any lobe that is not delta
   bool has_delta() const;
   // A thin fiber along frame.s instead of a surface: it has no sides, light arrives and leaves all around,
   // and wherever a surface has the cosine of the normal, a fiber has the sine of the angle to frame.s (its
@@ -165,30 +165,30 @@ struct Closure {
   float cosine(Vec3f w) const;
   // n and ng agree about the side of w; on a fiber always.
   bool sides_agree(Vec3f w) const;
-  // The only smooth lobe is `diffuse` (delta lobes may stand beside it).
+  // The only non-delta lobe is `diffuse` (delta lobes may stand beside it).
   bool is_lambertian() const;
   Rgb diffuse_color() const;  // of the diffuse lobe of a lambertian closure: its reflectance
-  // Least roughness alpha of a smooth glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0
-  // if none is smooth.
+  // Least roughness alpha of a glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0
+  // if all are delta lobes.
   float roughness() const;
 };
 
-// The smooth lobes with roughness below `limit` (sharp) or the other smooth ones (broad).
+// The non-delta lobes with roughness below `limit` (sharp) or the other non-delta ones (broad).
 Closure sharp_part(const Closure& closure, float limit);
 Closure broad_part(const Closure& closure, float limit);
 
 // Which half of the closure a caller wants.
-enum class Lobes : std::uint8_t { smooth, delta, all };
+enum class Lobes : std::uint8_t { non_delta, delta, all };
 
-// Σ f(wo, wi)·cosine(wi) of the smooth lobes, per steradian. 0 where wi and wo lie on sides that disagree
+// Σ f(wo, wi)·cosine(wi) of the non-delta lobes, per steradian. 0 where wi and wo lie on sides that disagree
 // between the shading and the geometric normal (no light leaks). Radiance flows from wi to wo; with
 // `adjoint`, from wo to wi, as at a virtual light (it matters to refraction only, where the two differ by
 // eta²).
 Rgb eval(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint = false);
 // The same without the cosine: f alone.
 Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint = false);
-// Solid-angle density with which sample(…, Lobes::smooth or all) draws wi among the smooth lobes. With
-// Lobes::all the probability of choosing the smooth lobes at all is included.
+// Solid-angle density with which sample(…, Lobes::non_delta or all) draws wi among the non-delta lobes. With
+// Lobes::all the probability of choosing the non-delta lobes at all is included.
 float pdf(const Closure& closure, Vec3f wo, Vec3f wi, Lobes which);
 
 struct BsdfSample {

@@ -20,7 +20,7 @@ Closure lambertian(Rgb albedo, Vec3f normal, Vec3f ng);
 
 class ClosurePool {
  public:
-  // Keeps the smooth lobes of `closure` (delta lobes are left out) and its tangent. `normal` is the normal
+  // Keeps the non-delta lobes of `closure` (delta lobes are left out) and its tangent. `normal` is the normal
   // that the owner keeps for the point: frame.n or -frame.n. Returns the index of the closure.
   std::uint32_t add(const scatter::Closure& closure, Vec3f normal);
 

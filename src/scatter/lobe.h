@@ -21,7 +21,7 @@ inline LobeView view_from(const Lobe& lobe, bool outside) {
   return {lobe, outside ? lobe.eta : 1 / lobe.eta, outside};
 }
 
-// Any smooth lobe. A draw that leads nowhere (below the horizon) returns false.
+// Any non-delta lobe. A draw that leads nowhere (below the horizon) returns false.
 Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi);
 float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi);
 bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);

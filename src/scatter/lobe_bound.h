@@ -35,7 +35,8 @@ struct LobeTerm {
   float widest, narrowest;  // of alpha_u and alpha_v
 };
 
-// The smooth lobes of one closure at one wo, prepared for many cones. Refers to the lobes that it was given.
+// The non-delta lobes of one closure at one wo, prepared for many cones. Refers to the lobes that it was
+// given.
 class ClosureBound {
  public:
   ClosureBound() = default;

@@ -211,16 +211,16 @@ struct MaterialSet {
   // BSDFs). A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
   Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
 
-  // A BSDF of fibers: all smooth lobes of its closures are hair lobes (Closure::is_fiber()).
+  // A BSDF of fibers: all non-delta lobes of its closures are hair lobes (Closure::is_fiber()).
   bool is_hair(int material) const;
 
   // Whether shadow rays may pass straight through somewhere (null, thin dielectric, mask): such geometry gets
   // a filter.
   enum class Passage {
     opaque,
-    smooth,
+    attenuating,
     cutout
-  };  // smooth: colored transmittance (goes into E); cutout: binary (into V)
+  };  // attenuating: colored transmittance (goes into E); cutout: binary (into V)
   Passage passage(int material) const;
   // Straight-through transmittance along w (pointing away from the surface, to the side that decides for
   // two-sided materials): the coefficients of all delta_pass lobes, so thin dielectrics, null surfaces and 1

@@ -14,11 +14,11 @@ struct PassageVisitor {
   Passage operator()(const Leaf&) const {
     return Passage::opaque;
   }
-  Passage operator()(const NullMaterial&) const { return Passage::smooth; }
-  Passage operator()(const ThinDielectricMaterial&) const { return Passage::smooth; }
+  Passage operator()(const NullMaterial&) const { return Passage::attenuating; }
+  Passage operator()(const ThinDielectricMaterial&) const { return Passage::attenuating; }
   Passage operator()(const CoatingMaterial& m) const {
     // What a layer takes from the light in a cut-out's holes is no binary matter.
-    return set.passage(m.nested) == Passage::opaque ? Passage::opaque : Passage::smooth;
+    return set.passage(m.nested) == Passage::opaque ? Passage::opaque : Passage::attenuating;
   }
   Passage operator()(const MaskMaterial& m) const {
     const Passage inside = set.passage(m.nested);
@@ -30,13 +30,13 @@ struct PassageVisitor {
     // Two different sides: what passes depends on the side, which a cut-out's binary test does not know.
     return m.front == m.back || (front == Passage::opaque && set.passage(m.back) == Passage::opaque)
                ? front
-               : Passage::smooth;
+               : Passage::attenuating;
   }
   Passage operator()(const BumpMaterial& m) const { return set.passage(m.nested); }
   Passage operator()(const NormalMapMaterial& m) const { return set.passage(m.nested); }
   Passage operator()(const MixtureMaterial& m) const {
     for (const MixtureMaterial::Part& part : m.parts)
-      if (set.passage(part.nested) != Passage::opaque) return Passage::smooth;
+      if (set.passage(part.nested) != Passage::opaque) return Passage::attenuating;
     return Passage::opaque;
   }
 };

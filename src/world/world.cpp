@@ -21,8 +21,8 @@ namespace {
 
 geometry::Blocking blocking(scatter::MaterialSet::Passage passage) {
   switch (passage) {
-    case scatter::MaterialSet::Passage::smooth:
-      return geometry::Blocking::smooth;
+    case scatter::MaterialSet::Passage::attenuating:
+      return geometry::Blocking::attenuating;
     case scatter::MaterialSet::Passage::cutout:
       return geometry::Blocking::cutout;
     case scatter::MaterialSet::Passage::opaque:

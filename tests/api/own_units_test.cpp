@@ -291,16 +291,16 @@ std::vector<std::string> warnings_of(const std::string& clip) {
       "<transform name=\"to_world\"><lookat origin=\"0 0 10\" target=\"0 0 0\" up=\"0 1 0\"/></transform>"
       "<film type=\"hdrfilm\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" value=\"8\"/>"
       "</film></sensor><shape type=\"cube\"/><emitter type=\"point\"/>");
-  std::vector<std::string> told;
+  std::vector<std::string> warnings;
   Sinks sinks;
-  sinks.warning = [&](const std::string& text) { told.push_back(text); };
+  sinks.warning = [&](const std::string& text) { warnings.push_back(text); };
   RenderSettings settings;
   settings.method.name = "brute-force", settings.lights.count = 10, settings.threads = 1;
   render(scene, settings, sinks);
   ReferenceSettings how;
   how.spp = 1;
   reference(scene, settings, how, sinks);
-  return told;
+  return warnings;
 }
 
 TEST(EmptyView, ClippingPlanesThatHideEverythingAreNamed) {
@@ -312,13 +312,13 @@ TEST(EmptyView, ClippingPlanesThatHideEverythingAreNamed) {
         std::pair{
             "<float name=\"far_clip\" value=\"5\"/><float name=\"principal_point_offset_x\" value=\"9\"/>",
             "far clipping plane"}}) {
-    const auto told = warnings_of(clip);
-    ASSERT_EQ(told.size(), 2u) << clip;
-    for (const std::string& text : told) EXPECT_NE(text.find(what), std::string::npos) << text;
+    const auto warnings = warnings_of(clip);
+    ASSERT_EQ(warnings.size(), 2u) << clip;
+    for (const std::string& text : warnings) EXPECT_NE(text.find(what), std::string::npos) << text;
   }
-  const auto told = warnings_of("<float name=\"principal_point_offset_x\" value=\"40\"/>");
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_NE(told[0].find("meets a surface"), std::string::npos) << told[0];
+  const auto warnings = warnings_of("<float name=\"principal_point_offset_x\" value=\"40\"/>");
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("meets a surface"), std::string::npos) << warnings[0];
 }
 
 }  // namespace

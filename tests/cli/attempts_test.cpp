@@ -90,7 +90,7 @@ class Attempts : public testing::Test {
   }
 
   // Everything in the folder: its kind, and the bytes of files.
-  std::map<std::string, std::string> look() const {
+  std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> seen;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / "")) {
       const auto status = entry.symlink_status();
@@ -115,7 +115,7 @@ class Attempts : public testing::Test {
   }
 
   void expect(const Attempt& attempt) {
-    const auto before = look();
+    const auto before = contents();
     const Outcome outcome = lumirank(words(attempt.line));
     SCOPED_TRACE(attempt.line);
     EXPECT_EQ(outcome.code, attempt.code) << outcome.err;
@@ -131,7 +131,7 @@ class Attempts : public testing::Test {
     std::set<std::string> expected, left;
     std::istringstream in(attempt.leaves);
     for (std::string name; in >> name;) expected.insert(name);
-    const auto after = look();
+    const auto after = contents();
     for (const auto& [name, what] : before) {
       ASSERT_TRUE(after.contains(name)) << name << " is gone";
       if (after.at(name) != what) left.insert("*" + name);
@@ -227,11 +227,11 @@ TEST_F(Attempts, OnLimits) {
   const Arguments render = {"render", folder_ / "scene.xml", "--size", "64x64", "--spp", "1", "--lights",
                             "50"};
   for (const char* name : {"b.exr", "b.pfm"}) {
-    const auto before = look();
+    const auto before = contents();
     const Outcome outcome = start_lumirank(render + Arguments{"-o", folder_ / name}, {}, "ulimit -f 1");
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_NE(outcome.err.find(std::string(name) + ": cannot write"), std::string::npos) << outcome.err;
-    EXPECT_EQ(look(), before) << "no temporary file is left";
+    EXPECT_EQ(contents(), before) << "no temporary file is left";
   }
   const Arguments many = {
       "render", folder_ / "scene.xml", "-o", folder_ / "b.pfm", "--size", "4x3", "--lights", "50000000"};

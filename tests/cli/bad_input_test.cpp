@@ -179,8 +179,8 @@ TEST(OddInput, TrianglesWithoutAreaAreANote) {
   EXPECT_SUCCESS(outcome);
   EXPECT_EQ(outcome.err.find("warning: "), std::string::npos) << outcome.err;
   EXPECT_TRUE(all_finite(read_pixels(file)));
-  const Outcome told = lumirank(render_small(scene, file) + Arguments{"--verbose"});
-  EXPECT_NE(told.err.find("1 degenerate triangle left out"), std::string::npos) << told.err;
+  const Outcome verbose = lumirank(render_small(scene, file) + Arguments{"--verbose"});
+  EXPECT_NE(verbose.err.find("1 degenerate triangle left out"), std::string::npos) << verbose.err;
   const Outcome text = lumirank({"info", scene}), json = lumirank({"info", scene, "--json"});
   EXPECT_NE(text.out.find("1 degenerate triangle left out"), std::string::npos) << text.out;
   const auto info = nlohmann::json::parse(json.out);

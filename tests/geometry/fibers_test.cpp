@@ -248,7 +248,7 @@ TEST(Fibers, PacketsAgreeWithSingleRaysInInstancesToo) {
                                    {0, Transform::translate(1, 0.5, 0) * Transform::rotate(1, 2, 3, 50) *
                                            Transform::scale(1.5, 1.5, 1.5)}};
   for (const std::size_t flatten : {RayScene::kFlattenLimit, std::size_t{1}}) {
-    for (const Blocking blocking : {Blocking::opaque, Blocking::cutout, Blocking::smooth}) {
+    for (const Blocking blocking : {Blocking::opaque, Blocking::cutout, Blocking::attenuating}) {
       const RayScene scene = scene_of(fibers, two, blocking, flatten);
       Rng rng(5, Stage::test);
       int blocked = 0;
@@ -271,14 +271,14 @@ TEST(Fibers, PacketsAgreeWithSingleRaysInInstancesToo) {
                         1 - kShadowEpsilon};
           EXPECT_EQ(visible >> k & 1, scene.occluded(ray, packet.key(k)) ? 0u : 1u);
           blocked += !(visible >> k & 1);
-          if (blocking == Blocking::smooth) {
+          if (blocking == Blocking::attenuating) {
             const float through = scene.transmittance(ray).r, crossings = std::log(through) / std::log(0.25f);
             EXPECT_NEAR(crossings, std::round(crossings), 1e-4f);
             EXPECT_EQ(through < 1, scene.intersect(ray).has_value());
           }
         }
       }
-      EXPECT_EQ(blocked > 200, blocking != Blocking::smooth) << blocked;
+      EXPECT_EQ(blocked > 200, blocking != Blocking::attenuating) << blocked;
     }
   }
 }

@@ -212,15 +212,15 @@ TEST(RayScene, CutoutsInARowAreIndependent) {
 }
 
 TEST(RayScene, TransmittanceIsTheProductOverTheCrossings) {
-  const RayScene scene = mixed_scene(Blocking::smooth);
-  EXPECT_TRUE(scene.has_smooth());
+  const RayScene scene = mixed_scene(Blocking::attenuating);
+  EXPECT_TRUE(scene.has_attenuating());
   Rng rng(14, Stage::test);
   int several = 0;
   for (int n = 0; n < 40; ++n) {
     const ShadowPacket p = random_packet(rng);
     unsigned valid = 0;
     for (int k = 0; k < 16; ++k) valid |= static_cast<unsigned>(p.valid[k] != 0) << k;
-    EXPECT_EQ(scene.visible16(p), valid);  // smooth surfaces never block
+    EXPECT_EQ(scene.visible16(p), valid);  // attenuating surfaces never block
     Rgb out[16];
     scene.transmittance16(p, out);
     for (int k = 0; k < 16; ++k) {
@@ -243,7 +243,7 @@ TEST(RayScene, TransmittanceIsTheProductOverTheCrossings) {
 TEST(RayScene, ThePaneBetweenTwoTrianglesCountsOnce) {
   const RayScene scene(
       {make_rectangle(), make_cube()},
-      {{0, Transform{}, Blocking::smooth}, {1, Transform::translate(9, 0, 0), Blocking::opaque}},
+      {{0, Transform{}, Blocking::attenuating}, {1, Transform::translate(9, 0, 0), Blocking::opaque}},
       constant_callbacks(1, Rgb(0.5f, 0.25f, 1)));
   for (const float x : {-0.5f, 0.0f, 0.125f, 0.75f})
     EXPECT_EQ(scene.transmittance({{x, x, -1}, {0, 0, 1}, 0, 5}), Rgb(0.5f, 0.25f, 1)) << x;
@@ -273,7 +273,7 @@ TEST(RayScene, AnswersDoNotDependOnTheNumberOfThreads) {
 TEST(RayScene, BoundsHoldAllPlacements) {
   const RayScene scene(
       {make_rectangle()},
-      {{0, Transform::translate(1, 2, 3), Blocking::opaque}, {0, Transform{}, Blocking::smooth}}, {});
+      {{0, Transform::translate(1, 2, 3), Blocking::opaque}, {0, Transform{}, Blocking::attenuating}}, {});
   const Bounds3f box = scene.bounds();
   EXPECT_EQ(box.lo, (Vec3f{-1, -1, 0}));
   EXPECT_EQ(box.hi, (Vec3f{2, 3, 3}));

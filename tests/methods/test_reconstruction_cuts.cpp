@@ -20,9 +20,9 @@ TEST(ImageBlocks, EveryRowIsInOneBlockBetweenItsCorners) {
   DenseMatrix m = matrix::low_rank_matrix({2 * 37 * 37, 1, 1}, 1);  // 37 × 37 pixels, two rows each
   for (Vec2f& p : m.pixel) p = p + Vec2f{100, -7};                  // of a crop
   const ImageBlocks blocks(m);
-  EXPECT_EQ(blocks.units().size(), 9u);  // of 16 × 16 pixels
+  EXPECT_EQ(blocks.row_groups().size(), 9u);  // of 16 × 16 pixels
   std::set<Index> rows, corners;
-  for (std::size_t u = 0; u < blocks.units().size(); ++u)
+  for (std::size_t u = 0; u < blocks.row_groups().size(); ++u)
     for (std::size_t b = 0; b < blocks.blocks(u); ++b) {
       const auto block = blocks.block(u, b);
       ASSERT_GE(block.corner_count, 1);

@@ -23,14 +23,14 @@ struct Workspace {
   std::unique_ptr<matrix::EntryReader> reader;
   std::vector<Index> columns;
   std::vector<Rgb> values;
-  std::size_t units = 0;
+  std::size_t row_groups = 0;
 };
 
 // Row sums by way of a reader: what a method would do, at its plainest.
 class RowSums {
  public:
   explicit RowSums(const DenseMatrix& m)
-      : units_(RowGroups::single(m.rows())), matrix_(m), pool_([&m] {
+      : row_groups_(RowGroups::single(m.rows())), matrix_(m), pool_([&m] {
           auto w = std::make_unique<Workspace>();
           w->reader = m.reader();
           w->columns.resize(m.columns());
@@ -42,29 +42,29 @@ class RowSums {
   RowGroupResult run(const RunOptions& options, std::vector<Rgb>& sums, double deadline = 0) {
     const RunClock timer(options);
     sums.assign(matrix_.rows(), Rgb(0));
-    return run_row_groups(units_, {options, timer, deadline, "rows"}, sums, pool_,
-                          [&](std::size_t unit, Workspace& w) {
-                            const Index i = units_[unit][0];
+    return run_row_groups(row_groups_, {options, timer, deadline, "rows"}, sums, pool_,
+                          [&](std::size_t group, Workspace& w) {
+                            const Index i = row_groups_[group][0];
                             const std::vector<Index> rows(w.columns.size(), i);
                             w.reader->entries(rows, w.columns, w.values);
                             Rgb sum;
                             for (const Rgb v : w.values) sum += v;
                             sums[i] = sum;
-                            ++w.units;
-                            if (after_unit) after_unit(unit);
+                            ++w.row_groups;
+                            if (after_group) after_group(group);
                           });
   }
   std::size_t units_run() const {
     std::size_t n = 0;
-    pool_.for_each([&](const Workspace& w) { n += w.units; });
+    pool_.for_each([&](const Workspace& w) { n += w.row_groups; });
     return n;
   }
-  const RowGroups& units() const { return units_; }
+  const RowGroups& row_groups() const { return row_groups_; }
 
-  std::function<void(std::size_t)> after_unit;
+  std::function<void(std::size_t)> after_group;
 
  private:
-  RowGroups units_;
+  RowGroups row_groups_;
   const DenseMatrix& matrix_;
   WorkspacePool<Workspace> pool_;
 };
@@ -90,7 +90,7 @@ TEST(RowGroupPass, BeginningsAreSpreadEvenly) {
   for (const std::size_t n : {1u, 5u, 64u, 1000u, 4096u}) {
     const auto order = coarse_to_fine(n);
     EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), n);
-    // A beginning of 2^-b of the units leaves gaps of no more than 2^b: strides are halved in turn.
+    // A beginning of 2^-b of the row groups leaves gaps of no more than 2^b: strides are halved in turn.
     for (std::size_t gap = 1; gap <= 64 && n % 64 == 0; gap *= 2) {
       std::vector<std::uint32_t> beginning(order.begin(),
                                            order.begin() + static_cast<std::ptrdiff_t>(n / gap));
@@ -109,7 +109,7 @@ TEST(RowGroupPass, CancellingKeepsWhatIsFinishedAndFillsInTheRest) {
   with_threads(1, [&] {
     RowSums pass(m);
     std::size_t count = 0;
-    pass.after_unit = [&](std::size_t) { cancel = ++count == 5; };
+    pass.after_group = [&](std::size_t) { cancel = ++count == 5; };
     std::vector<Rgb> sums;
     const RowGroupResult result = pass.run(options, sums);
     EXPECT_TRUE(result.cancelled);
@@ -180,7 +180,7 @@ TEST(RowGroupPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
   EXPECT_FALSE(estimate.interrupted);
   EXPECT_EQ(estimate.trace.notes.at("stopped"), "time budget");
 
-  // The clock is not asked again: a deadline in a thousand years stops it at the same unit.
+  // The clock is not asked again: a deadline in a thousand years stops it at the same row group.
   TimedChoices repeated(written.made());
   options.choices = &repeated;
   std::vector<Rgb> again;
@@ -191,8 +191,8 @@ TEST(RowGroupPass, ADeadlineThatIsOverLeavesOneUnitAndItsChoiceIsRepeated) {
 TEST(RowGroupPass, AFailureEndsThePassAndIsPassedOn) {
   const auto m = matrix::low_rank_matrix({200, 4, 1}, 4);
   RowSums pass(m);
-  pass.after_unit = [](std::size_t unit) {
-    if (unit == 32) throw std::runtime_error("unit 32");
+  pass.after_group = [](std::size_t group) {
+    if (group == 32) throw std::runtime_error("group 32");
   };
   std::vector<Rgb> sums;
   EXPECT_THROW(pass.run({}, sums), std::runtime_error);
@@ -201,11 +201,11 @@ TEST(RowGroupPass, AFailureEndsThePassAndIsPassedOn) {
 TEST(RowGroups, PixelsHoldTheirRowsInOrder) {
   DenseMatrix m(6, 1, std::vector<Rgb>(6, Rgb(1)));
   m.pixel = {{0.5f, 0.5f}, {-0.5f, 0.5f}, {1.5f, 0.2f}, {0.9f, 0.1f}, {-0.9f, 0.9f}, {1.5f, 1.5f}};
-  const RowGroups units = RowGroups::pixels(m);
+  const RowGroups row_groups = RowGroups::pixels(m);
   const std::vector<std::vector<Index>> expected{{0, 3}, {1, 4}, {2}, {5}};
-  ASSERT_EQ(units.size(), expected.size());
-  for (std::size_t u = 0; u < units.size(); ++u)
-    EXPECT_EQ(std::vector<Index>(units[u].begin(), units[u].end()), expected[u]);
+  ASSERT_EQ(row_groups.size(), expected.size());
+  for (std::size_t u = 0; u < row_groups.size(); ++u)
+    EXPECT_EQ(std::vector<Index>(row_groups[u].begin(), row_groups[u].end()), expected[u]);
   m.pixel.clear();
   EXPECT_EQ(RowGroups::pixels(m).size(), 6u);
   EXPECT_EQ(RowGroups::single(0).size(), 0u);

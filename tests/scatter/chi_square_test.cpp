@@ -53,7 +53,7 @@ struct Integrator {
   double error = 0;  // sum of the last refinements' changes: an estimate of what is still wrong
 
   double density(double r, double s) const {
-    return pdf(closure, wo, cells.direction(r, s), Lobes::smooth) * Cells::jacobian(r);
+    return pdf(closure, wo, cells.direction(r, s), Lobes::non_delta) * Cells::jacobian(r);
   }
   double gauss(double r0, double s0, double size) const {
     constexpr std::array<double, 3> x{0.112701665379258, 0.5, 0.887298334620742};
@@ -96,14 +96,14 @@ TEST_P(EveryBsdf, SamplesFollowThePdf) {
     if (kArrivals[a].cos_theta < 0 && !c.inside_too) continue;
     const Vec3f wo = at.shading.to_world(at_angle(kArrivals[a].cos_theta, kArrivals[a].phi));
     const Closure closure = c.set.closure(c.material, at, wo);
-    if (!closure.has_smooth()) continue;
+    if (!closure.has_non_delta()) continue;
 
     const Cells cells{Frame::from_normal(normalize(reflect(wo, closure.frame.n)))};
     std::vector<int> seen(kRings * kSectors + 1, 0);
     Rng rng(7, Stage::test, static_cast<std::uint64_t>(GetParam()), a);
     for (int i = 0; i < kSamples; ++i) {
       const float u1 = rng.next_float();
-      const auto s = sample(closure, wo, u1, rng.next_2d(), Lobes::smooth);
+      const auto s = sample(closure, wo, u1, rng.next_2d(), Lobes::non_delta);
       if (!s) {
         ++seen.back();
         continue;

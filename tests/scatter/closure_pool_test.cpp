@@ -27,7 +27,7 @@ scatter::Closure closure_of(Vec3f normal, Vec3f tangent, Rgb base, float alpha) 
 
 Vec3f direction(Rng& rng) { return warp_sphere(rng.next_2d()); }
 
-TEST(ClosurePool, GivesBackFramesAndSmoothLobes) {
+TEST(ClosurePool, GivesBackFramesAndNonDeltaLobes) {
   ClosurePool pool;
   Rng rng(1, Stage::test);
   for (int k = 0; k < 200; ++k) {

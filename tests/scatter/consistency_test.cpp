@@ -62,7 +62,7 @@ TEST_P(EveryBsdfPair, WeightIsValueOverPdf) {
     const Closure closure = c.set.closure(c.material, at, wo);
     const float u1 = r.next_float();
     const Vec2f u2 = r.next_2d();
-    for (const Lobes which : {Lobes::smooth, Lobes::all}) {
+    for (const Lobes which : {Lobes::non_delta, Lobes::all}) {
       for (const bool adjoint : {false, true}) {
         const auto s = sample(closure, wo, u1, u2, which, adjoint);
         if (!s || s->delta) continue;
@@ -101,7 +101,7 @@ TEST_P(EveryBsdfPair, DeltaContinuationsAreWhatDeltaSamplesDraw) {
                         off <= 2e-5f * norm2(all[k].weight));
     }
     EXPECT_TRUE(found) << c.name;
-    // Smooth values do not see them.
+    // Values of non-delta lobes do not see them.
     EXPECT_EQ(pdf(closure, wo, s->wi, Lobes::delta), 0);
   }
 }

@@ -71,7 +71,7 @@ TEST(Plastic, SmoothMatchesItsFormula) {
     ASSERT_EQ(delta_continuations(c, kTilted, delta), 1);
     EXPECT_NEAR(delta[0].weight.g, fresnel_dielectric(0.6f, n), 1e-6f);
     EXPECT_NEAR(length(delta[0].wi - reflect(kTilted, kUp)), 0, 1e-6f);
-    EXPECT_TRUE(c.has_smooth() && c.has_delta() && !c.is_lambertian());
+    EXPECT_TRUE(c.has_non_delta() && c.has_delta() && !c.is_lambertian());
   }
 }
 
@@ -173,9 +173,9 @@ TEST(Passage, OfEveryNesting) {
                  TwoSidedMaterial{0, 5},                             // 7
                  MixtureMaterial{{{number(0.5f), false, 0}, {number(0.5f), false, 1}}},  // 8
                  TwoSidedMaterial{0, 0}});                                               // 9
-  const Passage expected[] = {Passage::opaque, Passage::smooth, Passage::smooth, Passage::opaque,
-                              Passage::smooth, Passage::cutout, Passage::cutout, Passage::smooth,
-                              Passage::smooth, Passage::opaque};
+  const Passage expected[] = {
+      Passage::opaque, Passage::attenuating, Passage::attenuating, Passage::opaque,      Passage::attenuating,
+      Passage::cutout, Passage::cutout,      Passage::attenuating, Passage::attenuating, Passage::opaque};
   for (int i = 0; i < 10; ++i) EXPECT_EQ(set.passage(i), expected[i]) << i;
   const SurfacePoint at = point_with_normal(kUp);
   EXPECT_EQ(set.transmittance(1, at, kTilted), Rgb(1));

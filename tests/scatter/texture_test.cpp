@@ -25,7 +25,7 @@ BitmapTexture numbered(TexFilter filter = TexFilter::bilinear) {
   return t;
 }
 
-Rgb look(const BitmapTexture& t, float u, float v) { return TextureSet{{t}}.lookup(0, {{u, v}, Rgb(1)}); }
+Rgb color_at(const BitmapTexture& t, float u, float v) { return TextureSet{{t}}.lookup(0, {{u, v}, Rgb(1)}); }
 
 TEST(Bitmap, TexelCentersAreExactAndTheTopRowIsAtVOne) {
   for (const TexFilter filter : {TexFilter::nearest, TexFilter::bilinear})
@@ -33,44 +33,45 @@ TEST(Bitmap, TexelCentersAreExactAndTheTopRowIsAtVOne) {
       for (int column = 0; column < kWidth; ++column) {
         const float u = (static_cast<float>(column) + 0.5f) / kWidth;
         const float v = 1 - (static_cast<float>(row) + 0.5f) / kHeight;
-        EXPECT_EQ(look(numbered(filter), u, v), Rgb(static_cast<float>(column), static_cast<float>(row), 0));
+        EXPECT_EQ(color_at(numbered(filter), u, v),
+                  Rgb(static_cast<float>(column), static_cast<float>(row), 0));
       }
 }
 
 TEST(Bitmap, BilinearIsTheWeightedMeanOfFour) {
   // A quarter of the way from column 1 to 2, halfway between the rows.
-  EXPECT_EQ(look(numbered(), (1.5f + 0.25f) / 4, 0.5f), Rgb(1.25f, 0.5f, 0));
+  EXPECT_EQ(color_at(numbered(), (1.5f + 0.25f) / 4, 0.5f), Rgb(1.25f, 0.5f, 0));
 }
 
 TEST(Bitmap, WrapModes) {
   BitmapTexture t = numbered(TexFilter::nearest);
   const float column0 = 0.5f / 4, column3 = 3.5f / 4;
-  EXPECT_EQ(look(t, column0 + 3, 0.75f - 2).r, 0);
-  EXPECT_EQ(look(t, column3 - 1, 0.75f).r, 3);
+  EXPECT_EQ(color_at(t, column0 + 3, 0.75f - 2).r, 0);
+  EXPECT_EQ(color_at(t, column3 - 1, 0.75f).r, 3);
   t.wrap_u = TexWrap::mirror;
-  EXPECT_EQ(look(t, 1 + column0, 0.75f).r, 3);  // mirrored at u = 1
-  EXPECT_EQ(look(t, -column0, 0.75f).r, 0);     // and at u = 0
-  EXPECT_EQ(look(t, 2 + column3, 0.75f).r, 3);
+  EXPECT_EQ(color_at(t, 1 + column0, 0.75f).r, 3);  // mirrored at u = 1
+  EXPECT_EQ(color_at(t, -column0, 0.75f).r, 0);     // and at u = 0
+  EXPECT_EQ(color_at(t, 2 + column3, 0.75f).r, 3);
   t.wrap_u = TexWrap::clamp;
-  EXPECT_EQ(look(t, 7, 0.75f).r, 3);
-  EXPECT_EQ(look(t, -7, 0.75f).r, 0);
+  EXPECT_EQ(color_at(t, 7, 0.75f).r, 3);
+  EXPECT_EQ(color_at(t, -7, 0.75f).r, 0);
 }
 
 TEST(Bitmap, BilinearWrapsAcrossTheEdge) {
   BitmapTexture t = numbered();
-  EXPECT_EQ(look(t, 0, 0.75f).r, 1.5f);  // halfway between columns 3 and 0
+  EXPECT_EQ(color_at(t, 0, 0.75f).r, 1.5f);  // halfway between columns 3 and 0
   t.wrap_u = TexWrap::mirror;
-  EXPECT_EQ(look(t, 0, 0.75f).r, 0);
-  EXPECT_EQ(look(t, 1, 0.75f).r, 3);
+  EXPECT_EQ(color_at(t, 0, 0.75f).r, 0);
+  EXPECT_EQ(color_at(t, 1, 0.75f).r, 3);
   t.wrap_u = TexWrap::clamp;
-  EXPECT_EQ(look(t, 0, 0.75f).r, 0);
+  EXPECT_EQ(color_at(t, 0, 0.75f).r, 0);
 }
 
 TEST(Bitmap, TransformMapsMeshToTextureCoordinates) {
   BitmapTexture t = numbered(TexFilter::nearest);
   const float m[6] = {0, 1, 0.25f, 1, 0, 0};  // u' = v + ¼, v' = u
   std::copy(m, m + 6, t.to_uv);
-  EXPECT_EQ(look(t, 0.75f, 0.5f / 4), Rgb(1, 0, 0));
+  EXPECT_EQ(color_at(t, 0.75f, 0.5f / 4), Rgb(1, 0, 0));
 }
 
 TEST(Bitmap, StrangeCoordinatesAreHarmless) {
@@ -81,11 +82,11 @@ TEST(Bitmap, StrangeCoordinatesAreHarmless) {
       t.wrap_u = t.wrap_v = wrap;
       for (float u : {nan, inf, -inf, 1e30f, -1e30f, 1e9f, -0.0f, 1.0f, -1e-20f}) {
         for (float v : {nan, 3e38f, 0.5f}) {
-          const Rgb c = look(t, u, v);
+          const Rgb c = color_at(t, u, v);
           EXPECT_TRUE(is_finite(c) && c.r >= 0 && c.r <= 3 && c.g >= 0 && c.g <= 1) << u << ' ' << v;
         }
       }
-      EXPECT_EQ(look(t, nan, inf), look(t, 0, 0));
+      EXPECT_EQ(color_at(t, nan, inf), color_at(t, 0, 0));
     }
   }
 }

@@ -121,7 +121,7 @@ inline std::vector<int> worn_materials(const world::World& world) {
   return materials;
 }
 
-// Shapes out of the way that wear BSDFs of every kind whose closures have smooth lobes.
+// Shapes out of the way that wear BSDFs of every kind whose closures have non-delta lobes.
 inline void add_all_bsdfs(scenedesc::SceneDesc& desc) {
   using namespace scenedesc;
   const auto color = [](float r, float g, float b) {

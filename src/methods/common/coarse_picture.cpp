@@ -16,7 +16,7 @@ using matrix::Index;
 
 namespace {
 
-constexpr std::size_t kStretch = 128;  // rows of a unit
+constexpr std::size_t kStretch = 128;  // rows of a group
 // More columns are for the methods to choose; with fewer than the least one sees rather which they are.
 constexpr std::size_t kMaxDraws = 64, kMinDraws = 16;
 // Of the budget: for all of them, and for the least.
@@ -137,7 +137,7 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   std::iota(all.begin(), all.end(), 0u);
   const auto drawn = draw_columns(all, importance(matrix, options, clock),
                                   {kMaxDraws, true, options.seed, Stage::method, kRound});
-  const RowGroups units = stretches_of_rows(rows);
+  const RowGroups row_groups = stretches_of_rows(rows);
   WorkspacePool<CoarseWork> pool([&] {
     auto w = std::make_unique<CoarseWork>();
     w->reader = matrix.reader();
@@ -146,8 +146,8 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   // Columns that fit, by a stretch for each thread: first with one column, then, where that is short, with
   // some more, which are cheaper by the piece.
   const auto fitting = [&]() -> std::size_t {
-    const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
-    const std::size_t tried = std::min(units.size(), static_cast<std::size_t>(current_threads()));
+    const std::vector<std::uint32_t> order = coarse_to_fine(row_groups.size());
+    const std::size_t tried = std::min(row_groups.size(), static_cast<std::size_t>(current_threads()));
     std::size_t max_count = 1;
     for (const std::size_t count : {std::size_t{1}, std::min<std::size_t>(8, drawn.size())}) {
       if (count > max_count) break;
@@ -158,12 +158,12 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
         parallel_for(tried, 1, [&](std::size_t b, std::size_t e) {
           WorkspacePool<CoarseWork>::Lease w(pool);
           for (std::size_t k = b; k < e; ++k)
-            sum_stretch(units[order[k]], std::span(drawn).first(count), 1, *w, sums);
+            sum_stretch(row_groups[order[k]], std::span(drawn).first(count), 1, *w, sums);
         });
         took = std::min(took, clock.seconds() - begin);
       }
       std::size_t read = 0;
-      for (std::size_t k = 0; k < tried; ++k) read += units[order[k]].size();
+      for (std::size_t k = 0; k < tried; ++k) read += row_groups[order[k]].size();
       picture.entry_seconds = took / static_cast<double>(read * count);
       const double column = std::max(picture.entry_seconds * static_cast<double>(rows), 1e-12);
       const double fit = options.time_seconds / column;
@@ -178,17 +178,17 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
   picture.columns = std::clamp<std::size_t>(picture.columns, 1, drawn.size());
   const float gain = static_cast<float>(drawn.size()) / static_cast<float>(picture.columns);
   const RowGroupResult pass =
-      run_row_groups(units, {options, clock, kLatest * options.time_seconds, "coarse picture"}, sums, pool,
-                     [&](std::size_t unit, CoarseWork& w) {
-                       sum_stretch(units[unit], std::span(drawn).first(picture.columns), gain, w, sums);
+      run_row_groups(row_groups, {options, clock, kLatest * options.time_seconds, "coarse picture"}, sums,
+                     pool, [&](std::size_t group, CoarseWork& w) {
+                       sum_stretch(row_groups[group], std::span(drawn).first(picture.columns), gain, w, sums);
                      });
-  picture.all_rows_read = pass.done == units.size();
+  picture.all_rows_read = pass.done == row_groups.size();
   if (pass.done == 0) picture.columns = 0;
   // Where these columns light nothing, which is seldom, the others for some rows tell how bright rows are.
   if (pass.done > 0 && std::ranges::all_of(sums, [](Rgb v) { return is_black(v); })) {
     WorkspacePool<CoarseWork>::Lease w(pool);
     picture.columns = drawn.size();
-    sum_stretch(units[coarse_to_fine(units.size())[0]], drawn, 1, *w, sums);
+    sum_stretch(row_groups[coarse_to_fine(row_groups.size())[0]], drawn, 1, *w, sums);
   }
   light_dark_rows(picture.columns, sums);
   if (options.on_estimate && picture.columns > 0) options.on_estimate(sums);

@@ -16,9 +16,9 @@ using matrix::Index;
 RowGroups::RowGroups(std::vector<Index> rows, std::vector<std::uint32_t> first)
     : rows_(std::move(rows)), first_(std::move(first)) {
   if (first_.empty() || first_.front() != 0 || first_.back() != rows_.size())
-    throw InternalError("methods::RowGroups: units do not cover the rows given");
+    throw InternalError("methods::RowGroups: groups do not cover the rows given");
   if (std::adjacent_find(first_.begin(), first_.end(), std::greater_equal<>()) != first_.end())
-    throw InternalError("methods::RowGroups: a unit without rows");
+    throw InternalError("methods::RowGroups: a group without rows");
 }
 
 RowGroups RowGroups::single(std::size_t rows) {
@@ -72,26 +72,29 @@ std::size_t reversed(std::size_t k) {
   return r;
 }
 
-// Previews after these shares of the units. Before each of them all threads wait for the last unit, so they
-// are few.
+// Previews after these shares of the row groups. Before each of them all threads wait for the last row group,
+// so they are few.
 constexpr double kPreviews[] = {1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};
 
-// Hands out units in order and keeps an eye on what may end the pass.
+// Hands out row groups in order and keeps an eye on what may end the pass.
 class WorkQueue {
  public:
   WorkQueue(std::span<const std::uint32_t> order, const RowGroupControl& control)
-      : order_(order), control_(control), start_(control.timer.seconds()), unit_(control.unit_seconds) {
+      : order_(order),
+        control_(control),
+        start_(control.timer.seconds()),
+        group_seconds_(control.group_seconds) {
     if (TimedChoices* choices = choices_of(control.options))
       earlier_ = choices->earlier("units", static_cast<std::int64_t>(order.size()));
   }
 
   void open_until(std::size_t end) { end_ = end; }
-  // began: when this worker's last unit was taken; < 0 before the first.
+  // began: when this worker's last row group was taken; < 0 before the first.
   std::optional<std::size_t> next(double& began) {
     const std::lock_guard lock(mutex_);
     if (control_.deadline > 0) {
       const double now = control_.timer.seconds();
-      if (began >= 0) unit_.add(now - began);
+      if (began >= 0) group_seconds_.add(now - began);
       began = now;
     }
     if (stopped() || taken_ >= end_) return std::nullopt;
@@ -102,7 +105,7 @@ class WorkQueue {
     }
     return order_[taken_++];
   }
-  // No more units: somebody failed.
+  // No more row groups: somebody failed.
   void close() {
     const std::lock_guard lock(mutex_);
     failed_ = true;
@@ -116,7 +119,7 @@ class WorkQueue {
     if (earlier_) {
       out_of_time_ = taken_ >= static_cast<std::size_t>(*earlier_);
     } else if (control_.deadline > 0 && (taken_ > 0 || control_.covered) && !out_of_time_) {
-      out_of_time_ = control_.timer.seconds() + unit_.next() > control_.deadline;
+      out_of_time_ = control_.timer.seconds() + group_seconds_.next() > control_.deadline;
     }
     return cancelled_ || out_of_time_;
   }
@@ -125,7 +128,7 @@ class WorkQueue {
   std::span<const std::uint32_t> order_;
   const RowGroupControl& control_;
   double start_;
-  RowGroupSeconds unit_;
+  RowGroupSeconds group_seconds_;
   std::optional<std::int64_t> earlier_;
   std::mutex mutex_;
   std::size_t taken_ = 0, end_ = 0, reported_ = 0;
@@ -166,18 +169,18 @@ std::vector<std::uint32_t> coarse_to_fine(std::size_t count) {
   return order;
 }
 
-RowGroupResult run_workers(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
+RowGroupResult run_workers(const RowGroups& row_groups, const RowGroupControl& control, std::span<Rgb> sums,
                            const std::function<void(const NextRowGroup&)>& worker) {
-  const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
+  const std::vector<std::uint32_t> order = coarse_to_fine(row_groups.size());
   std::vector<RowState> state(sums.size(), RowState::of_no_unit);
-  for (std::size_t u = 0; u < units.size(); ++u)
-    for (const Index i : units[u]) state[i] = RowState::waiting;
+  for (std::size_t u = 0; u < row_groups.size(); ++u)
+    for (const Index i : row_groups[u]) state[i] = RowState::waiting;
 
   WorkQueue dispenser(order, control);
   std::size_t marked = 0;
   const auto mark_finished = [&](std::size_t done) {
     for (; marked < done; ++marked)
-      for (const Index i : units[order[marked]]) state[i] = RowState::finished;
+      for (const Index i : row_groups[order[marked]]) state[i] = RowState::finished;
   };
   const auto run_until = [&](std::size_t end) {
     dispenser.open_until(end);

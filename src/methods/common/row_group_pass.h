@@ -1,6 +1,6 @@
-// A pass over units of rows that know nothing of each other: receivers, pixels, slices. Units run side by
-// side, each on one thread, with work space that is kept; between them come progress, previews, the deadline
-// and cancellation.
+// A pass over groups of rows that know nothing of each other: receivers, pixels, slices. Row groups run side
+// by side, each on one thread, with work space that is kept; between them come progress, previews, the
+// deadline and cancellation.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,11 @@
 
 namespace lumirank::methods {
 
-// Rows divided among units; a row belongs to one unit at most.
+// Rows divided among row groups; a row belongs to one row group at most.
 class RowGroups {
  public:
-  // Unit u has rows[first[u]] … rows[first[u + 1] − 1], none of them empty: first has one number more than
-  // there are units.
+  // Row group u has rows[first[u]] … rows[first[u + 1] − 1], none of them empty: first has one number more
+  // than there are row groups.
   RowGroups(std::vector<matrix::Index> rows, std::vector<std::uint32_t> first);
   // Every row on its own.
   static RowGroups single(std::size_t rows);
@@ -32,8 +32,8 @@ class RowGroups {
   static RowGroups pixels(const matrix::LightingMatrix& matrix);
 
   std::size_t size() const { return first_.size() - 1; }
-  std::span<const matrix::Index> operator[](std::size_t unit) const {
-    return std::span(rows_).subspan(first_[unit], first_[unit + 1] - first_[unit]);
+  std::span<const matrix::Index> operator[](std::size_t group) const {
+    return std::span(rows_).subspan(first_[group], first_[group + 1] - first_[group]);
   }
 
  private:
@@ -41,11 +41,11 @@ class RowGroups {
   std::vector<std::uint32_t> first_;
 };
 
-// The units 0 … count − 1 from coarse to fine: every beginning is spread evenly over all of them.
+// The row groups 0 … count − 1 from coarse to fine: every beginning is spread evenly over all of them.
 std::vector<std::uint32_t> coarse_to_fine(std::size_t count);
 
-// Work spaces, as many as threads ever needed one at a time. Which of them a unit gets is chance: a work
-// space must not carry anything from unit to unit but sums that do not depend on their order.
+// Work spaces, as many as threads ever needed one at a time. Which of them a row group gets is chance: a work
+// space must not carry anything from row group to row group but sums that do not depend on their order.
 template <typename Workspace>
 class WorkspacePool {
  public:
@@ -92,22 +92,23 @@ class WorkspacePool {
 struct RowGroupControl {
   const RunOptions& options;
   const RunClock& timer;         // since the method was called
-  double deadline = 0;           // seconds of `timer` after which no unit is begun; 0: none
+  double deadline = 0;           // seconds of `timer` after which no row group is begun; 0: none
   const char* phase = "pixels";  // what progress is called
-  // All rows have an estimate, which those of units that are not reached keep: none need be reached.
+  // All rows have an estimate, which those of row groups that are not reached keep: none need be reached.
   bool covered = false;
-  double unit_seconds = 0;  // what a unit is expected to take, until the first ones are done; 0: unknown
-  std::function<void(std::size_t unit)> on_unit{};  // for the callers of turns.h: a unit is done
+  double group_seconds =
+      0;  // what a row group is expected to take, until the first ones are done; 0: unknown
+  std::function<void(std::size_t group)> on_group{};  // for the callers of turns.h: a row group is done
 };
 
 struct RowGroupResult {
-  std::size_t done = 0;  // units: the first `done` of coarse_to_fine()
+  std::size_t done = 0;  // row groups: the first `done` of coarse_to_fine()
   bool cancelled = false;
   bool out_of_time = false;
   double seconds = 0;
 };
 
-// What units like those before may take, all threads at work: against a deadline.
+// What row groups like those before may take, all threads at work: against a deadline.
 class RowGroupSeconds {
  public:
   explicit RowGroupSeconds(double expected) : expected_(expected) {}
@@ -115,7 +116,7 @@ class RowGroupSeconds {
     sum_ += seconds, ++count_;
     longest_ = std::max(longest_, seconds);
   }
-  // Half way from the mean to the longest: a unit like the longest is met once in a while.
+  // Half way from the mean to the longest: a row group like the longest is met once in a while.
   double next() const {
     return count_ > 0 ? 0.5 * (sum_ / static_cast<double>(count_) + longest_) : expected_;
   }
@@ -127,21 +128,21 @@ class RowGroupSeconds {
 
 // Whose turn it is; nothing once the pass is over.
 using NextRowGroup = std::function<std::optional<std::size_t>()>;
-// Calls worker(next) on all threads; each asks for units until there are none. What a worker has taken it
-// finishes, and then has written (not added to) sums[i] of all rows i of the unit. Where the pass ends early
-// and rows are not covered, rows of other units take the sum of the nearest row that is finished (by number:
-// rows are kept in an order in which neighbors lie close), and so do previews. Rows of no unit are left
-// alone.
-RowGroupResult run_workers(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
+// Calls worker(next) on all threads; each asks for row groups until there are none. What a worker has taken
+// it finishes, and then has written (not added to) sums[i] of all rows i of the row group. Where the pass
+// ends early and rows are not covered, rows of other row groups take the sum of the nearest row that is
+// finished (by number: rows are kept in an order in which neighbors lie close), and so do previews. Rows of
+// no row group are left alone.
+RowGroupResult run_workers(const RowGroups& row_groups, const RowGroupControl& control, std::span<Rgb> sums,
                            const std::function<void(const NextRowGroup&)>& worker);
 
-// The same with body(unit, workspace).
+// The same with body(group, workspace).
 template <typename Workspace, typename Body>
-RowGroupResult run_row_groups(const RowGroups& units, const RowGroupControl& control, std::span<Rgb> sums,
-                              WorkspacePool<Workspace>& pool, Body&& body) {
-  return run_workers(units, control, sums, [&](const NextRowGroup& next) {
+RowGroupResult run_row_groups(const RowGroups& row_groups, const RowGroupControl& control,
+                              std::span<Rgb> sums, WorkspacePool<Workspace>& pool, Body&& body) {
+  return run_workers(row_groups, control, sums, [&](const NextRowGroup& next) {
     typename WorkspacePool<Workspace>::Lease workspace(pool);
-    while (const auto unit = next()) body(*unit, *workspace);
+    while (const auto group = next()) body(*group, *workspace);
   });
 }
 

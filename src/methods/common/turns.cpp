@@ -12,21 +12,21 @@ using matrix::Index;
 namespace {
 
 constexpr double kSteps = 64;  // of quality: what a choice counts in
-// Of the time that is left: what the first turn plans with, so that all units have it though trials are few;
-// the later ones, which know better; what a trial may take; and below what nothing more is begun.
+// Of the time that is left: what the first turn plans with, so that all row groups have it though trials are
+// few; the later ones, which know better; what a trial may take; and below what nothing more is begun.
 constexpr double kFirstTurn = 0.5, kLaterTurn = 0.95, kTrials = 0.06, kNothingLeft = 0.02;
 constexpr std::size_t kTriedByThread = 4;
 // Columns drawn by power tell a row less than as many that are chosen for it; and beside a turn that is many
 // times better the coarse picture is left out.
 constexpr double kCoarseWorth = 1.0 / 8, kCoarseCounts = 1.0 / 16;
-// Seconds grow as a power of quality between these, as trials tell: parts of a unit's costs are fixed.
+// Seconds grow as a power of quality between these, as trials tell: parts of a row group's costs are fixed.
 constexpr double kMinPower = 0.4;
 constexpr double kTrialStep = 4, kTrialSafety = 1.5;
 // A first guess of what an entry costs a method, in entries of the coarse picture.
 constexpr double kDearer = 3;
 constexpr double kUsualEntries = 500;  // of a row, where the method was not asked
 constexpr double kNearlyWhole = 0.95;  // of the method's own quality: no more time is wanted
-// What is wanted is asked with some reserve: costs differ from unit to unit.
+// What is wanted is asked with some reserve: costs differ from row group to row group.
 constexpr double kReserve = 1.2;
 
 std::int64_t steps_of(double quality) {
@@ -41,30 +41,31 @@ std::size_t Turn::scaled(std::size_t count, std::size_t min_count) const {
   return std::max(static_cast<std::size_t>(std::llround(scaled)), min_count);
 }
 
-// A unit for each thread at rising quality, as long as the next trial is short beside the time that is left.
-double Turns::first_quality(const RowGroups& units, const TurnMethod& method, const Trial& trial,
+// A row group for each thread at rising quality, as long as the next trial is short beside the time that is
+// left.
+double Turns::first_quality(const RowGroups& row_groups, const TurnMethod& method, const Trial& trial,
                             std::span<Rgb> out) {
   const double deadline = deadline_of(options_);
-  const std::vector<std::uint32_t> order = coarse_to_fine(units.size());
+  const std::vector<std::uint32_t> order = coarse_to_fine(row_groups.size());
   double quality = std::clamp(std::ceil(method.min_quality * kSteps), 1.0, kSteps) / kSteps;
   const double min_quality = quality;
   const double left_at_first = deadline - clock_.seconds();
-  // Some units for each thread, since they differ; one if that is dear.
+  // Some row groups for each thread, since they differ; one if that is dear.
   const auto threads = static_cast<std::size_t>(current_threads());
   std::size_t tried = 0;
   double guess = 0;
   for (const std::size_t each : {kTriedByThread, std::size_t{1}}) {
-    tried = std::min(units.size(), each * threads);
+    tried = std::min(row_groups.size(), each * threads);
     std::size_t rows = 0;
-    for (std::size_t k = 0; k < tried; ++k) rows += units[order[k]].size();
+    for (std::size_t k = 0; k < tried; ++k) rows += row_groups[order[k]].size();
     guess = kDearer * quality * method.entries_per_row * static_cast<double>(rows) * coarse_.entry_seconds;
     if (guess < kTrials * left_at_first) break;
   }
   const auto some = std::span(order).first(tried);
-  const double turns = static_cast<double>(units.size()) / static_cast<double>(tried);
+  const double turns = static_cast<double>(row_groups.size()) / static_cast<double>(tried);
   const double side_by_side = static_cast<double>(std::min(tried, threads)) / static_cast<double>(tried);
   if (guess > left_at_first || left_at_first <= 0) {
-    unit_seconds_ = guess * side_by_side;
+    group_seconds_ = guess * side_by_side;
     last_quality_ = quality, last_seconds_ = guess * turns;
     return 0;
   }
@@ -78,7 +79,7 @@ double Turns::first_quality(const RowGroups& units, const TurnMethod& method, co
     if (last_quality_ > 0)
       power_ = std::clamp(std::log(took * turns / last_seconds_) / std::log(quality / last_quality_),
                           kMinPower, 1.0);
-    unit_seconds_ = took * side_by_side;
+    group_seconds_ = took * side_by_side;
     last_quality_ = quality, last_seconds_ = took * turns;
     // Not far beyond what was tried.
     fitting = std::min(fitting_in(kFirstTurn * left), 2 * kTrialStep * quality);
@@ -86,7 +87,7 @@ double Turns::first_quality(const RowGroups& units, const TurnMethod& method, co
     if (quality >= 1 || fitting < next || took * kTrialSafety * next / quality > kTrials * left) break;
     quality = next;
   }
-  // Even the lowest quality may be too dear for all units; as many as there is time for have it.
+  // Even the lowest quality may be too dear for all row groups; as many as there is time for have it.
   return std::max(fitting, min_quality);
 }
 
@@ -94,7 +95,8 @@ double Turns::fitting_in(double seconds) const {
   return last_quality_ * std::pow(std::max(seconds, 0.0) / std::max(last_seconds_, 1e-12), 1 / power_);
 }
 
-// As much as the time that is left allows for all units, by what the last turn took; or for some of them.
+// As much as the time that is left allows for all row groups, by what the last turn took; or for some of
+// them.
 double Turns::next_quality(const TurnMethod& method) const {
   const double left = deadline_of(options_) - clock_.seconds();
   if (left < kNothingLeft * options_.time_seconds) return 0;
@@ -104,16 +106,16 @@ double Turns::next_quality(const TurnMethod& method) const {
   return std::max(next, std::max(1 / kSteps, std::ceil(method.min_quality * kSteps) / kSteps));
 }
 
-RowGroupResult Turns::run_turn(const RowGroups& units, const TurnMethod& method, const Turn& turn,
+RowGroupResult Turns::run_turn(const RowGroups& row_groups, const TurnMethod& method, const Turn& turn,
                                std::span<Rgb> sums, const Pass& pass) {
   if (method.prepare) method.prepare(turn);
   RowGroupControl control{options_, clock_, deadline_of(options_), method.phase};
   control.covered = true;
-  control.unit_seconds =
-      last_quality_ > 0 ? unit_seconds_ * std::max(1.0, turn.quality / last_quality_) : unit_seconds_;
+  control.group_seconds =
+      last_quality_ > 0 ? group_seconds_ * std::max(1.0, turn.quality / last_quality_) : group_seconds_;
   const bool replaces = !method.averaged || (method.exact_from > 0 && turn.quality >= method.exact_from);
-  control.on_unit = [&](std::size_t unit) {
-    double& have = quality_[unit];
+  control.on_group = [&](std::size_t group) {
+    double& have = quality_[group];
     const double before = have > 0                                         ? have
                           : coarse_quality_ < kCoarseCounts * turn.quality ? 0
                                                                            : coarse_quality_;
@@ -121,29 +123,30 @@ RowGroupResult Turns::run_turn(const RowGroups& units, const TurnMethod& method,
         static_cast<float>(replaces || before == 0 ? 1.0
                                                    : turn.quality * turn.quality /
                                                          (before * before + turn.quality * turn.quality));
-    for (const Index i : units[unit]) sums[i] = share >= 1 ? fresh_[i] : lerp(sums[i], fresh_[i], share);
+    for (const Index i : row_groups[group])
+      sums[i] = share >= 1 ? fresh_[i] : lerp(sums[i], fresh_[i], share);
     have = replaces ? turn.quality : std::hypot(have, turn.quality);
   };
   const double before = clock_.seconds();
   const RowGroupResult result = pass(control, turn, fresh_);
   if (result.done > 0) {
-    const double share = static_cast<double>(result.done) / static_cast<double>(units.size());
+    const double share = static_cast<double>(result.done) / static_cast<double>(row_groups.size());
     last_seconds_ = (clock_.seconds() - before) / share;
     last_quality_ = turn.quality;
-    unit_seconds_ =
-        last_seconds_ * static_cast<double>(current_threads()) / static_cast<double>(units.size());
+    group_seconds_ =
+        last_seconds_ * static_cast<double>(current_threads()) / static_cast<double>(row_groups.size());
     ++turns_;
   }
   return result;
 }
 
-RowGroupResult Turns::run(const RowGroups& units, const TurnMethod& method, std::span<Rgb> sums,
+RowGroupResult Turns::run(const RowGroups& row_groups, const TurnMethod& method, std::span<Rgb> sums,
                           const Pass& pass, const Trial& trial) {
   RowGroupResult result;
-  quality_.assign(units.size(), 0.0);
+  quality_.assign(row_groups.size(), 0.0);
   begin_ = clock_.seconds();
   result.cancelled = options_.sinks.cancelled();
-  if (units.size() == 0 || result.cancelled) return result;
+  if (row_groups.size() == 0 || result.cancelled) return result;
   fresh_.assign(sums.size(), Rgb(0));
   if (coarse_.all_rows_read)
     coarse_quality_ = kCoarseWorth * static_cast<double>(coarse_.columns) / method.entries_per_row;
@@ -151,14 +154,14 @@ RowGroupResult Turns::run(const RowGroups& units, const TurnMethod& method, std:
   double spent = 0;
   for (std::uint64_t number = 0; spent < kMaxQuality; ++number) {
     const std::int64_t steps = timed_choice(options_, "turn_quality", max_steps, [&]() -> std::int64_t {
-      return steps_of(number == 0 ? first_quality(units, method, trial, fresh_) : next_quality(method));
+      return steps_of(number == 0 ? first_quality(row_groups, method, trial, fresh_) : next_quality(method));
     });
     if (steps == 0) {
       result.out_of_time = true;
       break;
     }
     const Turn turn{static_cast<double>(steps) / kSteps, number};
-    result = run_turn(units, method, turn, sums, pass);
+    result = run_turn(row_groups, method, turn, sums, pass);
     spent += turn.quality;
     if (options_.on_estimate && result.done > 0) options_.on_estimate(sums);
     if (result.cancelled) break;
@@ -172,9 +175,9 @@ RowGroupResult Turns::run(const RowGroups& units, const TurnMethod& method, std:
   std::size_t coarse = 0;
   double whole = 0;
   min_quality_ = kMaxQuality;
-  for (std::size_t u = 0; u < units.size(); ++u) {
-    const auto rows = static_cast<double>(units[u].size());
-    if (quality_[u] == 0) coarse += units[u].size();
+  for (std::size_t u = 0; u < row_groups.size(); ++u) {
+    const auto rows = static_cast<double>(row_groups[u].size());
+    if (quality_[u] == 0) coarse += row_groups[u].size();
     min_quality_ = std::min(min_quality_, quality_[u]);
     whole += rows, mean_quality_ += rows * quality_[u];
   }
@@ -197,7 +200,7 @@ void Turns::write(Trace& trace) const {
   numbers["turns"] = static_cast<double>(turns_);
   numbers["turn_quality"] = mean_quality_;
   numbers["budget.coarse_share"] = coarse_share_;
-  // Where the time did not suffice to try a unit, by the coarse picture.
+  // Where the time did not suffice to try a row group, by the coarse picture.
   const double guess = kDearer * kUsualEntries * static_cast<double>(matrix_.rows()) * coarse_.entry_seconds;
   const double wanted = turns_ == 0 && seconds_wanted_ == 0 ? guess : seconds_wanted_;
   if (wanted > 0) numbers["budget.seconds_wanted"] = std::max(wanted, 1.05 * options_.time_seconds);

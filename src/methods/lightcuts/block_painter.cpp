@@ -16,9 +16,9 @@ constexpr std::size_t kMax = ReconstructionCut::kMaxSamples;
 constexpr float kMinWeight = 0.01f;
 }  // namespace
 
-void BlockPainter::paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts,
+void BlockPainter::paint(const ImageBlocks& blocks, std::size_t group, ReceiverCuts& cuts,
                          matrix::EntryReader& reader, std::span<Rgb> sums) {
-  choose_samples(blocks, unit, reader);
+  choose_samples(blocks, group, reader);
   cut_samples(cuts, reader);
   for (const Own& own : own_) sums[own.row] = samples_[own.sample].sum;
   const Timer timer;
@@ -31,26 +31,26 @@ void BlockPainter::paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCu
   seconds_ += timer.seconds();
 }
 
-void BlockPainter::choose_samples(const ImageBlocks& blocks, std::size_t unit, matrix::EntryReader& reader) {
-  const auto unit_rows = blocks.units()[unit];
+void BlockPainter::choose_samples(const ImageBlocks& blocks, std::size_t group, matrix::EntryReader& reader) {
+  const auto group_rows = blocks.row_groups()[group];
   std::vector<Index>& corners = rows_;
   corners.clear();
-  for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
-    const ImageBlocks::Block block = blocks.block(unit, which);
+  for (std::size_t which = 0; which < blocks.blocks(group); ++which) {
+    const ImageBlocks::Block block = blocks.block(group, which);
     corners.insert(corners.end(), block.corners.begin(), block.corners.begin() + block.corner_count);
   }
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   corner_count_ = corners.size();
   receivers_.clear();
-  for (std::size_t c = 0; c < corner_count_; ++c) receivers_.push_back({corners[c], unit_rows.size() + c});
-  corners.insert(corners.begin(), unit_rows.begin(), unit_rows.end());
+  for (std::size_t c = 0; c < corner_count_; ++c) receivers_.push_back({corners[c], group_rows.size() + c});
+  corners.insert(corners.begin(), group_rows.begin(), group_rows.end());
   responses_.measure(rows_, reader);
 
   pending_.clear(), own_.clear(), block_end_.clear();
-  for (std::size_t which = 0; which < blocks.blocks(unit); ++which) {
-    const ImageBlocks::Block block = blocks.block(unit, which);
-    const auto first_place = static_cast<std::size_t>(block.rows.data() - unit_rows.data());
+  for (std::size_t which = 0; which < blocks.blocks(group); ++which) {
+    const ImageBlocks::Block block = blocks.block(group, which);
+    const auto first_place = static_cast<std::size_t>(block.rows.data() - group_rows.data());
     find_candidates(block);
     if (order_.size() != block.rows.size()) order_ = coarse_to_fine(block.rows.size());
     for (const std::uint32_t k : order_) {

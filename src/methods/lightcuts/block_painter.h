@@ -30,8 +30,8 @@ class BlockPainter {
         responses_(tree),
         found_(tree, tolerance) {}
 
-  // sums[i] of all rows of the unit.
-  void paint(const ImageBlocks& blocks, std::size_t unit, ReceiverCuts& cuts, matrix::EntryReader& reader,
+  // sums[i] of all rows of the row group.
+  void paint(const ImageBlocks& blocks, std::size_t group, ReceiverCuts& cuts, matrix::EntryReader& reader,
              std::span<Rgb> sums);
 
   std::uint64_t shaded() const { return shaded_; }              // entries with rays
@@ -39,11 +39,11 @@ class BlockPainter {
   double seconds() const { return seconds_; }                   // of both and of finding them
 
  private:
-  // Samples of the unit by number: its corners, then its extras.
+  // Samples of the row group by number: its corners, then its extras.
   using Number = std::uint32_t;
   using SampleList = std::array<Number, ReconstructionCut::kMaxSamples>;
   static constexpr Number kNoSample = 0xffffffffu;
-  // With its place among the unit's rows, which are followed by its corners.
+  // With its place among the row group's rows, which are followed by its corners.
   struct Receiver {
     matrix::Index row;
     std::size_t place;
@@ -55,7 +55,7 @@ class BlockPainter {
 
   // The corners of all blocks, and as many of their receivers as it takes until each of the others has enough
   // samples that are like it.
-  void choose_samples(const ImageBlocks& blocks, std::size_t unit, matrix::EntryReader& reader);
+  void choose_samples(const ImageBlocks& blocks, std::size_t group, matrix::EntryReader& reader);
   void cut_samples(ReceiverCuts& cuts, matrix::EntryReader& reader);
   // For each receiver of the block its samples, or its own number if it is one.
   void assign(const ImageBlocks::Block& block, std::size_t first_place);

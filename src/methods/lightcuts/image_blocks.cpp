@@ -12,26 +12,26 @@ using matrix::Index;
 namespace {
 
 constexpr Index kNoBlock = 0xffffffffu;
-constexpr int kMinUnit = 16, kMaxUnit = 32;  // pixels
-constexpr int kEnoughUnits = 256;
+constexpr int kMinGroupSide = 16, kMaxGroupSide = 32;  // pixels
+constexpr int kEnoughGroups = 256;
 constexpr float kCosine30 = 0.8660254f;
 constexpr float kSine30 = 0.5f;
 
 int unit_side(int width, int height) {
-  int side = kMaxUnit;
-  const auto units = [&] { return ((width + side - 1) / side) * ((height + side - 1) / side); };
-  while (side > kMinUnit && units() < kEnoughUnits) side /= 2;
+  int side = kMaxGroupSide;
+  const auto row_groups = [&] { return ((width + side - 1) / side) * ((height + side - 1) / side); };
+  while (side > kMinGroupSide && row_groups() < kEnoughGroups) side /= 2;
   return side;
 }
 
 }  // namespace
 
 struct ImageBlocks::Placed {
-  std::uint64_t key;  // unit, then block
+  std::uint64_t key;  // row group, then block
   Index row;
 };
 
-ImageBlocks::ImageBlocks(const matrix::LightingMatrix& matrix) : units_(group(matrix)) {}
+ImageBlocks::ImageBlocks(const matrix::LightingMatrix& matrix) : row_groups_(group(matrix)) {}
 
 RowGroups ImageBlocks::group(const matrix::LightingMatrix& matrix) {
   const auto film = matrix.row_features().pixel;
@@ -80,10 +80,10 @@ RowGroups ImageBlocks::group(const matrix::LightingMatrix& matrix) {
   return {std::move(rows), std::move(first)};
 }
 
-ImageBlocks::Block ImageBlocks::block(std::size_t unit, std::size_t which) const {
-  const auto all = units_[unit];
-  const std::size_t b = first_block_[unit] + which;
-  const std::size_t end = which + 1 < blocks(unit) ? first_row_[b + 1] : all.size();
+ImageBlocks::Block ImageBlocks::block(std::size_t group, std::size_t which) const {
+  const auto all = row_groups_[group];
+  const std::size_t b = first_block_[group] + which;
+  const std::size_t end = which + 1 < blocks(group) ? first_row_[b + 1] : all.size();
   Block block{all.subspan(first_row_[b], end - first_row_[b]), {}, 0};
   for (const int dy : {0, kSide})
     for (const int dx : {0, kSide}) {

@@ -28,9 +28,9 @@ class ImageBlocks {
   explicit ImageBlocks(const matrix::LightingMatrix& matrix);
 
   // Squares of blocks: large ones share more corners within, small ones are more to share out among threads.
-  const RowGroups& units() const { return units_; }
-  std::size_t blocks(std::size_t unit) const { return first_block_[unit + 1] - first_block_[unit]; }
-  Block block(std::size_t unit, std::size_t which) const;
+  const RowGroups& row_groups() const { return row_groups_; }
+  std::size_t blocks(std::size_t group) const { return first_block_[group + 1] - first_block_[group]; }
+  Block block(std::size_t group, std::size_t which) const;
 
  private:
   struct Placed;
@@ -38,10 +38,10 @@ class ImageBlocks {
 
   int width_ = 0, height_ = 0;              // pixels
   std::vector<matrix::Index> pixel_row_;    // the first row of a pixel, or kNone
-  std::vector<std::uint32_t> first_block_;  // by unit
-  std::vector<std::uint32_t> first_row_;    // by block, into its unit's rows
+  std::vector<std::uint32_t> first_block_;  // by row group
+  std::vector<std::uint32_t> first_row_;    // by block, into its row group's rows
   std::vector<std::array<int, 2>> place_;   // by block: its left upper pixel
-  RowGroups units_;
+  RowGroups row_groups_;
 };
 
 // Whether what light reaches one receiver tells of the other: normals within 30 degrees, and neither far

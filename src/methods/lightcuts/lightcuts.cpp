@@ -139,17 +139,17 @@ class Lightcuts final : public Method {
     if (settings_.reconstruction == Reconstruction::on && image) {
       const ImageBlocks blocks(matrix);
       return run_in_turns(
-          turns, blocks.units(), control, method, all_sums, pool,
-          [&](std::size_t unit, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+          turns, blocks.row_groups(), control, method, all_sums, pool,
+          [&](std::size_t group, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
             w.cuts.limit(limits(turn));
-            w.painter.paint(blocks, unit, w.cuts, *w.reader, sums);
+            w.painter.paint(blocks, group, w.cuts, *w.reader, sums);
           });
     }
-    const RowGroups units = stretches(matrix.rows());
-    return run_in_turns(turns, units, control, method, all_sums, pool,
-                        [&](std::size_t unit, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+    const RowGroups row_groups = stretches(matrix.rows());
+    return run_in_turns(turns, row_groups, control, method, all_sums, pool,
+                        [&](std::size_t group, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
                           w.cuts.limit(limits(turn));
-                          w.cuts.cut(units[unit], *w.reader,
+                          w.cuts.cut(row_groups[group], *w.reader,
                                      [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
                         });
   }

@@ -118,7 +118,7 @@ class PixelWorkspace {
 };
 using PixelPool = WorkspacePool<PixelWorkspace>;
 
-// kPixelsTogether pixels to a unit.
+// kPixelsTogether pixels to a row group.
 RowGroups together(const RowGroups& pixels) {
   std::vector<Index> rows;
   std::vector<std::uint32_t> first;
@@ -165,8 +165,8 @@ class MultidimensionalLightcuts final : public Method {
       const TurnMethod method{.averaged = false, .entries_per_row = kPairEntriesPerRow};
       const RowGroupResult pass = run_in_turns(
           turns, together(pixels), {options, timer, 0, "columns"}, method, estimate.sums, pool,
-          [&](std::size_t unit, PixelWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
-            const std::size_t first = unit * kPixelsTogether;
+          [&](std::size_t group, PixelWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+            const std::size_t first = group * kPixelsTogether;
             w.limit({std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.max_pairs)});
             w.run(pixels, first, std::min(kPixelsTogether, pixels.size() - first), sums);
           });

@@ -125,8 +125,8 @@ void Prediction::fill(const RecoverySettings& settings, std::uint64_t key, std::
     Entry* const out = &state[c * rows];
     for (std::size_t i = 0; i < rows; ++i) {
       const Entry guess = drawn_[i] ? Entry::predicted_visible : Entry::predicted_hidden;
-      const Entry told = known[i] != seen::kUnknown ? Entry::exact : guess;
-      out[i] = reach[i] > 0 ? told : Entry::free;
+      const Entry known_or_guess = known[i] != seen::kUnknown ? Entry::exact : guess;
+      out[i] = reach[i] > 0 ? known_or_guess : Entry::free;
       if (known[i] != seen::kUnknown) probability[i] = known[i] == seen::kVisible ? 1.0f : 0.0f;
     }
   }

@@ -50,9 +50,9 @@ class SliceRun {
     TurnMethod method{.phase = "slices", .entries_per_row = static_cast<double>(settings.initial_columns)};
     if (exact && columns > 0)
       method.exact_from = static_cast<double>(matrix_.columns()) / static_cast<double>(columns);
-    const RowGroups units(slices_.rows, slices_.first);
+    const RowGroups row_groups(slices_.rows, slices_.first);
     result_ =
-        run_in_turns(turns_, units, {options_, clock_, 0, method.phase}, method, estimate_.sums, pool,
+        run_in_turns(turns_, row_groups, {options_, clock_, 0, method.phase}, method, estimate_.sums, pool,
                      [&](std::size_t s, Slice& slice, const Turn& turn, std::span<Rgb> sums) {
                        Settings of_turn = settings;
                        of_turn.refine(turn);

@@ -78,14 +78,14 @@ class StochasticLightcuts final : public Method {
     auto& numbers = estimate.trace.numbers;
     {
       WorkspacePool<WalkWorkspace> pool([&] { return std::make_unique<WalkWorkspace>(matrix, tree); });
-      const RowGroups units = stretches(matrix.rows());
+      const RowGroups row_groups = stretches(matrix.rows());
       TurnMethod method{.entries_per_row = static_cast<double>(settings_.nodes)};
       if (settings_.error_bound == 0)
         method.exact_from = static_cast<double>(tree.leaves()) / static_cast<double>(settings_.nodes);
       const RowGroupResult pass =
-          run_in_turns(turns, units, {options, timer, 0, "columns"}, method, estimate.sums, pool,
-                       [&](std::size_t unit, WalkWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
-                         sum_rows(units[unit], options.seed, turn, w, sums);
+          run_in_turns(turns, row_groups, {options, timer, 0, "columns"}, method, estimate.sums, pool,
+                       [&](std::size_t group, WalkWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+                         sum_rows(row_groups[group], options.seed, turn, w, sums);
                        });
       turns.write(estimate.trace);
       note_stop(pass, estimate);

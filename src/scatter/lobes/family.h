@@ -62,7 +62,7 @@ float reach_of_alpha(const LobeTerm& term);
 
 // Directions as in lobe.h: local, mirrored so that wo.z > 0, without the lobe's coat and sheen.
 struct LobeFamily {
-  // Smooth lobes: f without the cosine, its density, a draw.
+  // Non-delta lobes: f without the cosine, its density, a draw.
   Rgb (*value)(LobeView view, Vec3f wo, Vec3f wi) = nullptr;
   float (*pdf)(LobeView view, Vec3f wo, Vec3f wi) = cosine_pdf;
   bool (*sample)(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) = cosine_sample;

@@ -28,7 +28,7 @@ struct PairContext {
   bool has_cutouts;         // rays need keys
   bool has_spheres;         // surface lights are spherical
   SphereBackground spheres;
-  bool has_smooth;  // rays need transmittances
+  bool has_attenuating;  // rays need transmittances
   bool has_directional;
   bool has_two_sided;  // some surface shines through or is a fiber, see GroupStore::two_sided
 };
@@ -58,8 +58,8 @@ class PairBlock {
                 std::span<const std::uint16_t> used);
 
   // Shoots the survivors' rays and evaluates what they reach: afterwards visible(group) tells which lanes are
-  // unblocked and not zero, and e is theirs, transmittance of smooth surfaces included. Without `values`, e
-  // is not to be read, and what can be told without it is not evaluated.
+  // unblocked and not zero, and e is theirs, transmittance of attenuating surfaces included. Without
+  // `values`, e is not to be read, and what can be told without it is not evaluated.
   void trace(bool values = true);
   // Takes all survivors as visible.
   void skip_visibility();
@@ -114,7 +114,7 @@ class PairBlock {
   void fill(geometry::ShadowPacket& packet, std::size_t first, int count) const;
   void note_transmittance(const geometry::ShadowPacket& packet, std::size_t first, int count);
   void shade();
-  void apply_transmittance();  // with what smooth surfaces let pass
+  void apply_transmittance();  // with what attenuating surfaces let pass
 
   // A tile of receivers or of lights.
   struct Tile {

@@ -116,7 +116,7 @@ void PairBlock::trace(bool values) {
     const int count = static_cast<int>(std::min<std::size_t>(16, survivors_.count - 16 * p));
     fill(packet, 16 * p, count);
     survivors_.packet_bits[p] = context_.rays->visible16(packet);
-    if (context_.has_smooth && values && survivors_.packet_bits[p] != 0) {
+    if (context_.has_attenuating && values && survivors_.packet_bits[p] != 0) {
       // What is hidden need not be attenuated.
       for (int k = 0; k < count; ++k)
         if (!(survivors_.packet_bits[p] >> k & 1)) packet.valid[k] = 0;
@@ -145,7 +145,7 @@ void PairBlock::skip_visibility() {
   values_wanted_ = true;
   survivors_.attenuations.clear();
   std::copy_n(lanes_.alive.begin(), groups_, lanes_.visible.begin());
-  if (context_.has_smooth) {
+  if (context_.has_attenuating) {
     geometry::ShadowPacket packet;
     for (std::size_t p = 0; 16 * p < survivors_.count; ++p) {
       const int count = static_cast<int>(std::min<std::size_t>(16, survivors_.count - 16 * p));

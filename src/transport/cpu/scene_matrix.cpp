@@ -94,7 +94,7 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
   context.clamp = settings.clamp > 0 ? settings.clamp : kInfinity;
   context.compensated = settings.compensated;
   context.has_cutouts = has_cutouts(world.rays());
-  context.has_smooth = world.rays().has_smooth();
+  context.has_attenuating = world.rays().has_attenuating();
   context.has_directional =
       std::find(lights.kind.begin(), lights.kind.end(), LightKind::directional) != lights.kind.end();
   context.has_two_sided = !rows.two_sided.empty() || !columns.two_sided.empty();

@@ -103,7 +103,7 @@ void ParticleTracer::step(const Branch& branch, Visit& visit) const {
   // Paths are those of the whole closure either way: what a light leaves out is only what it shines itself.
   const Closure shining = settings_.diffuse_only ? scatter::broad_part(closure, 1) : closure;
   int copies = 1;
-  if (shining.has_smooth() && closure.sides_agree(incoming)) {
+  if (shining.has_non_delta() && closure.sides_agree(incoming)) {
     LightRecord light = surface_light(hit->point.position, shining, incoming);
     light.power = branch.flux * incident_correction(closure, incoming);
     light.emitter = static_cast<std::uint16_t>(visit.emitter);

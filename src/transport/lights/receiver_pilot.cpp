@@ -159,7 +159,7 @@ ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice&
         const auto hit = world.intersect({world::World::offset_origin(here.position, here.ng, w), w});
         if (!hit) continue;
         const scatter::Closure closure = world.materials().closure(hit->material, hit->point, -w);
-        if (!closure.has_smooth() || closure.is_fiber() || !closure.sides_agree(-w)) continue;
+        if (!closure.has_non_delta() || closure.is_fiber() || !closure.sides_agree(-w)) continue;
         const float side = dot(closure.frame.n, w) < 0 ? 1.0f : -1.0f;
         const Lit there{hit->point.position, closure.frame.n * side, closure.ng * side};
         piece.places.push_back({there.position, there.normal, 0, true});

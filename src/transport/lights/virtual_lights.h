@@ -88,7 +88,7 @@ struct VirtualLights {
                                        // into spots; else kLambertian
   std::vector<Rgb> albedo;             // lambertian surface lights
   std::vector<Vec3f> incoming;         // surface lights: unit, back towards where the light came from
-  scatter::ClosurePool closures;       // smooth lobes only
+  scatter::ClosurePool closures;       // non-delta lobes only
   std::vector<SpotShape> spots;
   // The closure of any surface light, lambertian or not. Evaluate it with wo = incoming.
   scatter::Closure closure_at(std::size_t j) const;

@@ -53,10 +53,10 @@ Rgb sphere_integral(const SphereEnds& ends, SphereSamples samples, std::uint64_t
     float density = static_cast<float>(samples.cone) / cone.solid_angle;
     if (samples.receiver > 0)
       density += static_cast<float>(samples.receiver) *
-                 (pdf_x >= 0 ? pdf_x : scatter::pdf(ends.x, ends.wo, l, scatter::Lobes::smooth));
+                 (pdf_x >= 0 ? pdf_x : scatter::pdf(ends.x, ends.wo, l, scatter::Lobes::non_delta));
     if (samples.light > 0)
       density += static_cast<float>(samples.light) *
-                 (pdf_y >= 0 ? pdf_y : scatter::pdf(ends.y, ends.incoming, -l, scatter::Lobes::smooth));
+                 (pdf_y >= 0 ? pdf_y : scatter::pdf(ends.y, ends.incoming, -l, scatter::Lobes::non_delta));
     if (std::isfinite(density)) sum += value / density;
   };
   constexpr float kUnknown = -1;
@@ -77,14 +77,14 @@ Rgb sphere_integral(const SphereEnds& ends, SphereSamples samples, std::uint64_t
   offset = rng.next_2d();
   for (int k = 0; k < samples.receiver; ++k) {
     const Vec2f u = lattice(k, samples.receiver, offset);
-    const auto s = scatter::sample(ends.x, ends.wo, u.x, {u.y, rng.next_float()}, scatter::Lobes::smooth);
+    const auto s = scatter::sample(ends.x, ends.wo, u.x, {u.y, rng.next_float()}, scatter::Lobes::non_delta);
     if (s) add(s->wi, s->pdf, kUnknown);
   }
   offset = rng.next_2d();
   for (int k = 0; k < samples.light; ++k) {
     const Vec2f u = lattice(k, samples.light, offset);
     const auto s =
-        scatter::sample(ends.y, ends.incoming, u.x, {u.y, rng.next_float()}, scatter::Lobes::smooth, true);
+        scatter::sample(ends.y, ends.incoming, u.x, {u.y, rng.next_float()}, scatter::Lobes::non_delta, true);
     if (s) add(-s->wi, kUnknown, s->pdf);
   }
   return sum;

@@ -117,8 +117,8 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
                 hit->point.position, hit->hit.t};
     }
     const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
-    // Where the two normals disagree about the side of wo, the smooth lobes are 0 (scatter::eval).
-    if (light_may_follow && closure.sides_agree(wo) && closure.has_smooth())
+    // Where the two normals disagree about the side of wo, the non-delta lobes are 0 (scatter::eval).
+    if (light_may_follow && closure.sides_agree(wo) && closure.has_non_delta())
       add_receiver(*hit, closure, s, sample, out, pool);
     if (closure.has_delta()) continue_from(*hit, closure, s, rng);
   }

@@ -42,7 +42,7 @@ struct Receivers {
   std::vector<std::uint16_t> depth;    // path segments from the eye to here (1: seen directly)
   std::vector<std::uint32_t> closure;  // index into closures (not lambertian), or kLambertian
   std::vector<Rgb> albedo;             // of lambertian receivers: diffuse reflectance
-  scatter::ClosurePool closures;       // smooth lobes only
+  scatter::ClosurePool closures;       // non-delta lobes only
   // The closure of any receiver, lambertian or not, without its delta lobes.
   scatter::Closure closure_at(std::size_t i) const;
 

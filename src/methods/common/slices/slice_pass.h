@@ -32,7 +32,7 @@ class SlicePass {
   template <typename Workspace, typename Body>
   void run(WorkspacePool<Workspace>& pool, Body&& body) {
     if (!lights_.ready()) return;
-    const RowGroups units(lights_.slices().rows, lights_.slices().first);
+    const RowGroups row_groups(lights_.slices().rows, lights_.slices().first);
     const auto render = [&](std::size_t s, Workspace& w, const Turn&, std::span<Rgb> sums) {
       const Timer timer;
       lights_.choose(s, w.lights);
@@ -55,8 +55,8 @@ class SlicePass {
         lights_.set_turn(turn.scaled(columns), turn.number);
       };
     }
-    result_ =
-        run_in_turns(turns_, units, {options_, clock_, 0, "columns"}, method, estimate_.sums, pool, render);
+    result_ = run_in_turns(turns_, row_groups, {options_, clock_, 0, "columns"}, method, estimate_.sums, pool,
+                           render);
     costs_ = costs_of(pool);
   }
   Estimate finish();
