@@ -14,7 +14,7 @@
 //   choice                     share of tested columns: red nearest, green bayes, blue plane
 //   few_M, many_M              matrices of two slices, rows along Hilbert's curve, columns along the light
 //   tree
-// Predictors are judged alone: no separation, no correction, no looking where a guess would cost much.
+// Predictors are judged alone: no separation, no correction, no sampling where a guess would cost much.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

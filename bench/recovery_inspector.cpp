@@ -51,7 +51,7 @@ void RecoveryInspector::inspect() {
   });
 }
 
-// All visibilities of the reduced matrix, each from where the method would look; kNothing where E is 0.
+// All visibilities of the reduced matrix, each from where the method would sample; kNothing where E is 0.
 void RecoveryInspector::find_truth(Workspace& w) const {
   const auto& entries = w.recovery.entries();
   const std::size_t rows = entries.rows().size(), columns = w.recovery.clusters().size();

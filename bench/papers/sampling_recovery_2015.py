@@ -213,7 +213,7 @@ class Experiments:
             high = 0.05 * math.ceil(20 * max(max(p[2]) for p in pictures.values()))
             for p, words in PREDICTORS.items():
                 figures = found["predictors"][f"wrong_{p}"]
-                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(figures['wrong'])} wrong after looking at {percent(figures['sampled'])}", nothing=lambda v: v < 0, label=percent)
+                page.scaled(f"{name}_wrong_{p}", pictures[p], 0, high, f"{words}: {percent(figures['wrong'])} wrong after sampling {percent(figures['sampled'])}", nothing=lambda v: v < 0, label=percent)
             choice = read_pfm(folder / "choice.pfm")
             page.raw(f"{name}_choice", choice[0], choice[1], bytes(112 if v < 0 else min(255, round(255 * v)) for v in choice[2]),
                      "Columns by the predictor chosen: red nearest samples, green Bayes, blue plane")
@@ -310,7 +310,7 @@ class Experiments:
             page.say(f"Row sums over all slices are off by {off('drawn')} as predicted, {off('separated')} as separated, {off('final')} with correction; "
                      f"guesses are wrong by {percent(found['guesses_drawn']['wrong'])} as predicted and by {percent(found['guesses_separated']['wrong'])} "
                      f"on average as separated. Mean rank {sums['rank'] / len(found['per_slice']):.1f}; Z is above half an entry at {percent(sums['nonzero'] / sums['entries'])} of the entries; "
-                     f"correction looks at {percent(sums['corrected'] / sums['entries'])}.")
+                     f"correction samples {percent(sums['corrected'] / sums['entries'])}.")
             page.write()
         self.switched("Figure 6: the whole method by iterations", "The error of the picture after so many iterations at most.", "separation", [("iterations", (1, 2, 4, 8, 20))])
 

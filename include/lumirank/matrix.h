@@ -55,7 +55,7 @@ struct MatrixColumns {
   std::span<const std::uint8_t> indirect;  // 0: stands for an emitter; 1: for a bounce
 };
 
-// A view that shares what it looks at: cheap to copy, never changes, may be used by many threads at once.
+// A view that shares what it refers to: cheap to copy, never changes, may be used by many threads at once.
 // Spans of a wrong length or indices out of range throw InputError.
 class LUMIRANK_API Matrix {
  public:

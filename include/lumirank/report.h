@@ -17,7 +17,7 @@ struct LUMIRANK_API Report {
   std::uint64_t seed = 0;
   std::map<std::string, double> seconds;  // wall clock by stage; "total" from the loaded scene on
 
-  // Of the matrix: what the method looked at.
+  // Of the matrix: what the method evaluated.
   struct Cost {
     std::uint64_t entries = 0;  // evaluated, zero or not
     std::uint64_t culled = 0;   // of these, decided without a ray

@@ -37,7 +37,7 @@ enum class RestOfPaths { automatic, skip, trace };
 enum class ReferencePaths { all, columns, rest };
 enum class ToneMap { none, reinhard, agx };
 
-// What is looked at, and how finely.
+// What is rendered, and how finely.
 struct ViewSettings {
   std::string camera = {};       // id; "": the scene's first
   int width = 0, height = 0;     // pixels; 0: as the scene says

@@ -1,4 +1,4 @@
-// What a public matrix looks at. Inside this room only.
+// What a public matrix refers to. Inside this room only.
 #pragma once
 
 #include "lumirank/matrix.h"

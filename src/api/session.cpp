@@ -122,7 +122,8 @@ Picture develop(const Prepared& prepared, const Estimate& estimate, const std::v
   for (const std::string& layer : layers) {
     set_field(wanted, "aov", layer);  // throws for an unknown name
     if (layer == "illuminance")
-      throw InputError("the illuminance is a second estimate", "render() with this layer");
+      throw InputError("develop() cannot make the layer 'illuminance', which takes an estimate of its own",
+                       "use render() with this layer");
     if (pipeline::parts_light(layer) && estimate.combination.empty())
       throw InputError("the layer '" + layer + "' takes one combination of columns for all receivers",
                        "estimate with row-column-sampling");

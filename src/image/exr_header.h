@@ -1,4 +1,4 @@
-// OpenEXR allocates tables by the sizes in a file's header before anyone can look at them; so we look first.
+// OpenEXR allocates tables by the sizes in a file's header before anyone can check them; so we check first.
 #pragma once
 
 #include <cstddef>

@@ -120,7 +120,7 @@ class PngReader {
   void read_header() {
     constexpr png_uint_32 kMaxSize = 0x7fffffff;  // `sink` has a limit of its own, and says so better
     png_set_user_limits(png_, kMaxSize, kMaxSize);
-    // What is not looked at is not unpacked either.
+    // What is not read is not unpacked either.
     static const unsigned char ignored[] =
         "iCCP\0zTXt\0iTXt\0tEXt\0eXIf\0sPLT\0hIST\0tIME\0pCAL\0"
         "sCAL\0cHRM\0gAMA\0sRGB\0pHYs\0oFFs\0bKGD\0sBIT";

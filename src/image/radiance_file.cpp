@@ -94,7 +94,7 @@ RadianceSize read_radiance_header(RadianceBytes& in) {
   }
   if (!colors) throw std::runtime_error("its header does not name its format");
   const auto size = parse_radiance_size(in.line());
-  if (!size) throw std::runtime_error("its header does not tell its size");
+  if (!size) throw std::runtime_error("its header does not state its size");
   return *size;
 }
 

@@ -15,7 +15,7 @@
 namespace lumirank::image {
 namespace {
 
-// OpenEXR's own stream closes without looking whether the last bytes went out.
+// OpenEXR's own stream closes without checking whether the last bytes went out.
 class ExrStream final : public Imf::OStream {
  public:
   explicit ExrStream(std::ostream& out) : Imf::OStream("the image"), out_(out) {}

@@ -1,5 +1,5 @@
 // Points in levels from coarse to fine, each point with some of the coarser points next to it: for filling in
-// what is known at few of them where these agree, and looking only where they do not.
+// what is known at few of them where these agree, and evaluating only where they do not.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What a set of columns can add to a row at most, without looking at its entries: what light cuts refine by
+// What a set of columns can add to a row at most, without evaluating its entries: what light cuts refine by
 // (Walter et al. 2005, section 4.1: material × geometry × intensity, visibility taken as 1).
 #pragma once
 

@@ -53,10 +53,10 @@ Capabilities LightingMatrix::capabilities() const {
 }
 
 ColumnSet LightingMatrix::column_set(Index) const {
-  throw InternalError("this lighting matrix has no bounds; ask capabilities() first");
+  throw InternalError("this lighting matrix has no bounds; check capabilities() first");
 }
 std::unique_ptr<RowBounds> LightingMatrix::row_bounds() const {
-  throw InternalError("this lighting matrix has no bounds; ask capabilities() first");
+  throw InternalError("this lighting matrix has no bounds; check capabilities() first");
 }
 
 }  // namespace lumirank::matrix

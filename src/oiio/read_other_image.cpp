@@ -119,7 +119,7 @@ class OtherReader {
 }  // namespace
 }  // namespace lumirank::image
 
-// What the sink throws goes through; what goes wrong here is told in `error`.
+// What the sink throws goes through; what goes wrong here is stated in `error`.
 extern "C" [[gnu::visibility("default")]] void lumirank_read_other_image(const std::string& filename,
                                                                          lumirank::image::PixelSink& sink,
                                                                          std::string& error) {

@@ -36,9 +36,8 @@ double lights_for_error(const ErrorAsked& asked, double lights_part, double clam
 
 std::string error_not_aimed_at(const methods::MethodInfo& method, double target) {
   if (target <= 0 || method.error_parameters.empty()) return {};
-  return method.name + " does not aim at --error (" + percent(target) +
-         "), it only measures what it reaches: " + method.error_parameters +
-         " (--set) decide; row-column-sampling, for one, aims at it";
+  return "--error (" + percent(target) + ") has no effect on " + method.name + "; set " +
+         method.error_parameters + " (--set), or use row-column-sampling";
 }
 
 std::string error_advice(const ErrorAsked& asked, const std::map<std::string, double>& numbers) {
@@ -51,15 +50,14 @@ std::string error_advice(const ErrorAsked& asked, const std::map<std::string, do
                      ", number of lights " + percent(lights) + ", clamping " + percent(clamping);
   if (std::hypot(methods::target_for_sampling(asked.target, lights, clamping), lights) + clamping <=
       asked.target * (1 + 1e-9))
-    return text + (asked.decided_by.empty()
-                       ? "; more columns can still reach it: give more time"
-                       : "; a smaller one takes other values of " + asked.decided_by + " (--set)");
+    return text + (asked.decided_by.empty() ? "; give more time"
+                                            : "; set other values of " + asked.decided_by + " (--set)");
   const double count = lights_for_error(asked, lights, clamping);
-  text += "; more columns cannot help";
+  text += "; more columns will not reduce it";
   if (count > kMaxLights)
-    text += ", and it would take " + number("%.1e", count) + " lights: ask for a larger error";
+    text += ", and it would take " + number("%.1e", count) + " lights; give a larger error";
   else
-    text += ": " + asked.option + (asked.option.back() == '=' ? "" : " ") + number("%.0f", count) + " should";
+    text += "; try " + asked.option + (asked.option.back() == '=' ? "" : " ") + number("%.0f", count);
   if (clamping > 0.5 * asked.target) text += ", or a larger --clamp (0: none), for brighter spots";
   return text;
 }

@@ -103,7 +103,7 @@ double memory_of_picture(double film_samples, double lights, bool layers) {
 
 void require_countable(double film_samples) {
   if (constexpr double max_samples = std::numeric_limits<std::uint32_t>::max(); film_samples > max_samples)
-    throw InputError("the picture has more than 4294967295 film samples, which is as far as they are counted",
+    throw InputError("the picture has more than 4294967295 film samples, the most that is possible",
                      "ask for a smaller --size, a lower --spp or a --crop");
 }
 

@@ -13,7 +13,7 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
                    const methods::MethodInfo& method, const methods::Estimate& estimate,
                    const matrix::Cost& cost, const methods::TimedChoices::Lists& choices);
 
-// Resident-set peak of this process, in bytes (0 where the system does not tell).
+// Resident-set peak of this process, in bytes (0 where the system does not say).
 std::size_t peak_memory_bytes();
 
 }  // namespace lumirank::pipeline

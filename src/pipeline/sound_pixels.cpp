@@ -16,7 +16,7 @@ void check_pixels(const image::Image& image) {
                        " pixels are not finite numbers (the first: column " + std::to_string(first % width) +
                        ", row " + std::to_string(first / width) + ")",
                    "most likely a light is far too bright, or a number of a material far too large, for "
-                   "32-bit arithmetic: look for values with many zeros");
+                   "32-bit arithmetic: check the scene for values with many zeros");
 }
 
 }  // namespace lumirank::pipeline

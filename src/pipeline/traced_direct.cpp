@@ -9,7 +9,7 @@
 namespace lumirank::pipeline {
 namespace {
 
-// The emission met along a ray, looking through whatever lets light pass straight; a cut-out is decided at
+// The emission met along a ray, passing through whatever lets light pass straight; a cut-out is decided at
 // random.
 struct Met {
   Rgb radiance{0};

@@ -38,7 +38,7 @@ bool arriving(const Closure& c, const Incident& in, Vec3f wi, Vec3f& local) {
   return true;
 }
 
-// The lobes of a surface look to one side each.
+// The lobes of a surface face one side each.
 bool meets(LobeKind kind, const Incident& in, Vec3f wi) { return in.fiber || transmits(kind) == (wi.z < 0); }
 
 bool wanted(LobeKind kind, Lobes which) {

@@ -166,7 +166,7 @@ struct MeanVisitor {
     return mixed(set.mean(t.a), set.mean(t.b), set.mean(t.amount));
   }
   Rgb operator()(const RootTexture& t) const { return root(set.mean(t.input)); }
-  // That of the mean: of a cut-out's outline no more is known without looking everywhere.
+  // That of the mean: of a cut-out's outline no more is known without evaluating it everywhere.
   Rgb operator()(const ThresholdTexture& t) const {
     const Rgb c = set.mean(t.input);
     return {c.r >= t.threshold ? 1.0f : 0.0f, c.g >= t.threshold ? 1.0f : 0.0f,

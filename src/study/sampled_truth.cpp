@@ -26,7 +26,7 @@ SampledTruth::SampledTruth(const matrix::LightingMatrix& matrix, const Film& fil
   const std::size_t n = matrix.rows();
   count = std::min(count, n);
   if (count == 0)
-    throw InputError("no receiver is seen, so there is nothing to compare", "look at the scene's camera");
+    throw InputError("no receiver is seen, so there is nothing to compare", "check the scene's camera");
   const auto pixel = [&](std::size_t i) { return film.samples[i] / film.per_pixel; };
   std::vector<Rgb> row(matrix.columns());
   Rng rng(seed, Stage::benchmark, 3);

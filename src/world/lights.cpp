@@ -142,7 +142,8 @@ int add_lights(const sd::SceneDesc& desc, EmitterNames& names, const Units& unit
     if (const auto* point = std::get_if<sd::PointLightDesc>(&e.kind)) {
       const Rgb intensity = units.power_to_world(point->intensity);
       check_color(intensity, "the intensity", e.where);
-      if (!is_finite(point->position)) throw InputError(e.where, "the position is not finite", "mend it");
+      if (!is_finite(point->position))
+        throw InputError(e.where, "the position is not finite", "give finite numbers");
       push(em::PointEmitter{units.to_world(point->position), intensity}, e);
     } else if (const auto* spot = std::get_if<sd::SpotLightDesc>(&e.kind)) {
       const em::SpotEmitter made = make_spot(*spot, units, e.where);

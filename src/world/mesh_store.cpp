@@ -73,7 +73,7 @@ geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesD
   for (std::size_t k = 0; k < curves.points.size(); ++k)
     if (!is_finite(curves.points[k]) || !(curves.radii[k] >= 0) || !std::isfinite(curves.radii[k]))
       throw InputError(shape.where, "a point or radius of the curves is not finite, or a radius negative",
-                       "mend it");
+                       "give finite points, and radii of 0 or more");
   const auto basis = curves.basis == Basis::bspline  ? geometry::CurveBasis::bspline
                      : curves.basis == Basis::bezier ? geometry::CurveBasis::bezier
                                                      : geometry::CurveBasis::linear;
@@ -85,7 +85,7 @@ geometry::TriangleMesh from_curves(const sd::ShapeDesc& shape, const sd::CurvesD
 void check_numbers(const sd::ShapeDesc& shape, const std::vector<double>& numbers) {
   for (double v : numbers)
     if (!std::isfinite(v))
-      throw InputError(shape.where, "the shape has a number that is not finite", "mend it");
+      throw InputError(shape.where, "the shape has a number that is not finite", "give finite numbers");
 }
 
 void check_radius(const sd::ShapeDesc& shape, float radius) {

@@ -165,7 +165,7 @@ Geometry assemble(std::vector<Placed> placed, MeshStore& store, const Units& uni
       geometry::TriangleMesh mesh = uses[source] == 1 ? store.take(p.source) : original;
       bake(mesh, p.to_world, p.flip_normals);
       if (!all_finite(mesh))
-        throw InputError(p.shape->where, "to_world moves the shape out of the range of numbers", "mend it");
+        throw InputError(p.shape->where, "to_world overflows", "reduce its scale or translation");
       if (!(total_area(mesh) > 0)) {
         notes.warn(p.shape->where,
                    p.shines ? "the shape has no area, so its light is gone too" : "the shape has no area",

@@ -1,4 +1,4 @@
-// A view: the sensor that looks, with the resolution, window and depth that were asked for.
+// A view: a sensor with the resolution, window and depth that were asked for.
 #pragma once
 
 #include <string>

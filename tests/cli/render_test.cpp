@@ -109,7 +109,7 @@ TEST_F(Render, TheReportHasTheStableKeys) {
   }
 }
 
-// Of the reduced matrices, which slice-cuts looks at entirely; of all entries it is a small share.
+// Of the reduced matrices, which slice-cuts evaluates entirely; of all entries it is a small share.
 TEST_F(Render, TheSamplingRateIsTheMethodsOwn) {
   const std::string file = folder_ / "report.json";
   render({"--method", "slice-cuts", "--set", "initial-columns=4", "--set", "alpha=0.2", "--report", file});

@@ -200,7 +200,7 @@ TEST(Fibers, BendsDoNotCatchTheRaysThatLeaveTheirAxis) {
 }
 
 TEST(Fibers, AreaSeenIsTheWidthTimesTheSine) {
-  // Of a straight taper, wherever it is looked at from: 2∫r dl·sinθ, without caps. By a grid of rays, so to a
+  // Of a straight taper, wherever it is seen from: 2∫r dl·sinθ, without caps. By a grid of rays, so to a
   // cell's width on the rim: 4·(0.4 + 2·0.02)/1000 of 0.02 m².
   const Vec3f a{0, 0, 0}, b{0.2f, 0.3f, 0.1f};
   const RayScene scene =

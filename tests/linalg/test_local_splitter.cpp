@@ -81,8 +81,8 @@ TEST(LocalSplitter, FindsTheDirections) {
   EXPECT_EQ(splitter.clusters(), 300u);
 }
 
-// The thorough splitter looks for the best cut along a random line, this one for the best of 31 along a line
-// between extremes. Neither is optimal; over 20 clouds this one should not be the worse by a quarter.
+// The thorough splitter searches for the best cut along a random line, this one for the best of 31 along a
+// line between extremes. Neither is optimal; over 20 clouds this one should not be the worse by a quarter.
 TEST(LocalSplitter, IsAsGoodAsTheThoroughOne) {
   double ours = 0, thorough = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

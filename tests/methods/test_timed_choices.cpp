@@ -23,7 +23,7 @@ Estimate run(const std::string& method, const matrix::LightingMatrix& m, double 
 
 class EveryTimedMethod : public testing::TestWithParam<std::string> {};
 
-// The budget of the repetition is another, so any look at the clock that was overlooked would show.
+// The budget of the repetition is another, so any reading of the clock that was forgotten would show.
 TEST_P(EveryTimedMethod, RepeatsTheSameBits) {
   const auto m = matrix::sparse_matrix({400, 2000, 1}, 0.2);
   for (const double seconds : {1e-6, 0.002, 0.02})

@@ -19,7 +19,7 @@ class TimedSlices : public testing::TestWithParam<const char*> {
         .make({{"columns", "60"}, {"slice-rows", "50"}, {"initial-clusters", "20"}})
         ->run(matrix_, options);
   }
-  // Dense enough that no column is zero on the rows that a slice looks at.
+  // Dense enough that no column is zero on the rows that a slice reads.
   matrix::DenseMatrix matrix_ = matrix::low_rank_matrix({400, 900, 1}, 5);
 };
 

@@ -62,7 +62,7 @@ TEST(GltfCompressed, Meshopt) {
                                                        {"count", count},
                                                        {"mode", mode},
                                                        {"filter", filter}};
-      made["buffer"] = 1;  // the fallback, which is never looked at
+      made["buffer"] = 1;  // the fallback, which is never read
       made["byteOffset"] = 0;
       made["byteLength"] = stride * count;
       return view;

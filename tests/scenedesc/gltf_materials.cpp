@@ -19,7 +19,7 @@ GltfMaker with_material(const json& material) {
   return m;
 }
 
-// Textures 0 and 1 show images 0 and 1 of the file: a PNG and a JPEG by their first bytes; nothing here looks
+// Textures 0 and 1 show images 0 and 1 of the file: a PNG and a JPEG by their first bytes; nothing here reads
 // further.
 void add_images(GltfMaker& m) {
   m.root["images"] = {{{"uri", "data:image/png;base64," + base64("\x89PNG\r\n\x1a\n....")}},

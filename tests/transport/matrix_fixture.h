@@ -42,7 +42,7 @@ int add_bsdf(scenedesc::SceneDesc& desc, const Kind& kind) {
   return static_cast<int>(desc.bsdfs.size()) - 1;
 }
 
-// One small rectangle far from everything that the tests look at.
+// One small rectangle far from everything that the tests evaluate.
 inline scenedesc::SceneDesc empty_space() {
   scenedesc::SceneDesc desc;
   add_shape(desc, scenedesc::RectangleDesc{}, Transform::translate(1000, 1000, 1000));

@@ -148,7 +148,7 @@ std::vector<LoadingCase> nested_without_end() {
            .replace(gltf_scene("").find("\"mesh\": 1, "), 10,
                     "\"mesh\": 1, \"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": "
                     "{\"TRANSLATION\": 3}}},"),
-       refused, "beyond any size", 2},
+       refused, "larger than 2 GiB", 2},
   };
 }
 

@@ -60,7 +60,7 @@ PassResult render_columns(const matrix::LightingMatrix& matrix, std::span<const 
     result.done += count;
     control.options.sinks.report("columns",
                                  static_cast<double>(result.done) / static_cast<double>(columns.size()));
-    // Also without a preview: the sums' bits must not depend on whether somebody looks.
+    // Also without a preview: the sums' bits must not depend on whether somebody watches.
     const bool preview = result.done >= next_preview && result.done < columns.size();
     if (two_levels && (preview || result.done % kLevel < kBlock)) add_and_clear(sums, part);
     if (preview) {

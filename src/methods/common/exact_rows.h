@@ -91,7 +91,7 @@ double target_for_sampling(double target, double lights, double clamping);
 // `count` stratified rows, read.
 ExactRows read_rows(const matrix::LightingMatrix& matrix, std::size_t count, std::uint64_t seed);
 
-// Rows by which methods that read none tell their error: they take no part in the sums.
+// Rows by which methods that read none state their error: they take no part in the sums.
 //
 // Without a budget they are read afterwards: 64 if an error is asked for, otherwise as many as the given
 // share of the entries already spent pays for, or none if those are fewer than `fewest`. With one they are

@@ -1,4 +1,4 @@
-// Rows that the clustering does not see: they tell how large an error to expect where it has not looked.
+// Rows that the clustering does not see: from them follows the error to expect at rows that were not read.
 #pragma once
 
 #include <span>

@@ -107,7 +107,7 @@ void SampledNeighbors::extend(const SampledNeighbors& before, const HilbertCurve
       const float x = points[i].x - at.x, y = points[i].y - at.y;
       to_[i] = x * x + y * y;
     }
-    // Few points have a new neighbor: sixteen at a time are looked over for one.
+    // Few points have a new neighbor: sixteen at a time are searched for one.
     for (std::size_t begin = 0; begin < n; begin += kSortStretch) {
       const std::size_t end = std::min(n, begin + kSortStretch);
       const float *const to = &to_[begin], *const farthest = &farthest_[begin];

@@ -19,7 +19,7 @@ constexpr std::size_t kTriedByThread = 4;
 // Columns drawn by power tell a row less than as many that are chosen for it; and beside a turn that is many
 // times better the coarse picture is left out.
 constexpr double kCoarseWorth = 1.0 / 8, kCoarseCounts = 1.0 / 16;
-// Seconds grow as a power of quality between these, as trials tell: parts of a row group's costs are fixed.
+// Seconds grow as a power of quality between these, as trials show: parts of a row group's costs are fixed.
 constexpr double kMinPower = 0.4;
 constexpr double kTrialStep = 4, kTrialSafety = 1.5;
 // A first guess of what an entry costs a method, in entries of the coarse picture.

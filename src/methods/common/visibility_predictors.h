@@ -48,7 +48,7 @@ struct SeparatingPlane {
   void probabilities(std::span<const Vec3f> points, std::span<float> out) const;
 };
 
-// The same as samples come: sums of products, so that each sample is looked at once.
+// The same as samples come: sums of products, so that each sample is read once.
 class PlaneSums {
  public:
   void add(std::span<const Vec3f> points, const ColumnSamples& samples);

@@ -76,7 +76,7 @@ class BlockPainter {
   std::vector<bool> used_;                // samples from which others learn; of others only sums are kept
   std::vector<std::uint32_t> block_end_;  // in pending_
   std::vector<Number> candidates_;
-  std::vector<std::uint32_t> order_;  // in which a block's rows are looked at
+  std::vector<std::uint32_t> order_;  // in which a block's rows are visited
   std::vector<Pending> pending_;      // receivers that learn from samples, block by block
   struct Own {
     matrix::Index row;

@@ -1,4 +1,4 @@
-// Power sampling: columns drawn in proportion to their lights' power, without looking at any row (the
+// Power sampling: columns drawn in proportion to their lights' power, without reading any row (the
 // baseline PS of 2007, section 5).
 //
 // Unbiased: column j is drawn with probability p_j = power_j / Σ power and scaled by 1/(c·p_j), so the

@@ -145,7 +145,7 @@ void RowColumnRun::pilot() {
 
 Estimate RowColumnRun::automatic() {
   if (target_ <= 0 && options_.time_seconds <= 0) target_ = kUnaskedTarget;
-  // So few columns that looking for fewer costs more than rendering them.
+  // So few columns that searching for fewer costs more than rendering them.
   if (columns_ <= 2 * kPilotColumns) {
     pass_over_all_columns();
     return finish();

@@ -167,7 +167,7 @@ ErrorParts RowColumnRun::errors() const {
 }
 
 void RowColumnRun::report_errors() {
-  if (rows_read() == 0) {  // all columns were summed without a look at rows
+  if (rows_read() == 0) {  // all columns were summed without reading rows
     if (options_.time_seconds <= 0)
       RowsForError(matrix_, options_, timer_)
           .state(blend_.sums(), static_cast<double>(rendered_count_), trace_);

@@ -60,7 +60,7 @@ class SliceRun {
                      });
   }
   Trace& trace() { return estimate_.trace; }
-  // The estimate with its error and what the run itself has to tell.
+  // The estimate with its error and what the run itself has to report.
   Estimate finish(const SliceTally& tally);
 
  private:

@@ -72,7 +72,7 @@ Strided strided(const Buffers::View& view, const Element& part, std::size_t offs
   if (stride < element)
     part.fail(
         "has elements of " + std::to_string(element) + " bytes every " + std::to_string(stride) + " bytes",
-        "mend byteStride");
+        "make byteStride at least as large");
   const std::size_t end = offset + (count > 0 ? stride * (count - 1) + element : 0);
   if (end > view.bytes.size())
     part.fail("reaches to byte " + std::to_string(end) + " of a bufferView of " +
@@ -183,7 +183,7 @@ Numbers Accessors::floats(const Element& user, std::size_t min_components, std::
                   " components where " + std::to_string(min_components) +
                   (max_components > min_components ? " to " + std::to_string(max_components) : "") +
                   " are wanted",
-              "mend its \"type\"");
+              "correct its \"type\"");
   return {from.components, from.count, read<float>(from)};
 }
 
@@ -193,7 +193,7 @@ std::vector<std::uint32_t> Accessors::integers(const Element& user, std::size_t 
       from.component == kShort)
     user.fail("names " + from.element.path() + ", which is not made of unsigned integers, " +
                   std::to_string(components) + " at a time",
-              "mend its \"type\" and \"componentType\"");
+              "correct its \"type\" and \"componentType\"");
   Layout plain = from;
   plain.normalized = false;
   return read<std::uint32_t>(plain);

@@ -7,7 +7,7 @@ namespace lumirank::scenedesc::gltf {
 void Budget::take(double bytes, const Element& user) {
   taken_ += bytes;
   if (taken_ > max_)
-    user.fail("brings what is to be decoded beyond any size that these files could mean",
+    user.fail("makes the decoded data larger than 2 GiB plus 64 times the size of the files",
               "let meshes share their data through nodes instead of repeating it");
 }
 

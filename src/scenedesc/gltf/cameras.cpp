@@ -68,7 +68,7 @@ void Reader::build_camera(const Node& node, const Element& camera_index) {
     type.fail("is \"" + type.text() + "\"", "perspective and orthographic are known");
   }
   if (!(sensor.far_clip > sensor.near_clip))
-    camera.fail("has a zfar that is not beyond its znear", "mend it");
+    camera.fail("has a zfar that is not beyond its znear", "make zfar larger");
   scene_.sensors.push_back(std::move(sensor));
 }
 
@@ -79,7 +79,7 @@ void add_default_camera(SceneDesc& scene, const Element& root) {
     if (!held || !held->mesh) continue;
     for (const Vec3f& p : held->mesh->positions) box.extend(shape.to_world.place(p + held->mesh->origin));
   }
-  if (box.empty()) return;  // nothing to look at: the world says so
+  if (box.empty()) return;  // nothing to see: the world says so
   constexpr double kHalfHeight = 20 * kPiD / 180;
   SensorDesc sensor;
   sensor.id = "default";

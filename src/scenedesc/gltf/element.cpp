@@ -68,7 +68,7 @@ double Element::number() const { return expect(Json::Kind::number, "a number").n
 
 float Element::real() const {
   const float value = static_cast<float>(number());
-  if (!std::isfinite(value)) fail("is out of the range of numbers", "give a smaller one");
+  if (!std::isfinite(value)) fail("overflows", "give a smaller number");
   return value;
 }
 

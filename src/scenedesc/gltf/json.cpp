@@ -64,7 +64,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return open_.pop_back(), true; }
   bool key(string_t& value) override {
     auto& keys = open_.back()->keys;
-    // Objects have few keys, or are names that this reader does not look at.
+    // Objects have few keys, or are names that this reader does not read.
     if (keys.size() < 1000 && std::find(keys.begin(), keys.end(), value) != keys.end())
       fail("the key \"" + value + "\" is given twice", "keep one of them");
     keys.push_back(std::move(value));

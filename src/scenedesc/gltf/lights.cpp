@@ -32,7 +32,8 @@ void Reader::build_light(const Node& node, const Element& light_index) {
     SpotLightDesc spot;
     const float inner = cone.real("innerConeAngle", 0, 0, 1.5707964f);
     const float outer = cone.real("outerConeAngle", 0.7853982f, 0, 1.5707964f);
-    if (!(inner < outer)) cone.fail("has an innerConeAngle that is not below its outerConeAngle", "mend it");
+    if (!(inner < outer))
+      cone.fail("has an innerConeAngle that is not below its outerConeAngle", "make innerConeAngle smaller");
     if (!(length(along) > 0)) node.element.fail("flattens its light", "give it a scale without zeros");
     spot.to_world = Transform::aimed(
         at, along, std::abs(along.y) > 0.9f * length(along) ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0});

@@ -147,7 +147,8 @@ std::vector<Transform> Reader::instances(const Node& node) {
       t = t * rotation(q[0], q[1], q[2], q[3], attributes);
     if (scale.count > 0)
       t = t * Transform::scale(scale.values[3 * k], scale.values[3 * k + 1], scale.values[3 * k + 2]);
-    if (!t.is_finite()) attributes.fail("places an instance out of the range of numbers", "mend it");
+    if (!t.is_finite())
+      attributes.fail("gives an instance a transform that overflows", "reduce its scale and translation");
     out.push_back(t);
   }
   return out;

@@ -121,7 +121,7 @@ void Reader::build_scene() {
   for (const Node& node : nodes_) {
     if (!node.in_scene) continue;
     if (!node.world.is_finite())
-      node.element.fail("is moved out of the range of numbers", "mend its transform");
+      node.element.fail("has a transform that overflows", "reduce its scale and translation");
     if (const auto mesh = node.element.find("mesh")) build_shapes(node, *mesh);
     if (const auto camera = node.element.find("camera")) build_camera(node, *camera);
     if (const auto punctual = node.element.extension("KHR_lights_punctual"))

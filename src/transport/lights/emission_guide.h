@@ -36,7 +36,7 @@ class EmissionGuide {
     float density = 1;
   };
   // How the observations came about: drawn with the densities that they tell, or spread like importance
-  // itself (then their densities are not looked at, and boxes are drawn by the importance that they hold).
+  // itself (then their densities are not used, and boxes are drawn by the importance that they hold).
   enum class Spread : std::uint8_t { by_density, by_importance };
   // Boxes are halved where much of the importance is found, along the axis whose halves differ most.
   static EmissionGuide fit(std::span<const Observation> observations, Spread spread = Spread::by_density);

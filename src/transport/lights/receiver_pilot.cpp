@@ -146,7 +146,7 @@ ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice&
       const float weight = max_component(receivers.weight[i]);
       const Lit here{receivers.position[i], receivers.normal[i], receivers.ng[i]};
       piece.places.push_back({here.position, here.normal, 0, true});
-      // A fiber has no side to look from; the surfaces around it tell enough.
+      // A fiber has no side to trace from; the surfaces around it suffice.
       if (here.ng == Vec3f{}) continue;
       const float part = part_by_columns(receivers, i, traced_below);
       for (int k = 0; k < kDirectSamples; ++k)

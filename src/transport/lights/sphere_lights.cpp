@@ -15,7 +15,7 @@ namespace {
 // 1,000, 2.6 for 8,000, 4 for 30,000, 5 for 64,000.
 constexpr double kLightsAtOne = 470;
 constexpr int kSectors = 8;
-// How far above the surface a light looks along it, in radii: past the facets of curved surfaces.
+// How far above the surface a light's rays along it start, in radii: past the facets of curved surfaces.
 constexpr float kLift = 0.05f;
 
 // Which part of the disc in the tangent plane other surfaces hide from its center: what lies beyond them in

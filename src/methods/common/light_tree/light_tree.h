@@ -58,7 +58,7 @@ class LightTree {
   // (nearly) black, by the scalar.
   matrix::ScaledColumn scaled(Node node) const;
   // The same for another of its columns, drawn in proportion to power as well, but so that no decision about
-  // a cut has looked at it: a second representative, for which a child's is its parent's where it can be,
+  // a cut has evaluated it: a second representative, for which a child's is its parent's where it can be,
   // too. For the same key it is the same wherever a cut has the node, so what it errs by has no edges.
   matrix::ScaledColumn redrawn(Node node, std::uint64_t key) const;
 

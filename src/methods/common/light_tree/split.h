@@ -9,7 +9,7 @@
 
 namespace lumirank::methods {
 
-// What the division looks at of a light: where it is (nothing, if infinitely far), where it looks (nothing,
+// What the division knows of a light: where it is (nothing, if infinitely far), where it faces (nothing,
 // if everywhere), how strong.
 struct SplitLight {
   Vec3f position, direction;

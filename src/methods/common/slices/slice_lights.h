@@ -3,12 +3,11 @@
 // are clustered once, as in row-column sampling; each slice then splits these clusters further, by its own
 // row and those of the slices nearest to it alone.
 //
-// Ours: nearer slices count for more, the k-th as 1/(k + 1), so that twice the paper's eight can be looked
-// at: fewer columns are zero on all of them. The paper draws representatives by norms over all rows
-// that were read, and gives it the cluster's whole norm there. Here the norms are those over the slice's own
-// few rows, with a share for the others (global-share), so that a column which is bright elsewhere does not
-// represent one that is bright here. What one column adds can be
-// bounded where it represents others (max-sum-share).
+// Ours: nearer slices count for more, the k-th as 1/(k + 1), so that twice the paper's eight can be read:
+// fewer columns are zero on all of them. The paper draws representatives by norms over all rows that were
+// read, and gives it the cluster's whole norm there. Here the norms are those over the slice's own few rows,
+// with a share for the others (global-share), so that a column which is bright elsewhere does not represent
+// one that is bright here. What one column adds can be bounded where it represents others (max-sum-share).
 // Cuts are the best of 31 along the line between the two members that differ most; the paper's is the middle.
 #pragma once
 
