@@ -8,6 +8,7 @@
 #include "pipeline/memory.h"
 #include "scenedesc/readers.h"
 #include "scenedesc/schema/files.h"
+#include "scenedesc/writer/mitsuba_writer.h"
 
 namespace lumirank {
 namespace {

@@ -4,6 +4,9 @@
 #include <cstdio>
 
 namespace lumirank::pipeline {
+
+using world::View;
+
 namespace {
 
 constexpr int kGrid = 64;  // rays along each side: milliseconds
