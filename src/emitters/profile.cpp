@@ -52,8 +52,8 @@ AngularProfile::AngularProfile(std::vector<float> theta, std::vector<float> phi,
   min_theta_ = theta_[first], max_theta_ = theta_[last];
 }
 
-// The mean over phi is linear in theta: a + (b - a)·t, t = (θ - θ0)/h. By parts,
-// ∫ sinθ dθ = cosθ0 - cosθ1 and ∫ t·sinθ dθ = (sinθ1 - sinθ0)/h - cosθ1.
+// The mean over phi is linear in theta: a + (b - a)·t, t = (θ - θ0)/h. By parts, ∫ sinθ dθ = cosθ0 - cosθ1
+// and ∫ t·sinθ dθ = (sinθ1 - sinθ0)/h - cosθ1.
 double AngularProfile::cell_integral(std::size_t row, std::size_t column) const {
   const double a = 0.5 * (double{value(row, column)} + value(row, column + 1));
   const double b = 0.5 * (double{value(row + 1, column)} + value(row + 1, column + 1));

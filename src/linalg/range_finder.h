@@ -24,8 +24,7 @@ struct RangeFound {
 // Randomized range (Halko, Martinsson and Tropp 2011, algorithm 4.4 with one power step) from a sparse
 // embedding: every column is added, with a random sign, to one of `most` sums. A singular value counts if it
 // is above what noise with the energy of all that lies outside the range would reach
-// (σ²(√rows + √columns)², the edge of Marchenko and Pastur's law).
-// The matrix lies column after column.
+// (σ²(√rows + √columns)², the edge of Marchenko and Pastur's law). The matrix lies column after column.
 RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t columns, std::size_t max_rank,
                       std::uint64_t seed, const RangeSpace& space);
 

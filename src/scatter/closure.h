@@ -168,8 +168,8 @@ struct Closure {
   // The only non-delta lobe is `diffuse` (delta lobes may stand beside it).
   bool is_lambertian() const;
   Rgb diffuse_color() const;  // of the diffuse lobe of a lambertian closure: its reflectance
-  // Least roughness alpha of a glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0
-  // if all are delta lobes.
+  // Least roughness alpha of a glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0 if all
+  // are delta lobes.
   float roughness() const;
 };
 

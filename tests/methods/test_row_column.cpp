@@ -36,10 +36,9 @@ TEST(RowColumn, AllColumnsAreExact) {
   EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 200 * 0x1p-24);
 }
 
-// Mean squared errors over 20 seeds fall with the number of columns, by a one-sided test of the difference
-// at 99.9 % each.
-// By the paper's probabilities: where the rank is low the norms are as good as known, and a share of power
-// only adds noise.
+// Mean squared errors over 20 seeds fall with the number of columns, by a one-sided test of the difference at
+// 99.9 % each. By the paper's probabilities: where the rank is low the norms are as good as known, and a
+// share of power only adds noise.
 TEST(RowColumn, ErrorFallsWithColumns) {
   const auto m = matrix::low_rank_matrix({500, 1000, 1}, 15);
   const auto truth = m.exact_sums();

@@ -65,8 +65,8 @@ TEST(Coating, LobesFollowTheRandomWalk) {
       const Vec3f wo = at_angle(cosine, 0.5f);
       constexpr int particles = 20000;
       const Exits truth = walk(set, wo, particles, 1), lobes = exits_of_lobes(set, wo, particles, 2);
-      // Both are means of 20,000 numbers between 0 and about 1, whose standard deviations are at
-      // most 1/2: of the difference 0.005; 4.5 of them.
+      // Both are means of 20,000 numbers between 0 and about 1, whose standard deviations are at most 1/2: of
+      // the difference 0.005; 4.5 of them.
       EXPECT_NEAR(lobes.total, truth.total, s.energy * truth.total + 4.5 * 0.005)
           << s.name << " at " << cosine;
       // 64 cells of which each is off by √(2p/n) on average: half the sum is at most √(64·2/n)/2 = 0.04.

@@ -76,8 +76,8 @@ TEST(Microfacet, BeckmannMaskingMatchesItsClosedForm) {
   }
 }
 
-// GGX: the mean of a coordinate over drawn visible normals against its integral over their density,
-// within 4.5 standard deviations (24 comparisons: all pass by chance with more than 99.9 %).
+// GGX: the mean of a coordinate over drawn visible normals against its integral over their density, within
+// 4.5 standard deviations (24 comparisons: all pass by chance with more than 99.9 %).
 TEST(Microfacet, DrawnNormalsHaveTheRightMean) {
   int stream = 0;
   for (const Setting& s : kSettings) {

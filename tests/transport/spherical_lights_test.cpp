@@ -317,8 +317,7 @@ TEST(SphericalLights, AReachIsSoManyRadii) {
   EXPECT_EQ(LightReach(VirtualLights(), world, 2, 3).at({0, 0, 0}), 0);
 }
 
-// Radii fall with the sixth root of the number of lights: the tenth neighbor's distance with the square
-// root.
+// Radii fall with the sixth root of the number of lights: the tenth neighbor's distance with the square root.
 TEST(SphericalLights, AutomaticRadiiBalanceBlurAndNoise) {
   EXPECT_EQ(automatic_radius_scale(1), 1);
   EXPECT_NEAR(automatic_radius_scale(3760), 2, 1e-5);

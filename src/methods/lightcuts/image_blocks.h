@@ -19,8 +19,7 @@ class ImageBlocks {
 
   struct Block {
     std::span<const matrix::Index> rows;
-    // The first receivers of the pixels at its corners, which it shares with its neighbors; those that
-    // exist.
+    // The first receivers of the pixels at its corners, which it shares with its neighbors; those that exist.
     std::array<matrix::Index, 4> corners;
     int corner_count = 0;
   };

@@ -32,8 +32,7 @@ class GatherTree {
   std::span<const matrix::Index> order() const { return order_; }
   // Σ of the rows' weights in the picture.
   float weight(Node node) const { return nodes_[node].weight; }
-  // Place of the node's representative, drawn in proportion to weight; a child has its parent's where
-  // it can.
+  // Place of the node's representative, drawn in proportion to weight; a child has its parent's where it can.
   std::uint32_t representative(Node node) const { return nodes_[node].representative; }
   // (diagonal of the places)² + scale² (1 − cosine of the normals' cone)²: what keeps nodes apart in light
   // trees, too (Walter et al. 2005, equation 4), but for the intensity.

@@ -22,15 +22,13 @@ class RowColumnRun {
   Estimate fixed();
   // One of them, or both, is to be found:
   //  1. read some rows, a fifth of them apart from the clustering (held out); render a small pilot, which is
-  //  shown at once;
+  //     shown at once;
   //  2. split clusters and follow the errors to expect on seen and on held-out rows; read as many rows again
-  //  as long as that
-  //     pays (planner.h);
+  //     as long as that pays (planner.h);
   //  3. cluster so finely that the error to expect on held-out rows meets the target, or the time that is
-  //  left; render;
+  //     left; render;
   //  4. if the held-out rows disagree with the picture, or time is left: read rows where the last two
-  //  estimates differ, and
-  //     repeat from 2. Passes are averaged by expected precision (blend.h).
+  //     estimates differ, and repeat from 2. Passes are averaged by expected precision (blend.h).
   // Without a time budget costs count entries, so the result is a function of the seed; with one they are
   // seconds.
   Estimate automatic();

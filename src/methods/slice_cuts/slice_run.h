@@ -28,9 +28,8 @@ class SliceRun {
 
   const LightTree& tree() const { return *tree_; }
   const Slices& slices() const { return slices_; }
-  // The level that meets the target. Nothing where there is nothing to try, and with a time
-  // budget, where the time decides. settings_of(level);
-  // predicts: whether levels of visibility differ.
+  // The level that meets the target. Nothing where there is nothing to try, and with a time budget, where the
+  // time decides. settings_of(level); predicts: whether levels of visibility differ.
   template <typename Slice, typename SettingsOf>
   std::optional<LevelChoice> search(WorkspacePool<Slice>& pool, bool predicts, SettingsOf&& settings_of) {
     if (options_.time_seconds > 0) return std::nullopt;

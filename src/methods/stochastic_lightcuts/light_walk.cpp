@@ -68,9 +68,9 @@ LightWalk::Weights LightWalk::weigh(Node node) {
           narrow && parts.near <= kSmall * parts.far};
 }
 
-// After Yuksel 2019: the mean of the probabilities by the nearest and by the farthest points, since
-// close to a node one alone tells little. Where both children may be infinitely close, distances tell
-// nothing. Negative if neither sends anything.
+// After Yuksel 2019: the mean of the probabilities by the nearest and by the farthest points, since close to
+// a node one alone tells little. Where both children may be infinitely close, distances tell nothing.
+// Negative if neither sends anything.
 double LightWalk::share_of_left(Node node, bool& left_small, bool& right_small) {
   const Weights left = weigh(tree_.left(node)), right = weigh(tree_.right(node));
   left_small = left.small, right_small = right.small;

@@ -25,8 +25,8 @@ class LightWalk {
   // Splits the most urgent node until there are `nodes` of them or none has a bound above `threshold`
   // (luminance). Urgent is not what has the greatest bound, as in Yuksel's, but what probably adds the most
   // noise: √(near · far) is nearer to what a node sends than its bound, which next to it is large and rests
-  // on few columns; many columns are seen in part. Of ten such rules the best in two rooms: a
-  // third less error. Nodes that cannot send anything are not on the cut.
+  // on few columns; many columns are seen in part. Of ten such rules the best in two rooms: a third less
+  // error. Nodes that cannot send anything are not on the cut.
   void refine(std::size_t nodes, float threshold);
   // On the cut.
   std::size_t size() const { return heap_.size() + settled_.size(); }

@@ -36,8 +36,8 @@ T from_bytes(const char* at) {
   return value;
 }
 
-// One component as stored, or with `normalized` as the fraction that it stands for (glTF 2.0,
-// section 3.6.2.2).
+// One component as stored, or with `normalized` as the fraction that it stands for
+// (glTF 2.0, section 3.6.2.2).
 template <typename T>
 T component(const char* at, int type, bool normalized) {
   const auto scaled = [&](float value, float max_value) {

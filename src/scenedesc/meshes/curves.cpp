@@ -1,6 +1,5 @@
 // Files of curves: the text form of Mitsuba 3 ("bsplinecurve", "linearcurve"), and the two forms of Mitsuba
-// 0.6
-// ("hair"), in which all curves have one radius.
+// 0.6 ("hair"), in which all curves have one radius.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

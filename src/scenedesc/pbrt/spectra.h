@@ -1,9 +1,9 @@
 // What pbrt's spectra become in linear Rec. 709 RGB.
 //
-// pbrt renders with spectra and integrates its film with the CIE 1931 observer such that a light of
-// "rgb" (1, 1, 1) has the pixel value (1, 1, 1): lights are divided by the luminance of their own spectrum,
-// an rgb color by that of its color space's white (DiffuseAreaLight, PointLight, … of pbrt-v4, lights.cpp).
-// So every light given as a spectrum, a blackbody or a name has luminance 1 before its "scale", and only its
+// pbrt renders with spectra and integrates its film with the CIE 1931 observer such that a light of "rgb"
+// (1, 1, 1) has the pixel value (1, 1, 1): lights are divided by the luminance of their own spectrum, an rgb
+// color by that of its color space's white (DiffuseAreaLight, PointLight, … of pbrt-v4, lights.cpp). So every
+// light given as a spectrum, a blackbody or a name has luminance 1 before its "scale", and only its
 // chromaticity counts.
 #pragma once
 

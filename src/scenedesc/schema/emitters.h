@@ -32,10 +32,9 @@ struct SpotLightDesc {  // at the origin of to_world, along its +z
 // A point light whose intensity depends on the direction as a file says; the file is opened by the world.
 struct ProfileLightDesc {
   enum class Kind {
-    // Photometric data (IES LM-63). At the origin of to_world; its +z is the luminaire's nadir (vertical
-    // angle
-    // 0), so that it is aimed like a spot light; +x is horizontal angle 0, -y horizontal angle 90 (type C;
-    // counter-clockwise seen from above an upright luminaire).
+    // Photometric data (IES LM-63). At the origin of to_world; its +z is the luminaire's nadir
+    // (vertical angle 0), so that it is aimed like a spot light; +x is horizontal angle 0, -y horizontal
+    // angle 90 (type C; counter-clockwise seen from above an upright luminaire).
     ies,
     // A square picture in the equal-area octahedral map of the directions of the local frame (as in pbrt-v4);
     // the mean of its channels.

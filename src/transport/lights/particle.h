@@ -38,8 +38,8 @@ class ParticleTracer {
   }
   ParticleTracer(const ParticleTracer&) = delete;
 
-  // Path number `path` of settings.paths: its lights are appended to `batch`. A function of (seed,
-  // stage, path, guide, roulette). Returns where it started.
+  // Path number `path` of settings.paths: its lights are appended to `batch`. A function of
+  // (seed, stage, path, guide, roulette). Returns where it started.
   EmissionGuide::Start trace(std::size_t path, LightBatch& batch, PathTally* tally = nullptr) const;
 
  private:

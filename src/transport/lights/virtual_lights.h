@@ -50,8 +50,7 @@ struct LightSettings {
   bool diffuse_only = false;
   // If given, particles are aimed so that their light reaches these receivers (an interior behind windows),
   // and lights are kept or left out at random so that all are of about equal use to them: see light_plan.h.
-  // The result is unbiased for every receiver either way.
-  // Read during the call only.
+  // The result is unbiased for every receiver either way. Read during the call only.
   const Receivers* receivers = nullptr;
   // Lobes of receivers with a roughness below this get their direct light elsewhere: emitters then get fewer
   // of the lights (if receivers are given; above 1: all lobes).

@@ -11,9 +11,9 @@ namespace lumirank::transport {
 
 struct SphereRules {
   // I(l), which stands for "l meets the lit surface": cosθy as in the paper, or whether l meets the disc of
-  // radius r in the tangent plane of the light. Beyond kDiscReach radii, where the cosine
-  // is always taken, they agree to 5 %, to 10 % at grazing angles. The disc also leaves out what lies behind
-  // the receiver's own surface where the light knows it to be hidden: nothing is lost in a corner.
+  // radius r in the tangent plane of the light. Beyond kDiscReach radii, where the cosine is always taken,
+  // they agree to 5 %, to 10 % at grazing angles. The disc also leaves out what lies behind the receiver's
+  // own surface where the light knows it to be hidden: nothing is lost in a corner.
   enum class Indicator : std::uint8_t { cosine, disc } indicator = Indicator::disc;
   // all: uniform in the cone, BSDF at x, BSDF at the light, balance heuristic (section 3.3); cone: the first
   // alone.

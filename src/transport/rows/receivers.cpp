@@ -224,8 +224,8 @@ Receivers white_receivers(const Receivers& seen) {
     out.id.push_back(sample_id(static_cast<int>(seen.film[k].x), static_cast<int>(seen.film[k].y), k % spp));
     out.position.push_back(seen.first_position[k]);
     out.normal.push_back(seen.first_normal[k]), out.ng.push_back(seen.first_ng[k]);
-    // Light is received from above the surface, at whatever angle it is seen: even where a shading
-    // normal turns away from the eye, wo must lie on the side of both.
+    // Light is received from above the surface, at whatever angle it is seen: even where a shading normal
+    // turns away from the eye, wo must lie on the side of both.
     out.wo.push_back(normalize(seen.first_normal[k] + seen.first_ng[k]));
     out.weight.push_back(Rgb(1)), out.albedo.push_back(Rgb(1));
     out.sample.push_back(static_cast<std::uint32_t>(k));

@@ -1,7 +1,7 @@
-// For every slice of rows its own clusters of columns, each with one representative (Ou and
-// Pellacini 2011, sections 4.2 to 4.4). One row of each slice is read whole. By all of these rows the columns
-// are clustered once, as in row-column sampling; each slice then splits these clusters further, by its own
-// row and those of the slices nearest to it alone.
+// For every slice of rows its own clusters of columns, each with one representative
+// (Ou and Pellacini 2011, sections 4.2 to 4.4). One row of each slice is read whole. By all of these rows the
+// columns are clustered once, as in row-column sampling; each slice then splits these clusters further, by
+// its own row and those of the slices nearest to it alone.
 //
 // Ours: nearer slices count for more, the k-th as 1/(k + 1), so that twice the paper's eight can be read:
 // fewer columns are zero on all of them. The paper draws representatives by norms over all rows that were
@@ -53,11 +53,10 @@ Fields<S> with_slice_light_fields(Fields<S> others) {
 
 class SliceLights {
  public:
-  // row_seconds: what a row takes, where that is known; else 0.
-  // Reads the rows and clusters by all of them. `row_sum`: filled for every row of the matrix with the exact
-  // sum at its slice's row. Where cancelled in between, or out of time (the timed
-  // choice "slice_rows"), ready() is false. Under --time there are as many slices, rows and clusters as a few
-  // rows show to fit (the timed choice "slices").
+  // row_seconds: what a row takes, where that is known; else 0. Reads the rows and clusters by all of them.
+  // `row_sum`: filled for every row of the matrix with the exact sum at its slice's row. Where cancelled in
+  // between, or out of time (the timed choice "slice_rows"), ready() is false. Under --time there are as many
+  // slices, rows and clusters as a few rows show to fit (the timed choice "slices").
   SliceLights(const matrix::LightingMatrix& matrix, const RunOptions& options, const RunClock& clock,
               double row_seconds, const SliceLightSettings& settings, std::span<Rgb> row_sum);
 
