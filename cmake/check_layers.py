@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Fails if a file includes a room that its own room may not see, or a folder of its room that its own folder may not, or if a public
-header sees anything but the standard library."""
+header sees anything but the standard library. --graph prints which room really includes which."""
 import pathlib
 import re
 import sys
@@ -82,6 +82,24 @@ def folder_errors(path, name):
     return [f"{path.relative_to(ROOT)}: {room}/{own[0]} may not include {name}"]
 
 
+def sources(folder):
+    return [p for p in sorted(folder.rglob("*")) if p.suffix in (".h", ".cpp")]
+
+
+def graph():
+    """The rooms and which of them really include which, as Mermaid draws it, without edges that longer ways imply."""
+    used = {room: set() for room in ROOMS}
+    for room in ROOMS:
+        for path in sources(ROOT / "src" / room):
+            tops = {name.split("/")[0] for quote, name in INCLUDE.findall(path.read_text()) if quote == '"'}
+            used[room] |= (tops & set(ROOMS)) - {room}
+    lines = ["graph BT"]
+    for room, direct in used.items():
+        implied = set().union(*(reachable(r, used) - {r} for r in direct)) if direct else set()
+        lines += [f"  {room} --> {r}" for r in ROOMS if r in direct - implied]
+    return "\n".join(lines)
+
+
 def main():
     errors = []
     for room in sorted(p.name for p in (ROOT / "src").iterdir() if p.is_dir()):
@@ -89,9 +107,7 @@ def main():
             errors.append(f"src/{room}: an unknown room; name it in {pathlib.Path(__file__).name}")
             continue
         allowed = reachable(room, ROOMS)
-        for path in sorted((ROOT / "src" / room).rglob("*")):
-            if path.suffix not in (".h", ".cpp"):
-                continue
+        for path in sources(ROOT / "src" / room):
             for quote, name in INCLUDE.findall(path.read_text()):
                 top = name.split("/")[0]
                 if quote == '"' and top in ROOMS and top not in allowed:
@@ -104,14 +120,18 @@ def main():
                 errors.append(f"{path.relative_to(ROOT)}: a public header may not include {name}")
             if quote == "<" and ("/" in name or name.endswith(".h")):
                 errors.append(f"{path.relative_to(ROOT)}: public headers use the standard library only, not {name}")
-    for path in sorted((ROOT / "apps").rglob("*")):
-        if path.suffix not in (".h", ".cpp"):
-            continue
+    for path in sources(ROOT / "apps"):
         for quote, name in INCLUDE.findall(path.read_text()):
             if quote == '"' and "/" in name and not name.startswith("lumirank/"):
                 errors.append(f"{path.relative_to(ROOT)}: applications use the public headers only, not {name}")
+    if f"```mermaid\n{graph()}\n```" not in (ROOT / "docs" / "architecture.md").read_text():
+        errors.append("docs/architecture.md: its graph of rooms is not the includes'; put there what check_layers.py --graph prints")
     print("\n".join(errors) if errors else "layers: fine")
     return 1 if errors else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--graph"]:
+        print(graph())
+    else:
+        sys.exit(main())

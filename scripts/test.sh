@@ -39,7 +39,7 @@ export OPENBLAS_NUM_THREADS=1
 export ASAN_OPTIONS=intercept_tls_get_addr=0
 export LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
-# Neither render nor cli: their statistical tests take minutes there, over code that the other rooms' tests reach.
+# Not the rooms from pathtrace up: their statistical tests take minutes there, over code that the tests of these reach.
 checked=(transport methods scenedesc scatter world linalg geometry emitters image film matrix base)
 step "Build with the address and undefined-behavior sanitizers"
 quiet_build asan -t fuzzers $(printf -- '-t test_%s ' "${checked[@]}")

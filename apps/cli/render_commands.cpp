@@ -49,6 +49,8 @@ void add_reference(CLI::App& app, Action& action) {
   add_output_options(*command, options->outputs);
   add_setting_options(*command, options->common,
                       {"size", "max-depth", "only", "seed", "threads", "camera", "crop", "aov"});
+  command->get_option("--aov")->description(
+      "direct, indirect or emission: a layer beside the picture; repeatable");
   add_count(*command, "--spp", options->how.spp, 1, 1 << 20,
             "paths per pixel (default 64 if neither --time nor --error is given)");
   add_number(*command, "--time", options->how.time, {0, 1e7, true, "seconds"}, "seconds");
@@ -86,7 +88,7 @@ void add_error(CLI::App& app, Action& action) {
   command->footer("Example:\n  lumirank error room.exr truth.exr\n");
   command->callback([files, &action] {
     action = [files](Streams streams) {
-      print(streams, error_json(files->first, files->second));
+      print(streams, error_of_file(files->first, files->second).json());
       return 0;
     };
   });
@@ -108,7 +110,8 @@ void add_info(CLI::App& app, Action& action) {
       Sinks sinks = console.sinks();
       sinks.warning = {};  // the listing has them
       const Scene scene = Scene::load(options->common.scene, options->common.load_options(), sinks);
-      const std::string text = options->json ? scene.info_json(sinks) : scene.info_text(sinks);
+      const SceneInfo info = scene.info(sinks);
+      const std::string text = options->json ? info.json() : info.text();
       console.clear();
       print(streams, text);
       return 0;

@@ -14,6 +14,7 @@
 
 #include "lumirank/error.h"
 #include "lumirank/export.h"
+#include "lumirank/info.h"
 #include "lumirank/report.h"
 #include "lumirank/settings.h"
 #include "lumirank/sinks.h"
@@ -28,9 +29,8 @@ class LUMIRANK_API Scene {
   // Throws InputError (file, line, remedy). Warnings go to `sinks.warning` and stay in the listing.
   static Scene load(const std::string& filename, const LoadOptions& options = {}, const Sinks& sinks = {});
 
-  // What `lumirank info` prints: builds the world once to count triangles and emitters. As text or JSON.
-  std::string info_text(const Sinks& sinks = {}) const;
-  std::string info_json(const Sinks& sinks = {}) const;
+  // What it consists of; builds the world once to count triangles and emitters.
+  SceneInfo info(const Sinks& sinks = {}) const;
 
   // The files that it was read from and those that it will be built from.
   std::vector<std::string> files() const;
@@ -107,13 +107,5 @@ class LUMIRANK_API FilesTogether {
 
 // For the signal handler of a host that ends the process in the middle of a write; it may be called there.
 LUMIRANK_API void remove_temporary_files() noexcept;
-
-// Metrics of an image file against a reference file as a JSON object; see docs/command-line.md.
-LUMIRANK_API std::string error_json(const std::string& image_file, const std::string& reference_file);
-
-// The methods with their parameters and papers. all: also the parameters that are for experiments only, which
-// switch off steps of a method; settings take them in either case.
-LUMIRANK_API std::string methods_text(bool all = false);
-LUMIRANK_API std::string methods_json(bool all = false);
 
 }  // namespace lumirank

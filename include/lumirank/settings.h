@@ -68,7 +68,7 @@ struct VirtualLightSettings {
 // How row sums are estimated.
 struct MethodSettings {
   std::string name = "auto";
-  std::map<std::string, std::string> parameters = {};  // by key; methods_text() lists them
+  std::map<std::string, std::string> parameters = {};  // by key; list_methods() has them
   std::uint64_t seed = 0;   // other choices on the same lights and receivers; 0: the render's seed
   double target_error = 0;  // estimated relative error to stop at; 0: the method's default
 };

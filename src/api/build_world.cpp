@@ -9,7 +9,10 @@ std::string warning_text(const scenedesc::Warning& warning) {
   std::string text = to_string(warning.where);
   if (!text.empty()) text += ": ";
   text += warning.what;
-  if (!warning.used_instead.empty()) text += "; used instead: " + warning.used_instead;
+  if (!warning.used_instead.empty())
+    text += "; used instead: " + warning.used_instead;
+  else if (!warning.harmless)
+    text += "; left out";
   return text;
 }
 

@@ -11,7 +11,7 @@
 
 namespace lumirank::api {
 
-// "file:line: what; used instead: what".
+// "file:line: what; used instead: what", or "; left out".
 std::string warning_text(const scenedesc::Warning& warning);
 // Warnings to where a person sees them, notes to where one may.
 void report_warnings(const Sinks& sinks, const std::vector<scenedesc::Warning>& warnings);

@@ -5,8 +5,8 @@
 
 namespace lumirank {
 
-bool compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
-             const Sinks& sinks) {
+Comparison compare(const Scene& scene, const CompareSettings& settings, const std::string& folder,
+                   const Sinks& sinks) {
   validate(settings.base);
   return study::compare({scene.impl().desc, scene.impl().options.strict, scene.files()}, settings, folder,
                         sinks);

@@ -72,15 +72,19 @@ void FilesTogether::commit() { impl_->files.commit(); }
 
 void remove_temporary_files() noexcept { image::remove_temporary_files(); }
 
-std::string error_json(const std::string& image_file, const std::string& reference_file) {
-  const auto image = image::read_image(image_file), reference_image = image::read_image(reference_file);
-  const image::ErrorMetrics m = image::compare(image.color, reference_image.color);
-  nlohmann::ordered_json json = {{"relative_l1", m.relative_l1},
-                                 {"relative_l2", m.relative_l2},
-                                 {"rmse", m.rmse},
-                                 {"relmse", m.relmse},
-                                 {"bias", m.bias}};
-  return json.dump() + "\n";
+PictureError error_of_file(const std::string& image_file, const std::string& reference_file) {
+  const auto picture = image::read_image(image_file), reference = image::read_image(reference_file);
+  return image::compare(picture.color, reference.color);
+}
+
+std::string PictureError::json() const {
+  return nlohmann::ordered_json{{"relative_l1", relative_l1},
+                                {"relative_l2", relative_l2},
+                                {"rmse", rmse},
+                                {"relmse", relmse},
+                                {"bias", bias}}
+             .dump() +
+         "\n";
 }
 
 }  // namespace lumirank

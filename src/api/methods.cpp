@@ -1,14 +1,24 @@
-// The list of methods, as text and as JSON.
+// The list of methods: typed, as text and as JSON.
 #include <nlohmann/json.hpp>
 
-#include "lumirank/lumirank.h"
+#include "lumirank/info.h"
 #include "methods/method.h"
 
 namespace lumirank {
 
+std::vector<MethodDescription> list_methods() {
+  std::vector<MethodDescription> list;
+  for (const auto& m : methods::all_methods()) {
+    MethodDescription& d = list.emplace_back(MethodDescription{m.name, m.summary, m.paper, {}});
+    for (const auto& p : m.parameters)
+      d.parameters.push_back({p.key, p.type, p.default_text, p.range, p.unit, p.help, p.experiment});
+  }
+  return list;
+}
+
 std::string methods_json(bool all) {
   nlohmann::ordered_json json = nlohmann::json::array();
-  for (const auto& m : methods::all_methods()) {
+  for (const MethodDescription& m : list_methods()) {
     nlohmann::ordered_json parameters = nlohmann::json::array();
     for (const auto& p : m.parameters)
       if (all || !p.experiment)
@@ -27,7 +37,7 @@ std::string methods_json(bool all) {
 
 std::string methods_text(bool all) {
   std::string text;
-  for (const auto& m : methods::all_methods()) {
+  for (const MethodDescription& m : list_methods()) {
     text += m.name + "\n  " + m.summary + "\n";
     if (!m.paper.empty()) text += "  " + m.paper + "\n";
     std::size_t hidden = 0;

@@ -47,7 +47,7 @@ double ratio(double numerator, double denominator) {
 
 }  // namespace
 
-ErrorMetrics compare(const Image& image, const Image& reference) {
+PictureError compare(const Image& image, const Image& reference) {
   require_comparable(image, reference);
   const std::size_t pixels = image.pixels.size();
   const double values = 3.0 * static_cast<double>(pixels);
@@ -71,7 +71,7 @@ ErrorMetrics compare(const Image& image, const Image& reference) {
       }
     return s;
   });
-  ErrorMetrics m;
+  PictureError m;
   m.relative_l1 = ratio(sums.absolute, sums.reference);
   m.relative_l2 = ratio(std::sqrt(sums.squared), std::sqrt(sums.reference_squared));
   m.rmse = std::sqrt(sums.squared / values);

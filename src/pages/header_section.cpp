@@ -11,12 +11,12 @@ std::string fact(const std::string& term, const std::string& value) {
 }
 
 // A reference serves for errors of at least five times its own.
-std::string reference_warning(const CompareResults& results, const CompareSummary& summary) {
+std::string reference_warning(const Comparison& results, const ComparisonSummary& summary) {
   if (!(results.reference_error > 0)) return {};
   std::size_t doubtful = 0;
-  for (const CompareGroup& group : summary.groups)
+  for (const ComparisonGroup& group : summary.groups)
     doubtful +=
-        group.mean([](const CompareRun& r) { return r.error.relative_l1; }) < 5 * results.reference_error;
+        group.mean([](const ComparisonRun& r) { return r.error.relative_l1; }) < 5 * results.reference_error;
   if (doubtful == 0) return {};
   return "<p class=\"warn\">The reference's own error is more than a fifth of the relative L1 error of " +
          std::to_string(doubtful) + " of " + std::to_string(summary.groups.size()) +
@@ -25,9 +25,9 @@ std::string reference_warning(const CompareResults& results, const CompareSummar
 
 }  // namespace
 
-std::string header_section(const CompareResults& results, const CompareSummary& summary) {
+std::string header_section(const Comparison& results, const ComparisonSummary& summary) {
   double rays = 0, entries = 0;
-  for (const CompareRun& run : results.runs) rays += run.rays, entries += run.entries;
+  for (const ComparisonRun& run : results.runs) rays += run.rays, entries += run.entries;
   const bool exact = results.reference_kind.starts_with("all ");  // columns
   const std::string own_error = exact ? "none: the exact sums of the same lights"
                                 : results.reference_error > 0

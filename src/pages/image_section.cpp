@@ -18,12 +18,12 @@ struct Choice {
   double relative_l1 = std::numeric_limits<double>::infinity();
 };
 
-std::vector<Choice> choices_of(const CompareResults& results, const CompareSummary& summary) {
+std::vector<Choice> choices_of(const Comparison& results, const ComparisonSummary& summary) {
   std::vector<Choice> choices;
   if (!results.reference_image.empty())
     choices.push_back({"Reference", results.reference_kind, results.reference_image, ""});
-  for (const CompareGroup& group : summary.groups)
-    for (const CompareRun* run : group.runs) {
+  for (const ComparisonGroup& group : summary.groups)
+    for (const ComparisonRun* run : group.runs) {
       if (run->image_file.empty()) continue;
       const std::string seed = group.runs.size() > 1 ? ", seed " + std::to_string(run->seed) : "";
       choices.push_back({run->label + seed,
@@ -71,7 +71,7 @@ std::string select(const char* side, const char* label, const std::vector<Choice
 
 }  // namespace
 
-std::string image_section(const CompareResults& results, const CompareSummary& summary) {
+std::string image_section(const Comparison& results, const ComparisonSummary& summary) {
   const std::vector<Choice> choices = choices_of(results, summary);
   if (choices.empty()) return {};
   // At first: the reference beside the run that comes nearest to it.

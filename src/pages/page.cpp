@@ -7,8 +7,8 @@
 
 namespace lumirank::pages {
 
-void write_compare_page(const std::string& folder, const CompareResults& results) {
-  const CompareSummary summary = summarize(results);
+void write_comparison_page(const std::string& folder, const Comparison& results) {
+  const ComparisonSummary summary = summarize(results);
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>" +

@@ -9,7 +9,7 @@
 namespace lumirank::pages {
 namespace {
 
-using Value = std::function<double(const CompareRun&)>;
+using Value = std::function<double(const ComparisonRun&)>;
 
 struct Measure {
   const char* key;
@@ -19,12 +19,12 @@ struct Measure {
 };
 
 const Measure kMeasures[] = {
-    {"l1", "relative L1", Unit::percent, [](const CompareRun& r) { return r.error.relative_l1; }},
-    {"l2", "relative L2", Unit::percent, [](const CompareRun& r) { return r.error.relative_l2; }},
-    {"relmse", "relMSE", Unit::plain, [](const CompareRun& r) { return r.error.relmse; }},
+    {"l1", "relative L1", Unit::percent, [](const ComparisonRun& r) { return r.error.relative_l1; }},
+    {"l2", "relative L2", Unit::percent, [](const ComparisonRun& r) { return r.error.relative_l2; }},
+    {"relmse", "relMSE", Unit::plain, [](const ComparisonRun& r) { return r.error.relmse; }},
 };
 
-std::string tip_of(const CompareGroup& group) {
+std::string tip_of(const ComparisonGroup& group) {
   const auto mean = [&](const Value& value) { return group.mean(value); };
   std::string tip = group.first().label + "\n" + show_seconds(mean([](const auto& r) { return r.seconds; })) +
                     " · " + show_count(mean([](const auto& r) { return r.rays; })) + " rays\n";
@@ -36,14 +36,14 @@ std::string tip_of(const CompareGroup& group) {
   return tip;
 }
 
-std::string error_plot(const CompareResults& results, const CompareSummary& summary, const Measure& measure,
+std::string error_plot(const Comparison& results, const ComparisonSummary& summary, const Measure& measure,
                        const PlotAxis& x, const Value& cost) {
   Plot plot;
   plot.title = std::string(measure.name) + " error against " + x.label;
   plot.x = x;
   plot.y = {std::string(measure.name) + " error", true, measure.unit};
   for (const std::string& name : summary.series) plot.series.push_back({name, {}, true});
-  for (const CompareGroup& group : summary.groups)
+  for (const ComparisonGroup& group : summary.groups)
     plot.series[group.series].points.push_back({group.mean(cost), group.mean(measure.value),
                                                 group.lowest(measure.value), group.highest(measure.value),
                                                 tip_of(group)});
@@ -54,7 +54,7 @@ std::string error_plot(const CompareResults& results, const CompareSummary& summ
 
 }  // namespace
 
-std::string error_section(const CompareResults& results, const CompareSummary& summary) {
+std::string error_section(const Comparison& results, const ComparisonSummary& summary) {
   if (results.runs.empty()) return {};
   std::string out =
       "<section class=\"errors\"><h2>Error against cost</h2>\n<p class=\"soft\">Lower and further left is "
@@ -76,16 +76,16 @@ std::string error_section(const CompareResults& results, const CompareSummary& s
     out += std::string("<div class=\"plots") + (&m == kMeasures ? "" : " off") + "\" data-measure=\"" +
            m.key + "\">\n<figure><figcaption>Error against time</figcaption>" +
            error_plot(results, summary, m, {"seconds of the method", true, Unit::seconds},
-                      [](const CompareRun& r) { return r.seconds; }) +
+                      [](const ComparisonRun& r) { return r.seconds; }) +
            "</figure>\n<figure><figcaption>Error against rays</figcaption>" +
            error_plot(results, summary, m, {"shadow rays", true, Unit::count},
-                      [](const CompareRun& r) { return r.rays; }) +
+                      [](const ComparisonRun& r) { return r.rays; }) +
            "</figure></div>\n";
   }
   return out + "</section>\n";
 }
 
-std::string singular_value_section(const CompareResults& results) {
+std::string singular_value_section(const Comparison& results) {
   const auto& values = results.singular_values;
   if (values.empty()) return {};
   // How many values hold all but 1 % of the matrix in the Frobenius norm: the tail is summed from its small

@@ -22,8 +22,8 @@ json numbers(const std::map<std::string, double>& values) {
   return out;
 }
 
-json to_json(const CompareRun& run) {
-  const image::ErrorMetrics& e = run.error;
+json to_json(const ComparisonRun& run) {
+  const PictureError& e = run.error;
   return {{"method", run.method},
           {"label", run.label},
           {"series", run.series},
@@ -65,7 +65,7 @@ std::string field(double value) {
 
 }  // namespace
 
-void write_results_json(const std::string& folder, const CompareResults& results) {
+void write_results_json(const std::string& folder, const Comparison& results) {
   json out = {{"version", results.version},
               {"scene", results.scene},
               {"width", results.width},
@@ -78,7 +78,7 @@ void write_results_json(const std::string& folder, const CompareResults& results
               {"error_full_scale", number(results.error_full_scale)},
               {"notes", results.notes}};
   out["runs"] = json::array();
-  for (const CompareRun& run : results.runs) out["runs"].push_back(to_json(run));
+  for (const ComparisonRun& run : results.runs) out["runs"].push_back(to_json(run));
   out["singular_values"] = json::array();
   for (const double value : results.singular_values) out["singular_values"].push_back(number(value));
   // File names may hold bytes that are not UTF-8.
@@ -86,9 +86,9 @@ void write_results_json(const std::string& folder, const CompareResults& results
                           out.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
-void write_results_csv(const std::string& folder, const CompareResults& results) {
+void write_results_csv(const std::string& folder, const Comparison& results) {
   std::set<std::string> settings, phases;
-  for (const CompareRun& run : results.runs) {
+  for (const ComparisonRun& run : results.runs) {
     for (const auto& [key, value] : run.settings) settings.insert(key);
     for (const auto& [key, value] : run.phases) phases.insert(key);
   }
@@ -99,7 +99,7 @@ void write_results_csv(const std::string& folder, const CompareResults& results)
   for (const std::string& key : settings) out += "," + field("setting." + key);
   for (const std::string& key : phases) out += "," + field("seconds." + key);
   out += "\r\n";
-  for (const CompareRun& run : results.runs) {
+  for (const ComparisonRun& run : results.runs) {
     out +=
         field(run.method) + "," + field(run.label) + "," + field(run.series) + "," + std::to_string(run.seed);
     for (const double value :

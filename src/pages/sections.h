@@ -3,21 +3,21 @@
 
 #include <string>
 
-#include "pages/results.h"
+#include "lumirank/compare.h"
 #include "pages/summary.h"
 
 namespace lumirank::pages {
 
 // What was compared, against what, and how good that is.
-std::string header_section(const CompareResults& results, const CompareSummary& summary);
+std::string header_section(const Comparison& results, const ComparisonSummary& summary);
 // Error against time and against rays.
-std::string error_section(const CompareResults& results, const CompareSummary& summary);
+std::string error_section(const Comparison& results, const ComparisonSummary& summary);
 // Any two images side by side.
-std::string image_section(const CompareResults& results, const CompareSummary& summary);
+std::string image_section(const Comparison& results, const ComparisonSummary& summary);
 // Every group of runs, and their seconds per phase.
-std::string table_section(const CompareSummary& summary);
-std::string phase_section(const CompareSummary& summary);
+std::string table_section(const ComparisonSummary& summary);
+std::string phase_section(const ComparisonSummary& summary);
 // Hašan, Pellacini, Bala 2007, Figure 3.
-std::string singular_value_section(const CompareResults& results);
+std::string singular_value_section(const Comparison& results);
 
 }  // namespace lumirank::pages

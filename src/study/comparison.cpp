@@ -1,11 +1,11 @@
 // Runs the plan of a comparison on one prepared scene, and writes every result as soon as it exists.
 #include "study/comparison.h"
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -18,16 +18,14 @@
 #include "image/metrics.h"
 #include "linalg/svd.h"
 #include "matrix/metered_matrix.h"
-#include "pages/html_text.h"
 #include "pages/page.h"
-#include "pathtrace/reference.h"
-#include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
 #include "pipeline/memory.h"
 #include "pipeline/prepared.h"
 #include "pipeline/sound_pixels.h"
+#include "study/equal_cost.h"
 #include "study/run_plan.h"
-#include "study/sampled_truth.h"
+#include "study/study_reference.h"
 
 namespace lumirank::study {
 namespace {
@@ -36,17 +34,18 @@ using namespace pipeline;
 using namespace pages;
 namespace fs = std::filesystem;
 
-class Comparison {
+class Study {
  public:
-  Comparison(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
-             const Sinks& sinks)
+  Study(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
+        const Sinks& sinks)
       : settings_(settings),
         folder_(folder),
         sinks_(sinks),
         plan_(plan_runs(settings)),
         world_(std::make_shared<world::World>(
             world::World::build(scene.desc, {scene.strict}, warnings_, sinks))),
-        view_(make_view(scene.desc, settings.base.view)) {
+        view_(make_view(scene.desc, settings.base.view)),
+        reference_(settings, view_) {
     const fs::path file = fs::absolute(scene.desc.source_file);
     results_.scene = (file.parent_path().filename() / file.filename()).string();
     results_.version = program_version();
@@ -54,12 +53,10 @@ class Comparison {
     for (const PlannedRun& run : plan_)
       methods::require_capabilities(methods::find_method(run.method), transport::SceneMatrix::kCapabilities);
     require_memory_of_runs();
-    if (is_file()) read_reference();
-    require_receivers();
     require_outputs(scene.files);
   }
 
-  bool run() {
+  Comparison run() {
     prepare_as_asked();
     // Not before: a comparison that is refused leaves nothing behind.
     std::error_code code;
@@ -68,16 +65,17 @@ class Comparison {
       throw InputError({folder_, 0}, "the folder cannot be made: " + code.message(), "choose another place");
     warn_of_errors();
     try {
-      return run_all();
+      run_all();
     } catch (const InputError& error) {  // a full disk
       if (written_) throw InputError(error.what(), "what was finished before is in " + folder_);
       if (made) fs::remove(folder_, code);
       throw;
     }
+    return std::move(results_);
   }
 
  private:
-  bool run_all() {
+  void run_all() {
     try {
       make_reference();
       for (std::size_t k = 0; k < plan_.size(); ++k) {
@@ -117,9 +115,7 @@ class Comparison {
   }
 
   image::Image image_of(std::span<const Rgb> sums) const {
-    return develop(view_, prepared_->receivers(),
-                   sample_values(prepared_->receivers(), prepared_->traced, sums,
-                                 wanted_parts(settings_.base.view.only)));
+    return picture_of(view_, *prepared_, settings_.base.view, sums);
   }
 
   void save(const std::string& name, const image::Image& image) const {
@@ -131,8 +127,8 @@ class Comparison {
 
   // The reference's file may be the one that an earlier comparison left here.
   bool reference_is_kept() const {
-    return is_file() &&
-           image::file_identity(settings_.reference) == image::file_identity(path("reference.exr"));
+    return reference_.is_file() &&
+           image::file_identity(settings_.reference.file) == image::file_identity(path("reference.exr"));
   }
 
   static std::string stem_of(std::size_t run) { return "run_" + std::to_string(run); }
@@ -140,13 +136,13 @@ class Comparison {
   // Before any work: none of them is a file that is read, or one that cannot be written.
   void require_outputs(std::vector<std::string> inputs) const {
     std::vector<std::string> outputs = {path("results.json"), path("results.csv"), path("index.html")};
-    if (sampled_receivers() == 0) {
+    if (reference_.is_picture()) {
       outputs.push_back(path("reference.png"));
       if (!reference_is_kept()) outputs.push_back(path("reference.exr"));
     }
     for (std::size_t k = 0; k < plan_.size(); ++k)
       for (const char* ending : {".png", "_error.png"}) outputs.push_back(path(stem_of(k) + ending));
-    if (is_file()) inputs.push_back(settings_.reference);
+    if (reference_.is_file()) inputs.push_back(settings_.reference.file);
     image::require_distinct(outputs, inputs);
     if (std::error_code error; !fs::is_directory(folder_, error)) {
       fs::path there = fs::absolute(folder_, error).lexically_normal();
@@ -170,84 +166,15 @@ class Comparison {
     require_memory(max_bytes, kSmallerPicture);
   }
 
-  // What a reference at some receivers can have at most.
-  void require_receivers() const {
-    const auto max_receivers = static_cast<std::size_t>(view_.width) *
-                               static_cast<std::size_t>(view_.height) *
-                               static_cast<std::size_t>(settings_.base.view.spp_or_default());
-    if (sampled_receivers() > max_receivers)
-      throw InputError("'" + settings_.reference + "' asks for more receivers than the " +
-                           std::to_string(max_receivers) + " film samples of this render",
-                       "write brute-force for all of them, or a smaller number");
-  }
-
   void make_reference() {
-    const Timer timer;
-    if (const std::size_t count = sampled_receivers(); count > 0) {
-      const SampledTruth::Film film{prepared_->receivers().weight, prepared_->receivers().sample,
-                                    static_cast<std::size_t>(settings_.base.view.spp_or_default())};
-      truth_ = std::make_unique<SampledTruth>(*prepared_->matrix, film, count, settings_.base.seed, sinks_);
-      results_.reference_kind = "all " + std::to_string(prepared_->matrix->columns()) + " columns at " +
-                                std::to_string(truth_->rows()) + " receivers of " +
-                                std::to_string(truth_->pixels()) + " stratified pixels";
-      results_.reference_seconds = timer.seconds();
-      return;
-    }
-    if (settings_.reference == "brute-force") {
-      std::vector<matrix::ScaledColumn> columns(prepared_->matrix->columns());
-      for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
-      std::vector<Rgb> sums(prepared_->matrix->rows());
-      prepared_->matrix->accumulate(columns, sums, sinks_);
-      if (sinks_.cancelled()) throw Cancelled();
-      reference_ = image_of(sums);
-      results_.reference_kind = "all " + std::to_string(columns.size()) + " columns";
-    } else if (settings_.reference == "path") {
-      const auto traced = pathtrace::path_trace(
-          *world_, view_,
-          reference_options(settings_.base.view.only, settings_.base.seed, ReferencePaths::columns),
-          {.time = settings_.reference_time}, sinks_);
-      if (traced.interrupted) throw Cancelled();
-      reference_ = traced.image;
-      results_.reference_error = traced.error;
-      results_.reference_kind =
-          "path tracing, " + std::to_string(traced.spp) + " paths per pixel, paths that columns carry";
-    } else {
-      results_.reference_kind = fs::path(settings_.reference).filename().string();
-    }
-    results_.reference_seconds = timer.seconds();
+    reference_.make(world_, prepared_, sinks_, results_);
+    if (!reference_.is_picture()) return;
     results_.reference_image = "reference.png";
     image::FilesTogether together;
-    save("reference.png", reference_);
-    if (!reference_is_kept()) save("reference.exr", reference_);
+    save("reference.png", reference_.picture());
+    if (!reference_is_kept()) save("reference.exr", reference_.picture());
     together.commit();
     written_ = true;
-  }
-
-  bool is_file() const {
-    return settings_.reference != "path" && settings_.reference != "brute-force" && sampled_receivers() == 0;
-  }
-
-  void read_reference() {
-    reference_ = image::read_image(settings_.reference).color;
-    if (reference_.width != view_.width || reference_.height != view_.height)
-      throw InputError({settings_.reference, 0},
-                       "the reference has " + std::to_string(reference_.width) + "x" +
-                           std::to_string(reference_.height) + " pixels, the render " +
-                           std::to_string(view_.width) + "x" + std::to_string(view_.height),
-                       "give --size or another reference");
-  }
-
-  // "brute-force:4096": exact sums at so many receivers of the full-size render; 0 for other references.
-  std::size_t sampled_receivers() const {
-    constexpr std::string_view kPrefix = "brute-force:";
-    if (!settings_.reference.starts_with(kPrefix)) return 0;
-    const std::string text = settings_.reference.substr(kPrefix.size());
-    std::size_t count = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
-    if (status != std::errc{} || end != text.data() + text.size() || count < 64)
-      throw InputError("'" + settings_.reference + "' is not a reference",
-                       "write brute-force:N with N at least 64");
-    return count;
   }
 
   // Methods without a clock of their own get as many columns as fit into the budget, by the pace of a few.
@@ -271,8 +198,8 @@ class Comparison {
 
   bool run_one(PlannedRun run) {
     const methods::MethodInfo& info = methods::find_method(run.method);
-    const bool new_lights =
-        !settings_.reference.starts_with("brute-force");  // else all runs sample the reference's own matrix
+    // Otherwise all runs sample the reference's own matrix.
+    const bool new_lights = !reference_.is_of_columns();
     prepare(run.lights, run.spp, new_lights ? run.seed : settings_.base.seed);
     auto method_settings = run.method_settings;
     fit_to_time(run, method_settings);
@@ -291,7 +218,7 @@ class Comparison {
     const methods::Estimate estimate = info.make(method_settings)->run(metered, options);
     if (estimate.interrupted) return false;
 
-    CompareRun result;
+    ComparisonRun result;
     result.seconds = timer.seconds();
     for (const auto& [stage, seconds] : prepared_->seconds) result.setup_seconds += seconds;
     result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
@@ -315,14 +242,14 @@ class Comparison {
     image::FilesTogether together;
     result.image_file = stem + ".png";
     save(result.image_file, image);
-    if (truth_) {
-      const auto sampled = truth_->error_of(estimate.sums);
+    if (const SampledTruth* sampled_truth = reference_.sampled()) {
+      const auto sampled = sampled_truth->error_of(estimate.sums);
       result.error = sampled.metrics;
       result.settings["relative_l2 ±95 %"] = std::to_string(sampled.l2_half_width);
     } else {
-      result.error = image::compare(image, reference_);
+      result.error = image::compare(image, reference_.picture());
       result.error_image_file = stem + "_error.png";
-      save(result.error_image_file, image::false_color_error(image, reference_));
+      save(result.error_image_file, image::false_color_error(image, reference_.picture()));
     }
     together.commit();
     written_ = true;
@@ -352,42 +279,15 @@ class Comparison {
     results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
   }
 
-  bool finish(bool whole) {
+  void finish(bool whole) {
+    results_.interrupted = !whole;
     if (!whole)
       results_.notes.push_back("Interrupted: " + std::to_string(results_.runs.size()) + " of " +
                                std::to_string(plan_.size()) + " runs were finished.");
-    mark_equal();
+    note_equal_cost(settings_, results_);
     write_results_json(folder_, results_);
     write_results_csv(folder_, results_);
-    write_compare_page(folder_, results_);
-    return whole;
-  }
-
-  // --equal: for every other method, the run nearest to the best run of the first one.
-  void mark_equal() {
-    if (settings_.equal.empty() || results_.runs.empty()) return;
-    const auto cost = [&](const CompareRun& r) {
-      if (settings_.equal == "time") return r.seconds;
-      return settings_.equal == "rays" ? r.rays : r.error.relative_l2;
-    };
-    const CompareRun* anchor = nullptr;
-    for (const auto& r : results_.runs)
-      if (r.method == settings_.methods.front() &&
-          (!anchor || r.error.relative_l2 < anchor->error.relative_l2))
-        anchor = &r;
-    if (!anchor) return;
-    results_.notes.push_back("At equal " + settings_.equal + " to " + anchor->label + ":");
-    for (const auto& method : settings_.methods) {
-      const CompareRun* nearest = nullptr;
-      for (const auto& r : results_.runs)
-        if (r.method == method && (!nearest || std::abs(std::log(cost(r) / cost(*anchor))) <
-                                                   std::abs(std::log(cost(*nearest) / cost(*anchor)))))
-          nearest = &r;
-      if (nearest)
-        results_.notes.push_back(nearest->label + ": " + show_seconds(nearest->seconds) + ", " +
-                                 show_count(nearest->rays) + " rays, relative L2 " +
-                                 show_percent(nearest->error.relative_l2));
-    }
+    write_comparison_page(folder_, results_);
   }
 
   const CompareSettings& settings_;
@@ -397,25 +297,24 @@ class Comparison {
   std::vector<scenedesc::Warning> warnings_;
   SharedWorld world_;
   View view_;
+  StudyReference reference_;
   SharedPrepared prepared_;
   double columns_per_second_ = 0;
-  image::Image reference_;
-  std::unique_ptr<SampledTruth> truth_;  // instead of reference_
-  bool written_ = false;                 // something is in the folder
-  CompareResults results_;
+  bool written_ = false;  // something is in the folder
+  Comparison results_;
 };
 
 }  // namespace
 
-bool compare(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
-             const Sinks& sinks) {
+Comparison compare(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
+                   const Sinks& sinks) {
   if (settings.base.traced.compensate > 0)
     throw InputError("a comparison cannot compensate for clamping", "leave out 'compensate'");
-  bool whole = false;
+  Comparison result;
   within_memory(kSmallerPicture, [&] {
-    with_threads(settings.base.threads, [&] { whole = Comparison(scene, settings, folder, sinks).run(); });
+    with_threads(settings.base.threads, [&] { result = Study(scene, settings, folder, sinks).run(); });
   });
-  return whole;
+  return result;
 }
 
 }  // namespace lumirank::study

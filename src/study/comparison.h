@@ -16,7 +16,7 @@ struct StudiedScene {
 };
 
 // As lumirank::compare().
-bool compare(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
-             const Sinks& sinks);
+Comparison compare(const StudiedScene& scene, const CompareSettings& settings, const std::string& folder,
+                   const Sinks& sinks);
 
 }  // namespace lumirank::study

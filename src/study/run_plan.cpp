@@ -8,38 +8,17 @@
 namespace lumirank::study {
 namespace {
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  while (true) {
-    const std::size_t end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-    if (end == std::string::npos) return parts;
-    begin = end + 1;
-  }
+// As a person wrote it, for messages.
+std::string name_of(const ComparisonSweep& sweep) {
+  std::string name = sweep.method.empty() ? "" : sweep.method + ".";
+  for (std::size_t k = 0; k < sweep.keys.size(); ++k) name += (k > 0 ? ":" : "") + sweep.keys[k];
+  return name;
 }
 
-// "METHOD.KEY1:KEY2" → METHOD and its keys; "lights" and "spp" belong to every method.
-struct SweepKey {
-  std::string method;
-  std::vector<std::string> keys;
-};
-SweepKey parse_key(const std::string& text) {
-  if (text == "lights" || text == "spp") return {"", {text}};
-  const std::size_t dot = text.find('.');
-  if (dot == std::string::npos)
-    throw InputError("'" + text + "' cannot be swept", "write METHOD.KEY, lights or spp");
-  return {text.substr(0, dot), split(text.substr(dot + 1), ':')};
-}
-
-void apply(PlannedRun& run, const SweepKey& key, const std::string& value) {
-  const auto values = split(value, ':');
-  if (values.size() != key.keys.size())
-    throw InputError("the sweep value '" + value + "' has " + std::to_string(values.size()) + " parts for " +
-                     std::to_string(key.keys.size()) + " parameters");
+void apply(PlannedRun& run, const ComparisonSweep& sweep, const std::vector<std::string>& values) {
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const std::string& name = key.keys[k];
-    if (key.method.empty()) {
+    const std::string& name = sweep.keys[k];
+    if (sweep.method.empty()) {
       RenderSettings checked;
       set_field(checked, name, values[k]);
       if (name == "lights")
@@ -51,6 +30,20 @@ void apply(PlannedRun& run, const SweepKey& key, const std::string& value) {
     }
     run.label += " " + name + "=" + values[k];
   }
+}
+
+void require_sound(const ComparisonSweep& sweep, const CompareSettings& settings) {
+  const std::string name = name_of(sweep);
+  if (sweep.method.empty() && name != "lights" && name != "spp")
+    throw InputError("'" + name + "' cannot be swept", "write METHOD.KEY, lights or spp");
+  if (!sweep.method.empty() && std::ranges::find(settings.methods, sweep.method) == settings.methods.end())
+    throw InputError("the sweep of '" + name + "' belongs to a method that is not compared",
+                     "add it to --methods");
+  if (sweep.values.empty()) throw InputError("the sweep of '" + name + "' has no values");
+  for (const std::vector<std::string>& values : sweep.values)
+    if (values.size() != sweep.keys.size())
+      throw InputError("a value of the sweep of '" + name + "' has " + std::to_string(values.size()) +
+                       " parts for " + std::to_string(sweep.keys.size()) + " parameters");
 }
 
 bool has_parameter(const methods::MethodInfo& info, const std::string& key) {
@@ -78,15 +71,7 @@ void require_known_settings(const CompareSettings& settings) {
 
 std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
   if (settings.methods.empty()) throw InputError("there is no method to compare", "give --methods a,b,c");
-  for (const auto& sweep : settings.sweeps) {
-    const SweepKey key = parse_key(sweep.key);
-    if (!key.method.empty() &&
-        std::find(settings.methods.begin(), settings.methods.end(), key.method) == settings.methods.end())
-      throw InputError("the sweep of '" + sweep.key + "' belongs to a method that is not compared",
-                       "add it to --methods");
-    if (sweep.values.empty()) throw InputError("the sweep of '" + sweep.key + "' has no values");
-  }
-
+  for (const ComparisonSweep& sweep : settings.sweeps) require_sound(sweep, settings);
   for (const double time : settings.times)
     if (!(time > 0 && time <= 1e7))  // also what is not a number
       throw InputError("a time budget of --times is not positive", "give seconds, --times 1,2,4");
@@ -107,13 +92,12 @@ std::vector<PlannedRun> plan_runs(const CompareSettings& settings) {
     // other.
     std::vector<PlannedRun> points;
     std::vector<std::size_t> curves;  // first points
-    for (const auto& sweep : settings.sweeps) {
-      const SweepKey key = parse_key(sweep.key);
-      if (!key.method.empty() && key.method != name) continue;
+    for (const ComparisonSweep& sweep : settings.sweeps) {
+      if (!sweep.method.empty() && sweep.method != name) continue;
       curves.push_back(points.size());
-      for (const std::string& value : sweep.values) {
+      for (const std::vector<std::string>& values : sweep.values) {
         PlannedRun run = base;
-        apply(run, key, value);
+        apply(run, sweep, values);
         points.push_back(run);
       }
     }

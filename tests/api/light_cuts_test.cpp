@@ -7,7 +7,7 @@
 #include "lumirank/lumirank.h"
 #include "methods/common/column_pass.h"
 #include "methods/common/row_group_pass.h"
-#include "methods/statistics.h"
+#include "methods/unbiasedness.h"
 #include "pipeline/prepared.h"
 
 namespace lumirank {

@@ -275,13 +275,13 @@ TEST(OwnUnitsReported, DepthPositionBoundsAndPowersAreInTheFilesUnits) {
     const double z = place.scale * -1 + place.shift[2];
     EXPECT_NEAR(picture.planes[2].rgb[2] / z, 1, 4 * 0x1p-24);
 
-    const auto info = nlohmann::json::parse(scene.info_json());
+    const SceneInfo info = scene.info();
     for (std::size_t k = 0; k < 3; ++k) {
       const double min_corner = place.scale * -1 + place.shift[k];
-      EXPECT_NEAR(info["bounds"][0][k].get<double>() / min_corner, 1, 4 * 0x1p-24);
+      EXPECT_NEAR(info.bounds[0][k] / min_corner, 1, 4 * 0x1p-24);
     }
     const double power = 2 * M_PI * 4 * place.scale * place.scale;
-    EXPECT_NEAR(info["emitters"][0]["power"][0].get<double>() / power, 1, 1e-5);
+    EXPECT_NEAR(info.emitters[0].power[0] / power, 1, 1e-5);
   }
 }
 

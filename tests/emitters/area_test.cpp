@@ -4,13 +4,13 @@
 
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitters/statistics.h"
+#include "support/statistics.h"
 
 namespace lumirank::emitters {
 namespace {
 
 using test::expect_mean;
-using test::Mean;
+using test::RunningMean;
 
 AreaEmitter::Triangle triangle(Vec3f a, Vec3f b, Vec3f c, Rgb radiance) {
   AreaEmitter::Triangle t;
@@ -57,7 +57,7 @@ TEST(Area, PowerIsPiTimesAreaTimesRadiance) {
 TEST(Area, EmissionWeightsAverageToThePowerAndLeaveTheBrightSide) {
   const Emitter e{"", 0, uneven()};
   const Rgb expected = power(e, 1);
-  Mean mean[3];
+  RunningMean mean[3];
   for (std::uint64_t i = 0; i < 40000; ++i) {
     Rng rng(1, Stage::test, i);
     const float u1 = rng.next_float();
@@ -73,7 +73,7 @@ TEST(Area, EmissionWeightsAverageToThePowerAndLeaveTheBrightSide) {
 TEST(Area, EmittedDirectionsAreDistributedAsTheCosine) {
   // The mean of cosθ under the density cosθ/π is 2/3.
   const Emitter e{"", 0, disc(1, 0, Rgb(1))};
-  Mean cosine;
+  RunningMean cosine;
   for (std::uint64_t i = 0; i < 40000; ++i) {
     Rng rng(2, Stage::test, i);
     const float u1 = rng.next_float();
@@ -84,8 +84,8 @@ TEST(Area, EmittedDirectionsAreDistributedAsTheCosine) {
 }
 
 // Irradiance at the origin of a surface facing +z.
-Mean irradiance(const Emitter& e, std::uint64_t seed, int n = 40000) {
-  Mean mean;
+RunningMean irradiance(const Emitter& e, std::uint64_t seed, int n = 40000) {
+  RunningMean mean;
   for (int i = 0; i < n; ++i) {
     Rng rng(seed, Stage::test, static_cast<std::uint64_t>(i));
     const float u1 = rng.next_float();

@@ -8,12 +8,10 @@
 #include "base/frame.h"
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitters/statistics.h"
+#include "support/statistics.h"
 
 namespace lumirank::emitters {
 namespace {
-
-using test::chi_square_limit;
 
 Vec3f random_direction(Rng& rng) { return warp_sphere(rng.next_2d()); }
 Vec3f random_point(Rng& rng, float size) {

@@ -4,13 +4,13 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "emitters/emitter.h"
-#include "emitters/statistics.h"
+#include "support/statistics.h"
 
 namespace lumirank::emitters {
 namespace {
 
 using test::expect_mean;
-using test::Mean;
+using test::RunningMean;
 
 SpotEmitter spot(float cutoff_degrees, float beam_degrees) {
   SpotEmitter s;
@@ -64,7 +64,7 @@ TEST(Spot, PowerByQuadratureAndByEmission) {
              (3.14159265358979 / n);
     }
     EXPECT_NEAR(power(e, 1).g / sum, 1, 2e-4);  // a step of 2·10⁻⁴ of the range may straddle the edge
-    Mean mean;
+    RunningMean mean;
     for (std::uint64_t i = 0; i < 40000; ++i) {
       Rng rng(6, Stage::test, i);
       mean.add(sample_emission(e, Bounds3f{}, 0, {0, 0}, rng.next_2d()).weight.g);
@@ -105,7 +105,7 @@ TEST(Directional, ADiscGivesItsIrradianceToAFacingSurface) {
   const float alpha = 0.3f;  // a huge sun, so that the cosine matters
   const Vec3f direction = normalize(Vec3f{1, -3, 2});
   const Emitter e{"", 0, DirectionalEmitter{direction, Rgb(2), std::cos(alpha)}};
-  Mean facing, power_mean;
+  RunningMean facing, power_mean;
   for (std::uint64_t i = 0; i < 40000; ++i) {
     Rng rng(8, Stage::test, i);
     const DirectSample s = sample_direct(e, {0, 0, 0}, 0, rng.next_2d());

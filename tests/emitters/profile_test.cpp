@@ -8,14 +8,14 @@
 #include "base/random.h"
 #include "base/transform.h"
 #include "emitters/emitter.h"
-#include "emitters/statistics.h"
+#include "support/statistics.h"
 
 namespace lumirank::emitters {
 namespace {
 
-using test::chi_square_limit;
+using test::chi_square_tail;
 using test::expect_mean;
-using test::Mean;
+using test::RunningMean;
 
 Vec3f direction(double theta, double phi) {
   return {static_cast<float>(std::sin(theta) * std::cos(phi)),
@@ -130,7 +130,7 @@ TEST(AngularProfile, SamplesHaveTheDensityThatPdfStates) {
         const double off = std::max(0.0, std::abs(counts[k] - expected[k]) - slack);
         chi += off * off / expected[k], ++bins;
       }
-      EXPECT_LT(chi, chi_square_limit(bins)) << which;
+      EXPECT_GT(chi_square_tail(chi, bins), 1e-5) << which;
       EXPECT_NEAR(rest, rest_expected, 5 * std::sqrt(rest_expected + 1) + 0.05 * rest_expected) << which;
     }
     ++which;
@@ -158,7 +158,7 @@ ProfileEmitter emitter(AngularProfile profile) {
 TEST(ProfileEmitter, PowerIsTheMeanWeightOfItsParticles) {
   for (AngularProfile& p : profiles()) {
     const Emitter e{"", 0, emitter(std::move(p))};
-    Mean mean;
+    RunningMean mean;
     float max_weight = 0;
     for (std::uint64_t i = 0; i < 40000; ++i) {
       Rng rng(9, Stage::test, i);
@@ -179,7 +179,7 @@ TEST(ProfileEmitter, ParticlesFollowTheIntensity) {
   const Emitter e{"", 0, p};
   for (const Vec3f axis : {Vec3f{0, 0, 1}, normalize(Vec3f{1, -1, 0.2f}), normalize(Vec3f{-1, -1, -1})}) {
     const float edge = std::cos(0.5f);
-    Mean particles, quadrature;
+    RunningMean particles, quadrature;
     for (std::uint64_t i = 0; i < 60000; ++i) {
       Rng rng(10, Stage::test, i);
       const Emission s = sample_emission(e, Bounds3f{}, 0, {0, 0}, rng.next_2d());
@@ -189,7 +189,8 @@ TEST(ProfileEmitter, ParticlesFollowTheIntensity) {
       const Vec3f d{r * std::cos(phi), r * std::sin(phi), z};
       quadrature.add(dot(d, axis) > edge ? 4 * kPiD * p.intensity_towards(d).r : 0);
     }
-    EXPECT_NEAR(particles.mean(), quadrature.mean(), 4.9 * std::hypot(particles.error(), quadrature.error()));
+    EXPECT_NEAR(particles.mean(), quadrature.mean(),
+                4.9 * std::hypot(particles.standard_error(), quadrature.standard_error()));
   }
 }
 

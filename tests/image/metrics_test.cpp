@@ -18,7 +18,7 @@ TEST(Metrics, DerivedByHand) {
   Image reference(2, 1), image(2, 1);
   reference.pixels = {{1, 1, 1}, {3, 3, 3}};
   image.pixels = {{2, 1, 1}, {3, 1, 3}};
-  const ErrorMetrics m = compare(image, reference);
+  const PictureError m = compare(image, reference);
   EXPECT_DOUBLE_EQ(m.relative_l1, 3.0 / 12);
   EXPECT_DOUBLE_EQ(m.relative_l2, std::sqrt(5.0 / 30));
   EXPECT_DOUBLE_EQ(m.rmse, std::sqrt(5.0 / 6));
@@ -28,7 +28,7 @@ TEST(Metrics, DerivedByHand) {
 
 TEST(Metrics, SameImageHasNoError) {
   const Image image(100, 100, Rgb(0.1f, 3, 20));
-  const ErrorMetrics m = compare(image, image);
+  const PictureError m = compare(image, image);
   EXPECT_EQ(m.relative_l1, 0);
   EXPECT_EQ(m.relative_l2, 0);
   EXPECT_EQ(m.rmse, 0);
@@ -63,7 +63,7 @@ TEST(Metrics, SameBitsForAnyNumberOfThreads) {
     image.pixels[i] = Rgb(static_cast<float>(i % 97) / 7);
     reference.pixels[i] = Rgb(static_cast<float>(i % 89) / 3, 1, 2);
   }
-  ErrorMetrics one, four;
+  PictureError one, four;
   with_threads(1, [&] { one = compare(image, reference); });
   with_threads(4, [&] { four = compare(image, reference); });
   EXPECT_EQ(one.relative_l1, four.relative_l1);

@@ -15,6 +15,8 @@ run scene_in_memory "$work/memory.exr"
 run methods_on_one_matrix
 run own_estimate "$work/own.exr"
 run relight "$work/relit.exr"
+run compare_methods "$work/comparison"
+test -s "$work/comparison/index.html"
 for picture in box.png memory.exr own.exr relit.exr; do test -s "$work/$picture"; done
 # pkg-config and a compiler alone.
 export PKG_CONFIG_PATH=$(dirname "$(find "$work/installed" -name lumirank.pc)")

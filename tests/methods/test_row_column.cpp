@@ -8,7 +8,7 @@
 #include "methods/common/column_clusters.h"
 #include "methods/common/column_pass.h"
 #include "methods/parameters.h"
-#include "methods/statistics.h"
+#include "methods/unbiasedness.h"
 
 namespace lumirank::methods {
 namespace {

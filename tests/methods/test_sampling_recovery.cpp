@@ -7,7 +7,7 @@
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
 #include "methods/sampling_recovery/slice_recovery.h"
-#include "methods/statistics.h"
+#include "methods/unbiasedness.h"
 
 namespace lumirank::methods {
 namespace {

@@ -5,7 +5,7 @@
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
 #include "methods/method.h"
-#include "methods/statistics.h"
+#include "methods/unbiasedness.h"
 
 namespace lumirank::methods {
 namespace {

@@ -21,8 +21,8 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Two methods, four settings each, three seeds; names that hurt where text is not escaped.
-CompareResults synthetic() {
-  CompareResults results;
+Comparison synthetic() {
+  Comparison results;
   results.scene = "room <b>\"&'</b> </script>";
   results.reference_kind = "path tracing, 1024 paths per pixel";
   results.reference_error = 0.004;
@@ -34,7 +34,7 @@ CompareResults synthetic() {
   for (const char* method : {"power-sampling", "row-column-sampling"})
     for (int k = 0; k < 4; ++k)
       for (int seed = 0; seed < 3; ++seed) {
-        CompareRun run;
+        ComparisonRun run;
         run.method = method;
         run.series = std::string(method) + (method[0] == 'r' ? " 1:3" : "");
         const int columns = 100 << k;
@@ -103,14 +103,14 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 
 class ComparePage : public image::TemporaryFolder {
  protected:
-  std::string page_of(const CompareResults& results) {
-    write_compare_page(path(""), results);
+  std::string page_of(const Comparison& results) {
+    write_comparison_page(path(""), results);
     return read_bytes(path("index.html"));
   }
 };
 
 TEST_F(ComparePage, JsonReadsBackAsWritten) {
-  CompareResults results = synthetic();
+  Comparison results = synthetic();
   results.runs[1].error.relmse = std::nan("");
   results.scene += "\xff";  // not UTF-8
   write_results_json(path(""), results);
@@ -135,7 +135,7 @@ TEST_F(ComparePage, JsonReadsBackAsWritten) {
 }
 
 TEST_F(ComparePage, CsvReadsBackAsWritten) {
-  CompareResults results = synthetic();
+  Comparison results = synthetic();
   results.runs[0].error.bias = kInf;
   write_results_csv(path(""), results);
   const auto rows = parse_csv(read_bytes(path("results.csv")));
@@ -205,13 +205,13 @@ TEST_F(ComparePage, ShowsEverySettingOnceAndEveryImage) {
 // = 66.4 on.
 TEST_F(ComparePage, SingularValuesStateTheRankForOnePercent) {
   EXPECT_NE(page_of(synthetic()).find("The first 67 hold"), std::string::npos);
-  CompareResults results = synthetic();
+  Comparison results = synthetic();
   results.singular_values.clear();
   EXPECT_EQ(page_of(results).find("Singular values"), std::string::npos);
 }
 
 TEST_F(ComparePage, WarnsOfAWeakReference) {
-  CompareResults results = synthetic();
+  Comparison results = synthetic();
   // The lowest mean error is 0.04 / √8 = 0.01414; a fifth of it is 0.00283.
   results.reference_error = 0.0028;
   EXPECT_EQ(page_of(results).find("class=\"warn\""), std::string::npos);
@@ -221,7 +221,7 @@ TEST_F(ComparePage, WarnsOfAWeakReference) {
 
 TEST_F(ComparePage, EmptyAndBrokenResultsStillMakeAPage) {
   EXPECT_NE(page_of({}).find("<h1>"), std::string::npos);
-  CompareResults results = synthetic();
+  Comparison results = synthetic();
   results.runs.resize(1);
   results.runs[0].error = {0, kInf, std::nan(""), 0, 0};
   results.runs[0].rays = 0;
@@ -234,7 +234,7 @@ TEST_F(ComparePage, EmptyAndBrokenResultsStillMakeAPage) {
 }
 
 TEST_F(ComparePage, UnwritableFolder) {
-  EXPECT_THROW(write_compare_page(path("none"), synthetic()), InputError);
+  EXPECT_THROW(write_comparison_page(path("none"), synthetic()), InputError);
   EXPECT_THROW(write_results_json(path("none"), synthetic()), InputError);
   EXPECT_THROW(write_results_csv(path("none"), synthetic()), InputError);
 }

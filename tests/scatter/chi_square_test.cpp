@@ -7,10 +7,12 @@
 
 #include "base/random.h"
 #include "scatter/bsdf_list.h"
-#include "scatter/statistics.h"
+#include "support/statistics.h"
 
 namespace lumirank::scatter {
 namespace {
+
+using test::ChiSquareTest;
 
 constexpr int kSamples = 100000;
 constexpr int kRings = 24, kSectors = 24, kDepth = 6;
@@ -129,29 +131,17 @@ TEST_P(EveryBsdf, SamplesFollowThePdf) {
     EXPECT_LE(total, 1 + integrate.error + 1e-4) << c.name << " arrival " << a;
     expected.back() = kSamples * std::max(0.0, 1 - total);
 
-    // Cells with few expected samples are pooled (at least 10 each).
-    double chi2 = 0, pooled_expected = 0, pooled_seen = 0;
-    int used = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (expected[i] < 10) {
-        pooled_expected += expected[i], pooled_seen += seen[i];
-        continue;
-      }
-      chi2 += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
-      ++used;
-    }
-    if (pooled_expected >= 10) {
-      chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
-      ++used;
-    } else {
+    ChiSquareTest chi2;
+    for (std::size_t i = 0; i < seen.size(); ++i) chi2.add(seen[i], expected[i]);
+    if (!chi2.pool_counts()) {
       // Too few to judge by chi-square; but where next to nothing is expected, next to nothing may be seen (a
       // Poisson number of mean 10 exceeds 40 with probability below 1e-12).
-      EXPECT_LE(pooled_seen, 40) << c.name << " arrival " << a;
+      EXPECT_LE(chi2.pooled_seen(), 40) << c.name << " arrival " << a;
     }
-    ASSERT_GE(used, 2) << c.name << ": all directions fall into one cell";
-    EXPECT_GT(chi_square_tail(chi2, used - 1), significance)
-        << c.name << " arrival " << a << ": chi2 " << chi2 << " with " << used - 1 << " degrees, total pdf "
-        << total << " seen nothing " << seen.back();
+    ASSERT_GE(chi2.bins(), 2) << c.name << ": all directions fall into one cell";
+    EXPECT_GT(chi2.tail(), significance)
+        << c.name << " arrival " << a << ": chi2 " << chi2.statistic() << " with " << chi2.bins() - 1
+        << " degrees, total pdf " << total << " seen nothing " << seen.back();
   }
 }
 
@@ -163,13 +153,6 @@ std::string name_of(const testing::TestParamInfo<int>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(List, EveryBsdf, testing::Range(0, static_cast<int>(bsdf_list().size())), name_of);
-
-TEST(Statistics, ChiSquareTailOfKnownQuantiles) {
-  // Two degrees: exp(-x/2). One degree: the two-sided normal tail, 5 % at 1.959964².
-  EXPECT_NEAR(chi_square_tail(3.0, 2), std::exp(-1.5), 1e-12);
-  EXPECT_NEAR(chi_square_tail(1.959963985 * 1.959963985, 1), 0.05, 1e-9);
-  EXPECT_NEAR(chi_square_tail(10, 2), std::exp(-5.0), 1e-12);
-}
 
 }  // namespace
 }  // namespace lumirank::scatter

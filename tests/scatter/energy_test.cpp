@@ -1,27 +1,18 @@
 // No BSDF makes energy; lossless ones lose none; albedo() says how much comes back.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <array>
 
 #include "base/random.h"
 #include "scatter/bsdf_list.h"
+#include "support/statistics.h"
 
 namespace lumirank::scatter {
 namespace {
 
-class EveryBsdfEnergy : public testing::TestWithParam<int> {};
+using test::RunningMean;
 
-struct Mean {
-  double sum[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
-  int n = 0;
-  void add(Rgb c) {
-    for (int k = 0; k < 3; ++k) sum[k] += c[k], squares[k] += double(c[k]) * c[k];
-    ++n;
-  }
-  double mean(int k) const { return sum[k] / n; }
-  // Standard deviation of the mean.
-  double sigma(int k) const { return std::sqrt(std::max(0.0, squares[k] / n - mean(k) * mean(k)) / (n - 1)); }
-};
+class EveryBsdfEnergy : public testing::TestWithParam<int> {};
 
 // 3σ, one-sided, is passed by chance in 99.87 %; 4.5σ keeps the whole list of some 600 comparisons under 1 %.
 constexpr double kSigmas = 4.5;
@@ -35,15 +26,17 @@ TEST_P(EveryBsdfEnergy, AlbedoIsAtMostOne) {
     const Vec3f wo = at.shading.to_world(at_angle(cos_theta, 0.7f));
     const Closure closure = c.set.closure(c.material, at, wo);
     Rng rng(11, Stage::test, static_cast<std::uint64_t>(GetParam()));
-    Mean returned;
+    std::array<RunningMean, 3> returned;
     for (int i = 0; i < 40000; ++i) {
       const float u1 = rng.next_float();
       const auto s = sample(closure, wo, u1, rng.next_2d(), Lobes::all, true);
-      returned.add(s ? s->weight : Rgb(0));
+      const Rgb weight = s ? s->weight : Rgb(0);
+      for (int k = 0; k < 3; ++k) returned[static_cast<std::size_t>(k)].add(weight[k]);
     }
     const Rgb stated = albedo(closure, wo);
     for (int k = 0; k < 3; ++k) {
-      const double mean = returned.mean(k), noise = kSigmas * returned.sigma(k) + 1e-5;
+      const RunningMean& energy = returned[static_cast<std::size_t>(k)];
+      const double mean = energy.mean(), noise = kSigmas * energy.standard_error() + 1e-5;
       if (c.energy_exempt.empty()) {
         EXPECT_LE(mean, 1 + noise) << c.name << " at cosine " << cos_theta;
       }

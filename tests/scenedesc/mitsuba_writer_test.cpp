@@ -14,11 +14,10 @@
 namespace lumirank::scenedesc {
 namespace {
 
-// The listing without the head, made-up names and warnings.
+// The listing without the head and made-up names.
 std::string listing(const SceneDesc& scene) {
   std::string text = describe(scene);
   text.erase(0, text.find(", depth"));
-  text.erase(text.rfind(" warnings\n"));
   text.erase(text.rfind('\n'));
   return std::regex_replace(text, std::regex("\n  ([0-9]+) \"[^\"]*\":"), "\n  $1:");
 }

@@ -19,11 +19,11 @@ TEST(ComparePlan, EverySweepIsACurveOfItsOwn) {
   settings.methods = {"row-column-sampling", "brute-force"};
   settings.times = {0.5, 1};
   EXPECT_EQ(curves(settings), (std::set<std::string>{"row-column-sampling", "brute-force"}));
-  settings.sweeps = {{"row-column-sampling.rows:columns", {"50:100", "100:200"}}};
+  settings.sweeps = {{"row-column-sampling", {"rows", "columns"}, {{"50", "100"}, {"100", "200"}}}};
   EXPECT_EQ(curves(settings), (std::set<std::string>{"row-column-sampling (rows=50 columns=100 …)",
                                                      "row-column-sampling (0.5 s …)", "brute-force"}));
   settings.times.clear();
-  settings.sweeps.push_back({"row-column-sampling.columns", {"100"}});
+  settings.sweeps.push_back({"row-column-sampling", {"columns"}, {{"100"}}});
   EXPECT_EQ(curves(settings), (std::set<std::string>{"row-column-sampling (rows=50 columns=100 …)",
                                                      "row-column-sampling (columns=100 …)", "brute-force"}));
 }

@@ -101,6 +101,24 @@ TEST(StableIds, OtherIdsHaveOtherNumbers) {
   EXPECT_NE(before, after);
 }
 
+// Spheres, and the share of each that is behind walls, are found by rays that the light's id draws.
+TEST(StableIds, SpheresAreTheSameInAnotherOrder) {
+  const world::World world = build_world(room_with_blocks());
+  RandomEnds ends = random_ends(world, 1, 300, 5);
+  std::vector<std::uint32_t> order(300);
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<std::uint32_t>((k * 77 + 13) % 300);
+  VirtualLights other = picked(ends.lights, order);
+  make_spherical(ends.lights, world, {2});
+  make_spherical(other, world, {2});
+  std::size_t partly = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    EXPECT_EQ(other.radius[k], ends.lights.radius[order[k]]);
+    EXPECT_EQ(other.hidden[k], ends.lights.hidden[order[k]]);
+    partly += other.hidden[k] > 0 && other.hidden[k] < 1;
+  }
+  EXPECT_GT(partly, 20u);
+}
+
 test::SceneMaker mixed_scene() {
   test::SceneMaker scene;
   scene.rectangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0}, scene.diffuse(Rgb(0.7f)));

@@ -6,8 +6,8 @@
 #include "base/random.h"
 #include "emitters/daylight.h"
 #include "emitters/environment.h"
-#include "emitters/statistics.h"
 #include "image/image_io.h"
+#include "support/statistics.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::world {
@@ -16,8 +16,9 @@ namespace {
 using namespace test;
 
 // Unoccluded irradiance at a point.
-Mean irradiance(const World& w, int emitter, Vec3f point, Vec3f normal, std::uint64_t seed, int n = 40000) {
-  Mean mean;
+RunningMean irradiance(const World& w, int emitter, Vec3f point, Vec3f normal, std::uint64_t seed,
+                       int n = 40000) {
+  RunningMean mean;
   for (int i = 0; i < n; ++i) {
     Rng rng(seed, Stage::test, static_cast<std::uint64_t>(i));
     const float u1 = rng.next_float();
@@ -148,7 +149,7 @@ TEST(AreaLight, TexturedRadianceIsExactInEverySample) {
   const World w = build(desc);
   std::remove(path.c_str());
   // The mean of 1 … 16 is 8.5, the area 4.
-  Mean weight;
+  RunningMean weight;
   for (std::uint64_t i = 0; i < 40000; ++i) {
     Rng rng(3, Stage::test, i);
     const float u1 = rng.next_float();
@@ -231,7 +232,7 @@ TEST(Sun, ShinesFromItsDirection) {
   EXPECT_EQ(w.sun_disc(normalize(towards + Vec3f{0.02f, 0, 0})), Rgb(0));
   EXPECT_EQ(w.sun_disc(-towards), Rgb(0));
   // The mean over the disc of the facing irradiance.
-  Mean mean;
+  RunningMean mean;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     Rng rng(4, Stage::test, i);
     const auto s = w.sample_direct(0, {0, 0, 0}, 0, rng.next_2d());

@@ -77,7 +77,8 @@ void GatherTree::build(std::span<const Index> rows) {
   // A tournament from the leaves up.
   for (Node node = static_cast<Node>(nodes_.size()); node-- > 0;) {
     if (is_leaf(node)) continue;
-    const double u = unit_double(hash_ids(seed_, Stage::representatives, rows.front(), node));
+    const double u =
+        unit_double(hash_ids(seed_, Stage::representatives, matrix::id_of(features_.id, rows.front()), node));
     const Node l = left(node);
     const bool first = u * static_cast<double>(weight(node)) < static_cast<double>(weight(l));
     nodes_[node].representative = nodes_[first ? l : l + 1].representative;

@@ -247,15 +247,6 @@ std::string describe(const SceneDesc& scene) {
             (s.flip_normals ? ", normals flipped" : "") + (s.in_group ? ", in a group" : "") +
             (s.emitter ? ", radiance " + show(s.emitter->radiance) : "") + show(s.to_world) + "\n";
   }
-  // Notes that no picture shows are not warnings.
-  const auto harmless = [](const Warning& w) { return w.harmless; };
-  const auto notes = std::count_if(scene.warnings.begin(), scene.warnings.end(), harmless);
-  text += std::to_string(scene.warnings.size() - static_cast<std::size_t>(notes)) + " warnings\n";
-  for (const Warning& w : scene.warnings) {
-    if (w.harmless) continue;
-    text += "  " + to_string(w.where) + ": " + w.what +
-            (w.used_instead.empty() ? ": left out" : ": instead " + w.used_instead) + "\n";
-  }
   return text;
 }
 

@@ -7,7 +7,7 @@
 
 namespace lumirank::scenedesc {
 
-// Human-readable listing, for `lumirank info` and debugging.
+// Human-readable listing of what there is, for `lumirank info` and debugging; without the warnings.
 std::string describe(const SceneDesc& scene);
 
 }  // namespace lumirank::scenedesc

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/warp.h"
+#include "matrix/lighting_matrix.h"
 
 namespace lumirank::transport {
 namespace {
@@ -142,7 +143,7 @@ ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice&
   parallel_for(receivers.size(), kReceiversAtOnce, [&](std::size_t begin, std::size_t end) {
     ReceiverPilot& piece = pieces[begin / kReceiversAtOnce];
     for (std::size_t i = begin; i < end; ++i) {
-      Rng rng(seed, Stage::pilot, kRandomId, i);
+      Rng rng(seed, Stage::pilot, kRandomId, matrix::id_of(receivers.id, i));
       const float weight = max_component(receivers.weight[i]);
       const Lit here{receivers.position[i], receivers.normal[i], receivers.ng[i]};
       piece.places.push_back({here.position, here.normal, 0, true});

@@ -7,6 +7,7 @@
 #include "base/neighbor_distance.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "matrix/lighting_matrix.h"
 
 namespace lumirank::transport {
 namespace {
@@ -69,7 +70,7 @@ float make_spherical(VirtualLights& lights, const world::World& world, const Sph
       lights.radius[j] =
           found[k].count > 0 ? sphere_radius(found[k].distance_squared, scale, max_radius) : max_radius;
       if (lights.ng[j] == Vec3f{}) continue;  // a fiber has no tangent plane
-      Rng rng(0, Stage::spheres, j);
+      Rng rng(0, Stage::spheres, matrix::id_of(lights.id, j));
       lights.hidden[j] = hidden_share(world, lights.position[j], lights.ng[j], lights.radius[j], rng);
     }
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -80,6 +81,7 @@ SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions&
                          std::span<Rgb> row_sum)
     : matrix_(matrix),
       settings_(with_slice_rows(settings, matrix, options, clock, row_seconds)),
+      ids_(matrix.column_features().id),
       seed_(options.seed),
       turn_seed_(options.seed),
       slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),
@@ -225,16 +227,16 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
     energy += static_cast<double>(norms[k]);
     for (std::size_t c = 0; c < 3; ++c) channels[c] += static_cast<double>(norms[k] * n.channel[c]);
   }
-  Rng rng(turn_seed_, Stage::representatives, slice, cluster);
-  const double target = rng.next_double() * s;
-  double running = 0;
+  // The first of exponential arrivals, each keyed by its light: the same one in whatever order the members
+  // are.
+  const std::uint64_t key = hash_ids(turn_seed_, Stage::representatives, slice);
+  double first = std::numeric_limits<double>::infinity();
   std::size_t chosen = members.size() - 1;
   for (std::size_t k = 0; k < members.size(); ++k) {
-    running += static_cast<double>(w.chance[k]);
-    if (running > target) {
-      chosen = k;
-      break;
-    }
+    if (!(w.chance[k] > 0)) continue;
+    const double u = unit_double(mix64(key ^ mix64(matrix::id_of(ids_, members[k]))));
+    const double arrival = -std::log1p(-u) / static_cast<double>(w.chance[k]);
+    if (arrival < first) first = arrival, chosen = k;
   }
   const auto factor = static_cast<float>(s / static_cast<double>(w.chance[chosen]));
   ScaledColumn column{members[chosen], Rgb(factor)};

@@ -89,7 +89,7 @@ class SliceLights {
     }
   };
   // The columns of a slice: at most `columns` of them, into workspace.chosen; all columns where there are no
-  // more. A function of (seed, slice) alone. One thread.
+  // more. A function of (seed, slice) alone, whatever the order of columns within a cluster. One thread.
   void choose(std::size_t slice, Workspace& workspace) const;
 
  private:
@@ -102,6 +102,7 @@ class SliceLights {
 
   const matrix::LightingMatrix& matrix_;
   SliceLightSettings settings_;
+  std::span<const std::uint64_t> ids_;  // of columns
   std::uint64_t seed_, turn_seed_;
   Slices slices_;
   ReducedMatrix reduced_;

@@ -1,0 +1,49 @@
+// What the runs of a comparison are measured against: made or read once, before the first of them.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "image/image.h"
+#include "lumirank/compare.h"
+#include "pipeline/prepared.h"
+#include "study/sampled_truth.h"
+
+namespace lumirank::study {
+
+// The picture that row sums give, with what was traced beside the columns.
+image::Image picture_of(const pipeline::View& view, const pipeline::Prepared& prepared,
+                        const ViewSettings& as, std::span<const Rgb> sums);
+
+class StudyReference {
+ public:
+  // Reads it, if it is a file. Throws InputError for one that does not fit the view, or more receivers than
+  // there are.
+  StudyReference(const CompareSettings& settings, const pipeline::View& view);
+
+  // Whether it is made of the columns that the runs then sample.
+  bool is_of_columns() const;
+  bool is_file() const { return wanted_.kind == ComparisonReference::Kind::file; }
+  // A picture of all pixels; otherwise errors are known at some receivers only.
+  bool is_picture() const { return wanted_.kind != ComparisonReference::Kind::receivers; }
+
+  // Makes what is not a file; fills the reference's part of `results`. Throws Cancelled.
+  void make(const pipeline::SharedWorld& world, const pipeline::SharedPrepared& prepared, const Sinks& sinks,
+            Comparison& results);
+  const image::Image& picture() const { return picture_; }
+  const SampledTruth* sampled() const { return sampled_.get(); }
+
+ private:
+  void read_file();
+  void trace(const world::World& world, const Sinks& sinks, Comparison& results);
+  void sum_columns(const pipeline::Prepared& prepared, const Sinks& sinks, Comparison& results);
+  void sum_at_receivers(const pipeline::Prepared& prepared, const Sinks& sinks, Comparison& results);
+
+  const CompareSettings& settings_;
+  const ComparisonReference& wanted_;
+  const pipeline::View& view_;
+  image::Image picture_;
+  std::unique_ptr<SampledTruth> sampled_;
+};
+
+}  // namespace lumirank::study
