@@ -203,7 +203,7 @@ def bars(title, x_label, y_label, heights, curves, width=600, height=340):
     """An SVG of bars, {name: [heights of 0, 1, 2 …]} side by side, over which lie curves {name: [(x, y)]} with an axis of their own on the right, from 0."""
     left, right, top, bottom = 62, 210, 34, 46
     columns = max(len(h) for h in heights.values())
-    most = max(max(h) for h in heights.values()) or 1
+    max_height = max(max(h) for h in heights.values()) or 1
     upper = max((y for c in curves.values() for _, y in c), default=1) * 1.05 or 1
     across, down = width - left - right, height - top - bottom
     slot = across / columns
@@ -211,7 +211,7 @@ def bars(title, x_label, y_label, heights, curves, width=600, height=340):
            f'<text x="{left}" y="18" class="t">{html.escape(title)}</text>']
     for k in range(5):
         y = height - bottom - down * k / 4
-        out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - right}" y2="{y:.1f}" class="g"/><text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{most * k / 4:.3g}</text>')
+        out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - right}" y2="{y:.1f}" class="g"/><text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{max_height * k / 4:.3g}</text>')
         if curves:
             out.append(f'<text x="{width - right + 5}" y="{y + 4:.1f}">{upper * k / 4:.2g}</text>')
     for k in range(0, columns, max(1, columns // 10)):
@@ -228,7 +228,7 @@ def bars(title, x_label, y_label, heights, curves, width=600, height=340):
     bar = 0.8 * slot / len(heights)
     for n, ((name, values), color) in enumerate(zip(heights.items(), ("#7aa6c8", "#c9b27c", "#9cc09c"))):
         for k, v in enumerate(values):
-            h = down * v / most
+            h = down * v / max_height
             out.append(f'<rect x="{left + k * slot + 0.1 * slot + n * bar:.1f}" y="{height - bottom - h:.1f}" width="{bar:.1f}" height="{h:.1f}" fill="{color}"/>')
         legend(name, color)
     for (name, curve), color in zip(curves.items(), ("#c8502a", "#8a6d1e", "#8a4fa3", "#3a8f4d")):

@@ -129,12 +129,12 @@ class Ellipsoid:
 
     def draw(self, rng):
         """A point evenly on the surface, and its normal."""
-        least = min(self.radii)
+        min_radius = min(self.radii)
         while True:
             d = on_sphere(rng)
             n = tuple(c / r for c, r in zip(d, self.radii))
             stretch = math.sqrt(dot(n, n))  # of area, but for a constant
-            if rng.random() * (1 / least) <= stretch:
+            if rng.random() * (1 / min_radius) <= stretch:
                 return add(self.center, self.world(tuple(c * r for c, r in zip(d, self.radii)))), unit(self.world(n))
 
     def area(self):

@@ -13,12 +13,12 @@ constexpr int kMaxAngles = 100000;
 constexpr float kMinStep = 1e-3f;  // degrees
 constexpr float kMetersPerFoot = 0.3048f;
 
-struct Line {
+struct TextLine {
   std::string_view text;
   std::size_t next;  // where the following line begins
 };
 
-Line line_at(std::string_view text, std::size_t begin) {
+TextLine line_at(std::string_view text, std::size_t begin) {
   const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
   std::size_t next = std::min(end + 1, text.size());
   if (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n') ++next;
@@ -135,7 +135,7 @@ IesData parse_ies(const std::string& text, const std::string& filename) {
   out.year = edition(line_at(rest, 0).text, filename, out);
   int number = 1;
   for (std::size_t at = 0; at < rest.size(); ++number) {
-    const Line line = line_at(rest, at);
+    const TextLine line = line_at(rest, at);
     at = line.next;
     const std::string_view stated = trimmed(line.text);
     if (upper(stated.substr(0, 5)) != "TILT=") continue;
