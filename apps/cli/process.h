@@ -1,4 +1,4 @@
-// What belongs to the process and not to a command: signals, standard streams, and the last resort.
+// The process around the commands: signals, standard streams, and the last resort.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// What the shared library shows of itself.
+// Visibility of the shared library's symbols.
 #pragma once
 
 #if defined(__GNUC__)

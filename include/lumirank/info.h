@@ -1,5 +1,5 @@
-// What there is: a scene's content, the methods with their parameters, the error of one picture against
-// another. Typed values, and the same as text or JSON with stable keys.
+// Listings: a scene's content, the methods with their parameters, the error of one picture against another.
+// Typed values, and the same as text or JSON with stable keys.
 #pragma once
 
 #include <array>

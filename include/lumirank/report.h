@@ -1,4 +1,4 @@
-// What a render or a reference says of itself: typed values, and the same as flat JSON with stable keys.
+// Reports of renders and references: typed values, and the same as flat JSON with stable keys.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What a render is asked for: plain values with their defaults. Each field's help, range and unit are listed
-// once, in render_fields(), from which the command line, JSON and the documentation are made.
+// Settings of a render: plain values with their defaults. Each field's help, range and unit are listed once,
+// in render_fields(), from which the command line, JSON and the documentation are made.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Where the library says what it is doing. Passed in by the host; the library itself never prints.
+// Sinks for messages, progress and the question whether to stop. Passed in by the host; the library itself
+// never prints.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// What a public matrix refers to. Inside this room only.
+// Implementation of the public matrix. Inside this room only.
 #pragma once
 
 #include "lumirank/matrix.h"

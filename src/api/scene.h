@@ -1,4 +1,4 @@
-// What a loaded scene holds. Inside this room only (and its tests).
+// Implementation of the public scene. Inside this room only (and its tests).
 #pragma once
 
 #include "lumirank/lumirank.h"

@@ -1,5 +1,5 @@
-// Where numbers should be counted from: 32 bits hold a place to 2⁻²⁴ of its distance from the origin, so what
-// lies far away from it, for its size, is stated relative to an origin of its own.
+// Origin that numbers should be counted from: 32 bits hold a place to 2⁻²⁴ of its distance from the origin,
+// so what lies far away from it, for its size, is stated relative to an origin of its own.
 #pragma once
 
 #include "base/vec.h"

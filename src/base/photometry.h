@@ -1,4 +1,4 @@
-// How radiometric numbers become photometric ones; see docs/conventions.md.
+// From radiometric numbers to photometric ones; see docs/conventions.md.
 #pragma once
 
 namespace lumirank {

@@ -1,4 +1,4 @@
-// What a light, or a group of lights, can send to a point at most: the numbers a light tree decides by.
+// Bound of what a light, or a group of lights, can send to a point: the numbers a light tree decides by.
 // A. Conty Estevez, C. Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018.
 #pragma once
 

@@ -1,4 +1,4 @@
-// How a light tree divides a group of lights in two. Inside this room only.
+// Division of a group of lights in two, for light trees. Inside this room only.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// How strongly a point light shines in each direction: a table over two angles (a luminaire's photometric
-// file, a goniometric picture).
+// Angular profile of a point light: a table over two angles (a luminaire's photometric file, a
+// goniometric picture).
 #pragma once
 
 #include <vector>

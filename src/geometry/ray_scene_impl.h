@@ -1,4 +1,4 @@
-// What stands behind RayScene: two Embree scenes over the same meshes, one of what can block and one of what
+// Implementation of RayScene: two Embree scenes over the same meshes, one of what can block and one of what
 // only attenuates, so that shadow rays never visit glass and no build option of Embree (ray masks) is needed.
 #pragma once
 

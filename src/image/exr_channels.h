@@ -1,4 +1,4 @@
-// Which channels of an OpenEXR file become color and alpha.
+// Choice of an OpenEXR file's channels for color and alpha.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Whether two names lead to one file.
+// Identity of files: whether two names lead to one.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// How far an image is from a reference. Formulas in docs/command-line.md.
+// Errors of an image against a reference. Formulas in docs/command-line.md.
 #pragma once
 
 #include "image/image.h"

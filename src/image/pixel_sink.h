@@ -1,6 +1,6 @@
-// Where the readers of image formats put what they read: first what the picture is, then its rows from the
-// top. A reader needs no memory for the whole picture, and what a header promises but the file does not
-// hold never takes any.
+// Destination of what readers of image formats read: first what the picture is, then its rows from the top. A
+// reader needs no memory for the whole picture, and what a header promises but the file does not hold never
+// takes any.
 #pragma once
 
 #include <array>

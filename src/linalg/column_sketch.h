@@ -1,4 +1,4 @@
-// What a clustering needs to know of a wide matrix, gathered while its rows arrive: every column in a few
+// Sketch of a wide matrix for clustering its columns, gathered while its rows arrive: every column in a few
 // dimensions, and every column's true norms. The matrix itself is never stored.
 //
 // Random projection (Vempala 2004; Hašan 2007, section 4): column ρ_j becomes Gᵀρ_j, G Gaussian with variance

@@ -1,5 +1,5 @@
-// Where the errors of a separation are dense: there the matrix is of high rank, and its entries are better
-// evaluated (Huo et al. 2015, section 6.2).
+// Map of where the errors of a separation are dense: there the matrix is of high rank, and its entries are
+// better evaluated (Huo et al. 2015, section 6.2).
 #pragma once
 
 #include <array>

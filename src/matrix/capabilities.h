@@ -1,6 +1,6 @@
-// What a matrix can tell beside its entries, and what a method needs of it: compared before anything is
-// traced or run (methods::require_capabilities), so that nobody finds out half-way that a number means
-// something else.
+// Capabilities: what a matrix can tell beside its entries, and what a method needs of it: compared before
+// anything is traced or run (methods::require_capabilities), so that nobody finds out half-way that a number
+// means something else.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a call on a lighting matrix cost.
+// Cost of a call on a lighting matrix.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What a set of columns can add to a row at most, without evaluating its entries: what light cuts refine by
-// (Walter et al. 2005, section 4.1: material × geometry × intensity, visibility taken as 1).
+// Upper bounds of what a set of columns adds to a row, without evaluating its entries: light cuts refine by
+// them (Walter et al. 2005, section 4.1: material × geometry × intensity, visibility taken as 1).
 #pragma once
 
 #include <cmath>

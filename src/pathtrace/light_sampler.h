@@ -1,5 +1,5 @@
-// Which light to sample, and the density with which any hit on one would have been sampled. For the path
-// tracer and the directly traced receivers; the matrix does not use it.
+// Sampling of lights, and the density with which any hit on one would have been sampled. For the path tracer
+// and the directly traced receivers; the matrix does not use it.
 #pragma once
 
 #include <vector>

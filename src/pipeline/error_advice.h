@@ -1,4 +1,4 @@
-// What to do where an error was asked for that more columns cannot reach.
+// Advice where an error was asked for that more columns cannot reach.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Whether a picture fits into memory, asked before it is begun: afterwards the system may end the process
+// Check of whether a picture fits into memory, before it is begun: afterwards the system may end the process
 // without a word.
 #pragma once
 

@@ -1,4 +1,5 @@
-// What pictures are estimated on: a world, a view of it, the rows and columns of its matrix, and the matrix.
+// Everything that pictures are estimated on: a world, a view of it, the rows and columns of its matrix, and
+// the matrix.
 #pragma once
 
 #include <map>

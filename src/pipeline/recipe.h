@@ -1,4 +1,4 @@
-// What settings mean for a picture, worked out once: which camera, which rows, which columns, what is traced
+// Recipe of a picture, worked out from settings once: which camera, which rows, which columns, what is traced
 // beside them.
 #pragma once
 

@@ -1,5 +1,6 @@
-// Whether the light that columns cannot carry matters in a view, and how many paths it takes to add it: found
-// by a few thousand paths over the whole film, so that a crop, its size and its samples decide nothing.
+// Pilot of the light that columns cannot carry: whether it matters in a view, and how many paths it takes to
+// add it; found by a few thousand paths over the whole film, so that a crop, its size and its samples decide
+// nothing.
 #pragma once
 
 #include "base/sinks.h"

@@ -1,4 +1,4 @@
-// What the stages of a render cost in this scene on this machine, by trying each on a small part.
+// Costs of the stages of a render in this scene on this machine, by trying each on a small part.
 #pragma once
 
 #include "pipeline/prepared.h"

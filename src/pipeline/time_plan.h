@@ -1,4 +1,4 @@
-// How a time budget is divided among the stages of a render: a pure function of what pilots measured, so that
+// Division of a time budget among the stages of a render: a pure function of what pilots measured, so that
 // tests can make up any machine and any scene.
 #pragma once
 

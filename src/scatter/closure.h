@@ -1,4 +1,5 @@
-// How a surface scatters light at one point: a short sum of lobes with all textures already looked up.
+// Closure: how a surface scatters light at one point, a short sum of lobes with all textures already looked
+// up.
 //
 // Every BSDF of a scene (scatter/material.h) becomes such a closure at a hit. The path tracer samples
 // closures; the lighting matrix evaluates them in bulk. Because a closure is plain data, one evaluation code

@@ -1,4 +1,4 @@
-// What a dielectric layer over a material does to the light that passes through it. The layer's own
+// Effect of a dielectric layer over a material on the light that passes through it. The layer's own
 // reflection is a lobe like any other; the nested lobes are seen through the layer:
 //
 //   f(wo, wi) = T(wo)·T(wi)·A(wo')·A(wi')/eta² · f_nested(wo', wi'),

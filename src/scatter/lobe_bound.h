@@ -1,5 +1,5 @@
-// How much a closure can make of light from anywhere within a cone: upper bounds of f and of f times the
-// cosine, for methods that refine until what they leave out cannot matter (light cuts).
+// Upper bounds of f, and of f times the cosine, of a closure for light from anywhere within a cone: for
+// methods that refine until what they leave out cannot matter (light cuts).
 //
 // Bounds are per channel and never below what eval_f() gives, whether in scalars or in lanes. They are tight
 // for small cones: the half vector of wo and w moves by at most angle/(2·cos(d/2)) when w does, d being the

@@ -1,4 +1,4 @@
-// Which runs of a comparison cost the same.
+// Runs of a comparison that cost the same.
 #pragma once
 
 #include "lumirank/compare.h"

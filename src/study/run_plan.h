@@ -1,4 +1,4 @@
-// Which runs a comparison makes: methods × (time budgets, or swept parameters) × seeds.
+// Plan of a comparison's runs: methods × (time budgets, or swept parameters) × seeds.
 #pragma once
 
 #include <cstdint>

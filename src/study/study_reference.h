@@ -1,4 +1,4 @@
-// What the runs of a comparison are measured against: made or read once, before the first of them.
+// Reference that the runs of a comparison are measured against: made or read once, before the first of them.
 #pragma once
 
 #include <memory>

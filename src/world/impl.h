@@ -1,4 +1,4 @@
-// What a World holds.
+// Implementation of World.
 #pragma once
 
 #include <optional>

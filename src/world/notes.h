@@ -1,4 +1,4 @@
-// Where the builders say what they had to replace or mend.
+// Notes of the builders: what they had to replace or mend.
 #pragma once
 
 #include <string>

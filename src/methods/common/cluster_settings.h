@@ -1,4 +1,4 @@
-// How columns are clustered by the rows that were read, and which of a cluster's columns represents it:
+// Settings of the clustering of columns by rows that were read, and of the choice of representatives:
 // settings that row-column sampling and methods with columns of their own for every slice share.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What has been learned from rows: a sketch of every column, and what the sum should be at the rows that were
-// read.
+// Reduced matrix, learned from rows: a sketch of every column, and what the sum should be at the rows that
+// were read.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Which rows to read (2007, section 4, "Row analysis": blocks of the image, one row in each).
+// Choice of the rows to read (2007, section 4, "Row analysis": blocks of the image, one row in each).
 //
 // Ours: the rows are put in the order of a Hilbert curve over the image and cut into as many stretches as
 // rows are wanted. A stretch is a connected block of the image, and all blocks hold equally many receivers (±

@@ -1,6 +1,6 @@
-// What the clock decided under a time budget: how many rows were read, how many columns rendered, whether
-// more rows paid. A run writes these choices down; one that is given an earlier run's repeats them and asks
-// no clock, so that it ends with the same bits.
+// Choices that the clock made under a time budget: how many rows were read, how many columns rendered,
+// whether more rows paid. A run writes these choices down; one that is given an earlier run's repeats them
+// and asks no clock, so that it ends with the same bits.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// How receivers respond to a few lights, nothing in between: a fingerprint of place, normal and material.
-// Where two of them are not in proportion, one receiver tells little of the other (Walter et al. 2005,
-// section 5, ask for the same material, which a matrix does not know).
+// Responses of receivers to a few lights, nothing in between: a fingerprint of place, normal and material.
+// Where two of them are not in proportion, one receiver tells little of the other
+// (Walter et al. 2005, section 5, ask for the same material, which a matrix does not know).
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// How many rows and columns pay: the search for the smallest number of columns that satisfies an error, and
-// for the rows that are worth their cost, which 2007 (section 5, "Discussion") leaves open.
+// Planner of how many rows and columns pay: the search for the smallest number of columns that satisfies an
+// error, and for the rows that are worth their cost, which 2007 (section 5, "Discussion") leaves open.
 #pragma once
 
 #include <cstddef>

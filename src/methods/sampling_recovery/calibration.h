@@ -1,4 +1,4 @@
-// What a slice's predictions are worth, by its own tests: of all that was called visible with about the same
+// Calibration of a slice's predictions by its own tests: of all that was called visible with about the same
 // probability, the share of light that turned out visible. Three nearest samples that are hidden do not make
 // a probability of 0, least of all where there are few samples, or where others of the column are visible.
 #pragma once

@@ -1,5 +1,5 @@
-// Where columns are sampled. A column follows one of a few orders of the rows, so that nearest neighbors
-// need not be found for each column anew; which one is random.
+// Patterns in which columns are sampled. A column follows one of a few orders of the rows, so that nearest
+// neighbors need not be found for each column anew; which one is random.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Which clusters of lights a slice's reduced matrix has: first a cut by bounds, then splitting by the
-// greatest contribution (Huo et al. 2015, section 4.2 and algorithm 1).
+// Clusters of lights of a slice's reduced matrix: first a cut by bounds, then splitting by the greatest
+// contribution (Huo et al. 2015, section 4.2 and algorithm 1).
 //
 // Where we deviate: the paper splits node after node and takes the contributions of the neighbors of each
 // anew; here all clusters above the threshold are split together, then all contributions and the threshold

@@ -1,5 +1,5 @@
-// What is known of a slice's entries: for every column that was added, its unoccluded contribution to each
-// row, and the visibilities that were sampled.
+// Known entries of a slice: for every column that was added, its unoccluded contribution to each row, and the
+// visibilities that were sampled.
 //
 // A row is a pixel's receivers of one surface, any of which speaks for the others: they are dealt to a few
 // layers of one per row, and a column is evaluated and seen from a random layer. What reaches each receiver

@@ -1,4 +1,4 @@
-// What slices took and had, summed over them.
+// Sums over slices of what they took and had.
 #pragma once
 
 #include <cstdint>

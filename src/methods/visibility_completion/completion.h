@@ -1,4 +1,4 @@
-// Which of a slice's receivers see which of its columns, from few shadow rays.
+// Visibility between a slice's receivers and its columns, from few shadow rays.
 #pragma once
 
 #include <cstdint>

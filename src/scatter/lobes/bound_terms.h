@@ -1,4 +1,4 @@
-// What bounds of lobes are made of: ranges of angles, and terms that families share. Inside this room only.
+// Parts of the bounds of lobes: ranges of angles, and terms that families share. Inside this room only.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What is particular to each family of lobes: its formulas, its bounds and what others must know of it. One
-// table, by LobeKind; a family's entry is in its own file of this folder.
+// Families of lobes: each one's formulas, its bounds and what others must know of it. One table, by LobeKind;
+// a family's entry is in its own file of this folder.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the mesh readers share: checks of what was read, and the making of normals. Internal to this room.
+// Shared by the mesh readers: checks of what was read, and the making of normals. Internal to this room.
 #pragma once
 
 #include <cstdint>

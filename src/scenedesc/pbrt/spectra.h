@@ -1,4 +1,4 @@
-// What pbrt's spectra become in linear Rec. 709 RGB.
+// From pbrt's spectra to linear Rec. 709 RGB.
 //
 // pbrt renders with spectra and integrates its film with the CIE 1931 observer such that a light of "rgb"
 // (1, 1, 1) has the pixel value (1, 1, 1): lights are divided by the luminance of their own spectrum, an rgb

@@ -1,4 +1,4 @@
-// What the user decides about the reading of a scene, whatever its format.
+// Options of reading a scene, whatever its format.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
-// What a scene file says, after parsing and before anything is built: plain values, printable, rewritable,
-// and the same for every file format. Names are resolved to indices; files are named (absolute paths) but not
-// opened, except that a reader may check that they exist.
+// Description of a scene: what its file says, after parsing and before anything is built: plain values,
+// printable, rewritable, and the same for every file format. Names are resolved to indices; files are named
+// (absolute paths) but not opened, except that a reader may check that they exist.
 #pragma once
 
 #include <string>

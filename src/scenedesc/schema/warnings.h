@@ -1,4 +1,4 @@
-// How readers say what a format has and Lumirank does not.
+// Warnings of readers: what a format has and Lumirank does not.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What SceneMatrix holds; internal to its source files.
+// Implementation of SceneMatrix; internal to its source files.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,8 @@
-// Where particles start, when it is known where their light is wanted. In an interior lit through its windows
-// nearly all particles of the sky end on the outer walls, where nobody sees them. The unit hypercube of the
-// numbers that decide a particle's start (emitter, position, direction) is cut into boxes, each drawn in
-// proportion to what pilot paths from it brought to the receivers; every path is divided by its density, so
-// the result is unbiased whatever the guide says.
+// Guide to where particles start, when it is known where their light is wanted. In an interior lit through
+// its windows nearly all particles of the sky end on the outer walls, where nobody sees them. The unit
+// hypercube of the numbers that decide a particle's start (emitter, position, direction) is cut into boxes,
+// each drawn in proportion to what pilot paths from it brought to the receivers; every path is divided by its
+// density, so the result is unbiased whatever the guide says.
 #pragma once
 
 #include <array>

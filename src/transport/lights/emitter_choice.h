@@ -1,4 +1,4 @@
-// Which emitter a particle or a sample starts from.
+// Choice of the emitter that a particle or a sample starts from.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How bright surface lights that are not lambertian are where they are brightest.
+// Peaks of surface lights that are not lambertian: how bright they are where they are brightest.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// What pilots tell of a scene's light before any virtual light is made, and how many of which sort follow.
+// Survey of a scene's light by pilots, before any virtual light is made, and the numbers of lights that
+// follow.
 #pragma once
 
 #include <cstddef>

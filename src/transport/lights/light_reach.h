@@ -1,4 +1,4 @@
-// How close to each place on a surface spherical lights blur what they show.
+// Reach of spherical lights: how close to each place on a surface they blur what they show.
 #pragma once
 
 #include <optional>

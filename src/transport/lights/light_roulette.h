@@ -1,5 +1,5 @@
-// Which lights that particles leave are kept, and which paths go on in parts: so that single lights neither
-// shine out among the others nor are many of them for nothing.
+// Roulette over the lights that particles leave: which are kept, and which paths go on in parts, so that
+// single lights neither shine out among the others nor are many of them for nothing.
 #pragma once
 
 #include "transport/lights/light_importance.h"

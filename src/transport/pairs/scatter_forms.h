@@ -1,4 +1,4 @@
-// Which closures can be evaluated together: those whose lobes have the same kinds in the same order.
+// Forms of closures: those whose lobes have the same kinds in the same order are evaluated together.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What decides the entries of a SceneMatrix beside its world, receivers and lights.
+// Settings that decide the entries of a SceneMatrix beside its world, receivers and lights.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Where a spherical light stands, seen from 16 receivers: the cone of directions, how lobes meet it, and
-// what of the integral is known in closed form.
+// Spherical light seen from 16 receivers: the cone of directions, how lobes meet it, and what of the integral
+// is known in closed form.
 #pragma once
 
 #include "base/lane_math.h"

@@ -1,4 +1,4 @@
-// How the integral of a spherical light is taken.
+// Rules by which the integral of a spherical light is taken.
 //
 // Hašan, Křivánek, Walter and Bala, "Virtual Spherical Lights for Many-Light Rendering of Glossy Scenes"
 // (2009), equation 5: E = Φ/(πr²) ∫_Ω f_x(l) cosθx f_y(−l) I(l) dl, Ω the cone of directions from the

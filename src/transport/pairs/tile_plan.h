@@ -1,5 +1,5 @@
-// How receivers (or lights) are laid out for the kernels: tiles of neighbors, within a tile one run per
-// class, each run padded to whole groups of 16. A place in this layout is a "slot".
+// Layout of receivers (or lights) for the kernels: tiles of neighbors, within a tile one run per class, each
+// run padded to whole groups of 16. A place in this layout is a "slot".
 #pragma once
 
 #include <cstdint>

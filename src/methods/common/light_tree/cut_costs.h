@@ -1,4 +1,4 @@
-// What the cuts of a picture cost, for the report of every method that makes one cut per receiver or pixel.
+// Costs of a picture's cuts, for the report of every method that makes one cut per receiver or pixel.
 #pragma once
 
 #include <algorithm>

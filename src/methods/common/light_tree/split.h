@@ -1,4 +1,4 @@
-// Where to divide a set of lights in two.
+// Division of a set of lights in two.
 #pragma once
 
 #include <cstdint>

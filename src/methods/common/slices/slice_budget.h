@@ -1,4 +1,4 @@
-// How many slices there are, and how many under a time budget.
+// Number of slices, also under a time budget.
 #pragma once
 
 #include "methods/common/run_clock.h"

@@ -1,5 +1,5 @@
-// What methods with columns of their own for every slice share: rows, clusters, the pass over slices, and
-// what the trace says of them.
+// Shared by methods with columns of their own for every slice: rows, clusters, the pass over slices, and what
+// the trace says of them.
 #pragma once
 
 #include <algorithm>
