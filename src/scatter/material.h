@@ -1,5 +1,9 @@
 // The BSDFs of a scene, prepared: textures and nested BSDFs are indices, indices of refraction are resolved.
 // A material becomes a Closure at a surface point.
+//
+// The members of a material are in the order in which its description lists its fields
+// (scenedesc/schema/bsdfs.h), and the materials in the order of BsdfKind: world/material_conversion.cpp makes
+// the one of the other by position. `smooth`, which is no field, comes last.
 #pragma once
 
 #include <memory>
@@ -81,8 +85,8 @@ struct PlasticMaterial {
   bool nonlinear = false;
   NormalDistribution distribution;
   FloatInput alpha;
-  bool smooth = true;
   bool lossless = false;  // see PlasticDesc
+  bool smooth = true;
 };
 void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -134,22 +138,22 @@ void add_lobes(const PrincipledThinMaterial& m, ClosureBuilder& out, const Surfa
 
 // A dielectric layer over another material (coating.cpp).
 struct CoatingMaterial {
-  int nested = -1;
   float eta = 1.5f;
   ColorInput specular_reflectance;
   ColorInput absorption;  // optical thickness
   FloatInput weight;      // share of the surface that is coated
   NormalDistribution distribution;
   FloatInput alpha_u, alpha_v;
+  int nested = -1;
   bool smooth = true;
 };
 void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 // Sheen (charlie_sheen.h) over an opaque material without coating, sheen or hair.
 struct SheenMaterial {
-  int nested = -1;
   ColorInput color;
   FloatInput roughness;  // √α
+  int nested = -1;
 };
 void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -179,9 +183,9 @@ void add_lobes(const BumpMaterial& m, ClosureBuilder& out, const SurfacePoint& a
 
 struct NormalMapMaterial {
   int texture;
-  int nested;
   float scale = 1;         // of the normal's first two components
   bool follow_uv = false;  // second axis against dp/dv where uvs are mirrored; see NormalMapDesc
+  int nested = -1;
 };
 void add_lobes(const NormalMapMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
