@@ -17,8 +17,7 @@ bool is_black(const ColorInput& input) { return input.texture == kNone && input.
 }  // namespace
 
 int Reader::add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind) {
-  scene_.bsdfs.push_back({at.text("name", at.path()), at.where(), std::move(kind)});
-  return static_cast<int>(scene_.bsdfs.size()) - 1;
+  return SceneReader::add_bsdf(at.text("name", at.path()), at.where(), std::move(kind));
 }
 
 int Reader::mix(const Element& at, FloatInput weight, int one, int other) {

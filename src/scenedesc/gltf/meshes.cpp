@@ -161,7 +161,7 @@ void Reader::build_shapes(const Node& node, const Element& mesh_index) {
   } catch (const MissingFile& error) {
     if (!options_.allow_missing) throw;
     const std::string text = what_is_missing(error);
-    if (warned_.insert(text).second) missing_file(scene_, options_, error.where(), text, "");
+    if (is_new(text)) missing_file(error.where(), text, "");
     scene_.shapes.resize(before);
     ShapeDesc shape;
     shape.id = name_of(node);
