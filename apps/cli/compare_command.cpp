@@ -5,14 +5,40 @@
 #include "values.h"
 
 namespace lumirank::cli {
+namespace {
+
+struct CompareOptions {
+  CommonOptions common;
+  CompareSettings settings;
+  std::string folder, methods = "instant-radiosity,power-sampling,row-column-sampling";
+  std::vector<std::string> sweeps;
+};
+
+int run_compare(CompareOptions& options, Streams streams) {
+  CompareSettings& settings = options.settings;
+  settings.base = options.common.render_settings();
+  settings.methods = read_list("--methods", options.methods);
+  for (const auto& text : options.sweeps) {
+    const auto [key, values] = split_assignment(text, "--sweep");
+    if (values.empty()) throw InputError("the sweep of '" + key + "' has no values", "give KEY=V1,V2");
+    settings.sweeps.push_back({key, read_list("--sweep", values)});
+  }
+  Console console(options.common.verbosity(), streams.err);
+  const Scene scene = Scene::load(options.common.scene, options.common.load_options(), console.sinks());
+  const bool whole = compare(scene, settings, options.folder, console.sinks());
+  console.clear();
+  if (!whole) {
+    std::fprintf(streams.err, "interrupted: the runs that were finished are in %s\n", options.folder.c_str());
+    return 130;
+  }
+  if (!options.common.quiet) std::fprintf(streams.out, "wrote %s/index.html\n", options.folder.c_str());
+  return 0;
+}
+
+}  // namespace
+
 void add_compare(CLI::App& app, Action& action) {
-  struct Options {
-    CommonOptions common;
-    CompareSettings settings;
-    std::string folder, methods = "instant-radiosity,power-sampling,row-column-sampling";
-    std::vector<std::string> sweeps;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "several methods against one reference: tables, plots, one page");
   add_scene_options(*command, options->common);
@@ -53,29 +79,8 @@ void add_compare(CLI::App& app, Action& action) {
       "  lumirank compare room.xml -o out --times 1,2,4,8\n"
       "  lumirank compare room.xml -o out --methods row-column-sampling --reference brute-force \\\n"
       "      --sweep row-column-sampling.rows:columns=100:200,200:400,300:600 --seeds 5\n");
-  command->callback([options, &action] {
-    action = [options](Streams streams) {
-      CompareSettings& settings = options->settings;
-      settings.base = options->common.render_settings();
-      settings.methods = read_list("--methods", options->methods);
-      for (const auto& text : options->sweeps) {
-        const auto [key, values] = split_assignment(text, "--sweep");
-        if (values.empty()) throw InputError("the sweep of '" + key + "' has no values", "give KEY=V1,V2");
-        settings.sweeps.push_back({key, read_list("--sweep", values)});
-      }
-      Console console(options->common.verbosity(), streams.err);
-      const Scene scene = Scene::load(options->common.scene, options->common.load_options(), console.sinks());
-      const bool whole = compare(scene, settings, options->folder, console.sinks());
-      console.clear();
-      if (!whole) {
-        std::fprintf(streams.err, "interrupted: the runs that were finished are in %s\n",
-                     options->folder.c_str());
-        return 130;
-      }
-      if (!options->common.quiet) std::fprintf(streams.out, "wrote %s/index.html\n", options->folder.c_str());
-      return 0;
-    };
-  });
+  command->callback(
+      [options, &action] { action = [options](Streams streams) { return run_compare(*options, streams); }; });
 }
 
 }  // namespace lumirank::cli

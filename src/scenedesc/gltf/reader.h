@@ -58,6 +58,9 @@ class Reader : public SceneReader {
   std::shared_ptr<const MeshData> build_mesh(const Element& primitive, int uv_set,
                                              const std::vector<float>& weights,
                                              const std::vector<Transform>& joints);
+  // Positions, normals, uvs and colours of the accessors; the vertices of the corners.
+  std::vector<std::uint32_t> read_attributes(const Element& primitive, const Element& attributes, int uv_set,
+                                             MeshData& mesh);
   std::vector<std::uint32_t> triangles(const Element& primitive, std::vector<std::uint32_t> corners,
                                        int mode);
   // skins.cpp
@@ -79,6 +82,9 @@ class Reader : public SceneReader {
   BuiltMaterial make_material(const Element& material, bool colored);
   int uv_set_of(const Element& material);
   struct Surface;  // a material's inputs on their way to a BSDF
+  Surface surface_of(const Element& material, const Element& metallic_roughness, bool colored);
+  int lit_bsdf(const Element& material, const Surface& surface);
+  std::optional<ColorInput> emission_of(const Element& material);
   int opaque_bsdf(const Element& material, const Surface& surface);
   int transmitting_bsdf(const Element& material, const Surface& surface, const Element& transmission);
   int sheen_bsdf(const Element& material, const Surface& surface, const Element& sheen);  // layers.cpp

@@ -47,6 +47,11 @@ class Reader : public SceneReader {
   void build_top_level(const Element& element);
   void check_area_emitters_used();
 
+  // shapes.cpp
+  ShapeGroupDesc shape_group(Plugin& p);
+  InstanceDesc shape_instance(Plugin& p);
+  void add_surface(Plugin& p, ShapeDesc& shape);  // its BSDF and its light
+
   const Document& document_;
   std::map<std::string, const Element*> ids_;
   std::unordered_map<const Element*, int> textures_, bsdfs_, groups_;
