@@ -16,9 +16,7 @@
 #include "image/file_identity.h"
 #include "image/image_io.h"
 #include "image/metrics.h"
-#include "linalg/svd.h"
 #include "matrix/metered_matrix.h"
-#include "pages/html_text.h"
 #include "pages/page.h"
 #include "pathtrace/reference.h"
 #include "pipeline/develop.h"
@@ -26,8 +24,10 @@
 #include "pipeline/memory.h"
 #include "pipeline/prepared.h"
 #include "pipeline/sound_pixels.h"
+#include "study/equal_runs.h"
 #include "study/run_plan.h"
 #include "study/sampled_truth.h"
+#include "study/singular_values.h"
 
 namespace lumirank::study {
 namespace {
@@ -85,7 +85,10 @@ class Comparison {
         if (!run_one(plan_[k])) return finish(false);
         write_results_json(folder_, results_);
       }
-      if (settings_.singular_values) find_singular_values();
+      if (settings_.singular_values) {
+        prepare_as_asked();
+        results_.singular_values = singular_values_of(*prepared_->matrix, settings_.base.seed);
+      }
     } catch (const Cancelled&) {
       return finish(false);
     }
@@ -329,64 +332,16 @@ class Comparison {
     return true;
   }
 
-  // Hašan 2007, Figure 3: of a small matrix of evenly drawn receivers and lights, scalar entries.
-  void find_singular_values() {
-    constexpr std::size_t kRows = 1200, kColumns = 1000;
-    prepare_as_asked();
-    const auto pick = [](std::size_t count, std::size_t of, std::uint64_t seed, std::uint64_t stream) {
-      count = std::min(count, of);
-      std::vector<matrix::Index> chosen(count);
-      Rng rng(seed, Stage::benchmark, stream);
-      for (std::size_t k = 0; k < count; ++k)  // one from each of `count` strata
-        chosen[k] = static_cast<matrix::Index>((static_cast<double>(k) + rng.next_double()) *
-                                               static_cast<double>(of) / static_cast<double>(count));
-      return chosen;
-    };
-    const auto rows = pick(kRows, prepared_->matrix->rows(), settings_.base.seed, 1);
-    const auto columns = pick(kColumns, prepared_->matrix->columns(), settings_.base.seed, 2);
-    std::vector<Rgb> block(rows.size() * columns.size());
-    prepared_->matrix->block(rows, columns, block, matrix::Part::value);
-    std::vector<float> scalar(block.size());
-    for (std::size_t k = 0; k < block.size(); ++k) scalar[k] = norm2(block[k]);
-    results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
-  }
-
   bool finish(bool whole) {
     if (!whole)
       results_.notes.push_back("Interrupted: " + std::to_string(results_.runs.size()) + " of " +
                                std::to_string(plan_.size()) + " runs were finished.");
-    mark_equal();
+    for (std::string& note : runs_at_equal(settings_.equal, settings_.methods, results_.runs))
+      results_.notes.push_back(std::move(note));
     write_results_json(folder_, results_);
     write_results_csv(folder_, results_);
     write_compare_page(folder_, results_);
     return whole;
-  }
-
-  // --equal: for every other method, the run nearest to the best run of the first one.
-  void mark_equal() {
-    if (settings_.equal.empty() || results_.runs.empty()) return;
-    const auto cost = [&](const CompareRun& r) {
-      if (settings_.equal == "time") return r.seconds;
-      return settings_.equal == "rays" ? r.rays : r.error.relative_l2;
-    };
-    const CompareRun* anchor = nullptr;
-    for (const auto& r : results_.runs)
-      if (r.method == settings_.methods.front() &&
-          (!anchor || r.error.relative_l2 < anchor->error.relative_l2))
-        anchor = &r;
-    if (!anchor) return;
-    results_.notes.push_back("At equal " + settings_.equal + " to " + anchor->label + ":");
-    for (const auto& method : settings_.methods) {
-      const CompareRun* nearest = nullptr;
-      for (const auto& r : results_.runs)
-        if (r.method == method && (!nearest || std::abs(std::log(cost(r) / cost(*anchor))) <
-                                                   std::abs(std::log(cost(*nearest) / cost(*anchor)))))
-          nearest = &r;
-      if (nearest)
-        results_.notes.push_back(nearest->label + ": " + show_seconds(nearest->seconds) + ", " +
-                                 show_count(nearest->rays) + " rays, relative L2 " +
-                                 show_percent(nearest->error.relative_l2));
-    }
   }
 
   const CompareSettings& settings_;
