@@ -41,7 +41,15 @@ struct SurfacePoint {
 // A material is a struct, with how its lobes are added to a closure at a point, scaled by `weight` > 0.
 class ClosureBuilder;
 
-struct NullMaterial {};
+// Whether light passes, whatever the inputs: such a material says `transmits`.
+template <typename Kind>
+inline constexpr bool kTransmits = requires {
+  Kind::transmits;
+};
+
+struct NullMaterial {
+  static constexpr bool transmits = true;
+};
 void add_lobes(const NullMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct DiffuseMaterial {
@@ -65,6 +73,7 @@ struct ConductorMaterial {
 void add_lobes(const ConductorMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct DielectricMaterial {
+  static constexpr bool transmits = true;
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
   NormalDistribution distribution;
@@ -74,6 +83,7 @@ struct DielectricMaterial {
 void add_lobes(const DielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct ThinDielectricMaterial {
+  static constexpr bool transmits = true;
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
 };
@@ -123,6 +133,7 @@ std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const 
                                                 const SourceLocation& where);
 // A thin sheet that reflects and lets through diffusely, alike on both sides.
 struct DiffuseTransmitterMaterial {
+  static constexpr bool transmits = true;
   ColorInput reflectance, transmittance;
 };
 void add_lobes(const DiffuseTransmitterMaterial& m, ClosureBuilder& out, const SurfacePoint& at,
@@ -130,6 +141,7 @@ void add_lobes(const DiffuseTransmitterMaterial& m, ClosureBuilder& out, const S
 
 // Mitsuba 3's principledthin: a sheet without thickness, alike on both sides. diff_trans within [0, 2].
 struct PrincipledThinMaterial {
+  static constexpr bool transmits = true;
   ColorInput base_color;
   FloatInput roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness, diff_trans;
   float eta = 1.5f;
@@ -164,6 +176,7 @@ struct HairMaterial {  // for fibres only: the point's shading.s runs along them
 void add_lobes(const HairMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct MaskMaterial {
+  static constexpr bool transmits = true;
   FloatInput opacity;
   int nested;
 };

@@ -116,17 +116,13 @@ MaterialBuilder::Traits MaterialBuilder::traits_of(const sc::Material& material)
           for (const auto& part : m.parts) out = join(out, of(part.nested));
         } else if constexpr (requires { m.nested; }) {
           out = of(m.nested);
-          out.transmits |= std::is_same_v<Kind, sc::MaskMaterial>;
+          out.transmits |= sc::kTransmits<Kind>;
           out.coated |= std::is_same_v<Kind, sc::CoatingMaterial>;
           out.sheen |= std::is_same_v<Kind, sc::SheenMaterial>;
         } else if constexpr (std::is_same_v<Kind, sc::PrincipledMaterial>) {
           out.transmits = m.spec_trans.texture >= 0 || m.spec_trans.value > 0;
         } else {
-          out.transmits = std::is_same_v<Kind, sc::NullMaterial> ||
-                          std::is_same_v<Kind, sc::DielectricMaterial> ||
-                          std::is_same_v<Kind, sc::ThinDielectricMaterial> ||
-                          std::is_same_v<Kind, sc::PrincipledThinMaterial> ||
-                          std::is_same_v<Kind, sc::DiffuseTransmitterMaterial>;
+          out.transmits = sc::kTransmits<Kind>;
         }
         return out;
       },
