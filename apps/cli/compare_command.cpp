@@ -8,6 +8,13 @@
 namespace lumirank::cli {
 namespace {
 
+struct CompareOptions {
+  CommonOptions common;
+  CompareSettings settings;
+  std::string folder, methods = "instant-radiosity,power-sampling,row-column-sampling";
+  std::vector<std::string> sweeps;
+};
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::size_t begin = 0;
@@ -53,16 +60,27 @@ EqualCost read_equal(const std::string& text) {
   return text == "time" ? EqualCost::time : text == "rays" ? EqualCost::rays : EqualCost::error;
 }
 
+int run_compare(CompareOptions& options, Streams streams) {
+  CompareSettings& settings = options.settings;
+  settings.base = options.common.render_settings();
+  settings.methods = read_list("--methods", options.methods);
+  for (const std::string& text : options.sweeps) settings.sweeps.push_back(read_sweep(text));
+  Console console(options.common.verbosity(), streams.err);
+  const Scene scene = Scene::load(options.common.scene, options.common.load_options(), console.sinks());
+  const Comparison comparison = compare(scene, settings, options.folder, console.sinks());
+  console.clear();
+  if (comparison.interrupted) {
+    std::fprintf(streams.err, "interrupted: the runs that were finished are in %s\n", options.folder.c_str());
+    return 130;
+  }
+  if (!options.common.quiet) std::fprintf(streams.out, "wrote %s/index.html\n", options.folder.c_str());
+  return 0;
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  struct Options {
-    CommonOptions common;
-    CompareSettings settings;
-    std::string folder, methods = "instant-radiosity,power-sampling,row-column-sampling";
-    std::vector<std::string> sweeps;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "several methods against one reference: tables, plots, one page");
   add_scene_options(*command, options->common);
@@ -104,25 +122,8 @@ void add_compare(CLI::App& app, Action& action) {
       "  lumirank compare room.xml -o out --times 1,2,4,8\n"
       "  lumirank compare room.xml -o out --methods row-column-sampling --reference brute-force \\\n"
       "      --sweep row-column-sampling.rows:columns=100:200,200:400,300:600 --seeds 5\n");
-  command->callback([options, &action] {
-    action = [options](Streams streams) {
-      CompareSettings& settings = options->settings;
-      settings.base = options->common.render_settings();
-      settings.methods = read_list("--methods", options->methods);
-      for (const std::string& text : options->sweeps) settings.sweeps.push_back(read_sweep(text));
-      Console console(options->common.verbosity(), streams.err);
-      const Scene scene = Scene::load(options->common.scene, options->common.load_options(), console.sinks());
-      const Comparison comparison = compare(scene, settings, options->folder, console.sinks());
-      console.clear();
-      if (comparison.interrupted) {
-        std::fprintf(streams.err, "interrupted: the runs that were finished are in %s\n",
-                     options->folder.c_str());
-        return 130;
-      }
-      if (!options->common.quiet) std::fprintf(streams.out, "wrote %s/index.html\n", options->folder.c_str());
-      return 0;
-    };
-  });
+  command->callback(
+      [options, &action] { action = [options](Streams streams) { return run_compare(*options, streams); }; });
 }
 
 }  // namespace lumirank::cli

@@ -136,24 +136,34 @@ Rgb PathTracer::missing(float connection, const Closure& closure, Vec3f wo, Vec3
   return part;
 }
 
+void PathTracer::keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hit, Closure& closure) const {
+  // Columns carry this vertex's non-delta lobes, the rest its specular ones; both pass straight through.
+  const bool keep_specular = settings_.paths == Paths::rest;
+  const Vec3f place = hit.point.position;
+  const bool counts = !walk.near || length_squared(place - walk.from.position) < square((*walk.near)(place));
+  int kept = 0;
+  for (int k = 0; k < closure.count; ++k) {
+    const LobeKind kind = closure.lobes[k].kind;
+    if (kind == LobeKind::delta_pass || (counts && scatter::is_delta(kind) == keep_specular))
+      closure.lobes[kept++] = closure.lobes[k];
+  }
+  closure.count = kept;
+}
+
+// Russian roulette; false ends the path.
+bool PathTracer::survives(Walk& walk) const {
+  const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
+  if (walk.segments <= 5) return true;
+  if (walk.random.next_float() >= survival) return false;
+  walk.throughput *= 1 / survival;
+  return true;
+}
+
 // Light sampling and the next direction; false ends the path.
 bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& closure) const {
   const bool may_continue = settings_.max_depth < 0 || walk.segments < settings_.max_depth;
   const bool first_after_receiver = walk.after_receiver;
-  if (first_after_receiver && settings_.paths != Paths::all) {
-    // Columns carry this vertex's non-delta lobes, the rest its specular ones; both pass straight through.
-    const bool keep_specular = settings_.paths == Paths::rest;
-    const Vec3f place = hit.point.position;
-    const bool counts =
-        !walk.near || length_squared(place - walk.from.position) < square((*walk.near)(place));
-    int kept = 0;
-    for (int k = 0; k < closure.count; ++k) {
-      const LobeKind kind = closure.lobes[k].kind;
-      if (kind == LobeKind::delta_pass || (counts && scatter::is_delta(kind) == keep_specular))
-        closure.lobes[kept++] = closure.lobes[k];
-    }
-    closure.count = kept;
-  }
+  if (first_after_receiver && settings_.paths != Paths::all) keep_traced_lobes(walk, hit, closure);
   float connection = 0;
   if (first_after_receiver && settings_.carried.bound > 0)
     connection = walk.receiver_term *
@@ -191,12 +201,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
       walk.throughput *= missing(connection, closure, wo, next->wi);
       if (is_black(walk.throughput)) return false;
     }
-
-    const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
-    if (walk.segments > 5) {
-      if (walk.random.next_float() >= survival) return false;
-      walk.throughput *= 1 / survival;
-    }
+    if (!survives(walk)) return false;
   }
   walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
   return true;

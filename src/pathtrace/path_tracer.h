@@ -74,6 +74,9 @@ class PathTracer {
   // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular
   // vertices.
   Rgb missing(float connection, const scatter::Closure& closure, Vec3f wo, Vec3f wi) const;
+  // The first vertex after a receiver: of its lobes those that the paths in question take.
+  void keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
+  bool survives(Walk& walk) const;
   bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
 
   const world::World& world_;

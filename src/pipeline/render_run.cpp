@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/random.h"
 #include "matrix/metered_matrix.h"
 #include "methods/common/timed_choices.h"
+#include "pipeline/compensation.h"
 #include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
 #include "pipeline/illuminance.h"
@@ -318,21 +318,8 @@ class RenderRun {
   void compensate(image::Image& image) {
     if (asked_.traced.compensate == 0 || result_.interrupted) return;
     const Timer timer;
-    // A reference with the same seed is independent of it.
-    pathtrace::ReferenceOptions options = reference_options(
-        asked_.view.only, hash_ids(asked_.seed, Stage::reference, 1), ReferencePaths::columns);
-    options.carried = prepared_->columns.carried;
-    try {
-      const auto traced =
-          pathtrace::path_trace(*task_.world, view_, options, {.spp = asked_.traced.compensate}, sinks_);
-      if (traced.interrupted) throw Cancelled();
-      for (std::size_t p = 0; p < traced.indirect.pixels.size(); ++p)
-        image.pixels[p] += traced.indirect.pixels[p];
-    } catch (const Cancelled&) {
-      result_.interrupted = true;
-      return;
-    }
-    seconds_["compensation"] = timer.seconds();
+    result_.interrupted = !compensate_clamping(*prepared_, asked_, image, sinks_);
+    if (!result_.interrupted) seconds_["compensation"] = timer.seconds();
   }
 
   void layers() {

@@ -159,6 +159,22 @@ Lobe diffuse_under(const Layer& layer, Rgb color) {
   return lobe;
 }
 
+// A glossy lobe under the layer, or one of which nothing comes back.
+Lobe lobe_under(const Layer& layer, const UnderCoat& nested, const Base& base, Lobe lobe) {
+  lobe.coat = layer.coat;
+  if (nested.sort != UnderCoat::Sort::glossy) return lobe;
+  std::copy(layer.twice, layer.twice + 6, lobe.coat.t);
+  lobe.coat.trapped = base.trapped;
+  // Normals of GGX have long tails.
+  const bool long_tail = nested.distribution == NormalDistribution::ggx;
+  lobe.coat.width = (long_tail ? 1.0f : 0.6f) * nested.width / lobe.coat.bend;
+  for (int c = 0; c < 3; ++c) {
+    const float stays = layer.r0 * std::exp(-2 * layer.coat.depth[c]);
+    lobe.color[c] /= 1 - std::min(base.albedo[c], 1.0f) * stays;
+  }
+  return lobe;
+}
+
 struct LayerHere {
   Layer layer;
   float covered = 0, alpha_u = 0, alpha_v = 0;
@@ -226,19 +242,7 @@ void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint
       out.push(diffuse_under(layer, lobe.color), point, weight);
       continue;
     }
-    lobe.coat = layer.coat;
-    if (nested_lobe.sort == UnderCoat::Sort::glossy) {
-      std::copy(layer.twice, layer.twice + 6, lobe.coat.t);
-      lobe.coat.trapped = base.trapped;
-      // Normals of GGX have long tails.
-      const bool long_tail = nested_lobe.distribution == NormalDistribution::ggx;
-      lobe.coat.width = (long_tail ? 1.0f : 0.6f) * nested_lobe.width / lobe.coat.bend;
-      for (int c = 0; c < 3; ++c) {
-        const float stays = layer.r0 * std::exp(-2 * layer.coat.depth[c]);
-        lobe.color[c] /= 1 - std::min(base.albedo[c], 1.0f) * stays;
-      }
-    }
-    out.push(lobe, point, weight);
+    out.push(lobe_under(layer, nested_lobe, base, lobe), point, weight);
   }
   if (!out.front(at)) return;
   Rgb again(0);

@@ -1,5 +1,9 @@
 // The BSDFs of a scene, prepared: textures and nested BSDFs are indices, indices of refraction are resolved.
 // A material becomes a Closure at a surface point.
+//
+// The members of a material are in the order in which its description lists its fields
+// (scenedesc/schema/bsdfs.h), and the materials in the order of BsdfKind: world/material_conversion.cpp makes
+// the one of the other by position. `smooth`, which is no field, comes last.
 #pragma once
 
 #include <memory>
@@ -37,7 +41,15 @@ struct SurfacePoint {
 // A material is a struct, with how its lobes are added to a closure at a point, scaled by `weight` > 0.
 class ClosureBuilder;
 
-struct NullMaterial {};
+// Whether light passes, whatever the inputs: such a material says `transmits`.
+template <typename Kind>
+inline constexpr bool kTransmits = requires {
+  Kind::transmits;
+};
+
+struct NullMaterial {
+  static constexpr bool transmits = true;
+};
 void add_lobes(const NullMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct DiffuseMaterial {
@@ -61,6 +73,7 @@ struct ConductorMaterial {
 void add_lobes(const ConductorMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct DielectricMaterial {
+  static constexpr bool transmits = true;
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
   NormalDistribution distribution;
@@ -70,6 +83,7 @@ struct DielectricMaterial {
 void add_lobes(const DielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct ThinDielectricMaterial {
+  static constexpr bool transmits = true;
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
 };
@@ -81,8 +95,8 @@ struct PlasticMaterial {
   bool nonlinear = false;
   NormalDistribution distribution;
   FloatInput alpha;
-  bool smooth = true;
   bool lossless = false;  // see PlasticDesc
+  bool smooth = true;
 };
 void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -119,6 +133,7 @@ std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const 
                                                 const SourceLocation& where);
 // A thin sheet that reflects and lets through diffusely, alike on both sides.
 struct DiffuseTransmitterMaterial {
+  static constexpr bool transmits = true;
   ColorInput reflectance, transmittance;
 };
 void add_lobes(const DiffuseTransmitterMaterial& m, ClosureBuilder& out, const SurfacePoint& at,
@@ -126,6 +141,7 @@ void add_lobes(const DiffuseTransmitterMaterial& m, ClosureBuilder& out, const S
 
 // Mitsuba 3's principledthin: a sheet without thickness, alike on both sides. diff_trans within [0, 2].
 struct PrincipledThinMaterial {
+  static constexpr bool transmits = true;
   ColorInput base_color;
   FloatInput roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness, diff_trans;
   float eta = 1.5f;
@@ -134,22 +150,22 @@ void add_lobes(const PrincipledThinMaterial& m, ClosureBuilder& out, const Surfa
 
 // A dielectric layer over another material (coating.cpp).
 struct CoatingMaterial {
-  int nested = -1;
   float eta = 1.5f;
   ColorInput specular_reflectance;
   ColorInput absorption;  // optical thickness
   FloatInput weight;      // share of the surface that is coated
   NormalDistribution distribution;
   FloatInput alpha_u, alpha_v;
+  int nested = -1;
   bool smooth = true;
 };
 void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 // Sheen (charlie_sheen.h) over an opaque material without coating, sheen or hair.
 struct SheenMaterial {
-  int nested = -1;
   ColorInput color;
   FloatInput roughness;  // √α
+  int nested = -1;
 };
 void add_lobes(const SheenMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -160,6 +176,7 @@ struct HairMaterial {  // for fibers only: the point's shading.s runs along them
 void add_lobes(const HairMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
 struct MaskMaterial {
+  static constexpr bool transmits = true;
   FloatInput opacity;
   int nested;
 };
@@ -179,9 +196,9 @@ void add_lobes(const BumpMaterial& m, ClosureBuilder& out, const SurfacePoint& a
 
 struct NormalMapMaterial {
   int texture;
-  int nested;
   float scale = 1;         // of the normal's first two components
   bool follow_uv = false;  // second axis against dp/dv where uvs are mirrored; see NormalMapDesc
+  int nested = -1;
 };
 void add_lobes(const NormalMapMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 

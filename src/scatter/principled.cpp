@@ -13,6 +13,16 @@ void set_roughness(Lobe& lobe, float roughness, float anisotropic) {
   lobe.alpha_v = std::max(1e-3f, alpha * aspect);
 }
 
+// Reflection by GGX.
+Lobe rough_reflection(float roughness, float anisotropic, float eta) {
+  Lobe lobe;
+  lobe.kind = LobeKind::microfacet_reflect;
+  lobe.distribution = NormalDistribution::ggx;
+  set_roughness(lobe, roughness, anisotropic);
+  lobe.eta = eta;
+  return lobe;
+}
+
 // The hue of a color at luminance 1.
 Rgb tint_of(Rgb base) {
   const float brightness = luminance(base);
@@ -29,11 +39,7 @@ void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePo
   const float roughness = input(m.roughness), metallic = input(m.metallic), spec_trans = input(m.spec_trans);
   const float opaque = (1 - metallic) * (1 - spec_trans), clear = (1 - metallic) * spec_trans;
 
-  Lobe spec;
-  spec.kind = LobeKind::microfacet_reflect;
-  spec.distribution = NormalDistribution::ggx;
-  set_roughness(spec, roughness, input(m.anisotropic));
-  spec.eta = m.eta;
+  Lobe spec = rough_reflection(roughness, input(m.anisotropic), m.eta);
 
   Lobe through = spec;
   through.kind = LobeKind::microfacet_transmit;
@@ -94,12 +100,8 @@ void add_lobes(const PrincipledThinMaterial& m, ClosureBuilder& out, const Surfa
   const float window = input(m.spec_trans), matt = 1 - window;
   const float back = matt * 0.5f * std::clamp(number(textures, m.diff_trans, at.uv), 0.0f, 2.0f);
 
-  Lobe spec;
-  spec.kind = LobeKind::microfacet_reflect;
-  spec.distribution = NormalDistribution::ggx;
-  set_roughness(spec, roughness, anisotropic);
   // Light comes from outside on either side.
-  spec.eta = out.front(at) ? m.eta : 1 / m.eta;
+  Lobe spec = rough_reflection(roughness, anisotropic, out.front(at) ? m.eta : 1 / m.eta);
   const float spec_tint = input(m.spec_tint);
   spec.fresnel = FresnelKind::dielectric;
   spec.color = Rgb(window * (1 - spec_tint));

@@ -16,7 +16,6 @@
 #include "image/file_identity.h"
 #include "image/image_io.h"
 #include "image/metrics.h"
-#include "linalg/svd.h"
 #include "matrix/metered_matrix.h"
 #include "pages/page.h"
 #include "pipeline/error_advice.h"
@@ -25,6 +24,7 @@
 #include "pipeline/sound_pixels.h"
 #include "study/equal_cost.h"
 #include "study/run_plan.h"
+#include "study/singular_values.h"
 #include "study/study_reference.h"
 
 namespace lumirank::study {
@@ -257,26 +257,9 @@ class Study {
     return true;
   }
 
-  // Hašan 2007, Figure 3: of a small matrix of evenly drawn receivers and lights, scalar entries.
   void find_singular_values() {
-    constexpr std::size_t kRows = 1200, kColumns = 1000;
     prepare_as_asked();
-    const auto pick = [](std::size_t count, std::size_t of, std::uint64_t seed, std::uint64_t stream) {
-      count = std::min(count, of);
-      std::vector<matrix::Index> chosen(count);
-      Rng rng(seed, Stage::benchmark, stream);
-      for (std::size_t k = 0; k < count; ++k)  // one from each of `count` strata
-        chosen[k] = static_cast<matrix::Index>((static_cast<double>(k) + rng.next_double()) *
-                                               static_cast<double>(of) / static_cast<double>(count));
-      return chosen;
-    };
-    const auto rows = pick(kRows, prepared_->matrix->rows(), settings_.base.seed, 1);
-    const auto columns = pick(kColumns, prepared_->matrix->columns(), settings_.base.seed, 2);
-    std::vector<Rgb> block(rows.size() * columns.size());
-    prepared_->matrix->block(rows, columns, block, matrix::Part::value);
-    std::vector<float> scalar(block.size());
-    for (std::size_t k = 0; k < block.size(); ++k) scalar[k] = norm2(block[k]);
-    results_.singular_values = linalg::singular_values(scalar, rows.size(), columns.size());
+    results_.singular_values = singular_values_of(*prepared_->matrix, settings_.base.seed);
   }
 
   void finish(bool whole) {

@@ -32,6 +32,8 @@ class MaterialBuilder {
   const Traits& of(int material) const { return traits_[static_cast<std::size_t>(material)]; }
   Traits traits_of(const scatter::Material& material) const;
 
+  // material_conversion.cpp
+  class Conversion;
   scatter::Material convert(const scenedesc::BsdfDesc& b, Carrier carrier);
   bool holds_hair(int bsdf, std::size_t depth = 0) const;
   // On fibers: hair has no sides, no bumps and does not mix with the BSDFs of surfaces. kNone: it may stay.

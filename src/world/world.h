@@ -82,6 +82,7 @@ class World {
 
  private:
   struct Impl;
+  class Builder;
   explicit World(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

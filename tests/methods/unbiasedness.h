@@ -46,7 +46,7 @@ class UnbiasednessTest {
     ++runs_;
   }
 
-  // What largest_t() stays below with a probability of 1 − alpha if the runs are unbiased.
+  // What max_t() stays below with a probability of 1 − alpha if the runs are unbiased.
   double limit(double alpha = 0.001) const {
     return lumirank::test::student_quantile(alpha, projections_ + 1, runs_ - 1);
   }

@@ -42,7 +42,7 @@ DielectricMaterial dielectric(NormalDistribution d, float eta, float au, float a
   return {eta, gray(1), gray(1), d, number(au), number(av), au == 0};
 }
 PlasticMaterial plastic(NormalDistribution d, float alpha, bool nonlinear) {
-  return {1.49f, color(0.8f, 0.4f, 0.1f), gray(1), nonlinear, d, number(alpha), alpha == 0};
+  return {1.49f, color(0.8f, 0.4f, 0.1f), gray(1), nonlinear, d, number(alpha), false, alpha == 0};
 }
 
 BsdfCase glass(std::string name, DielectricMaterial m) {
@@ -92,15 +92,9 @@ BsdfCase oren_nayar(std::string name, float rho, float alpha) {
 }
 
 CoatingMaterial layer(NormalDistribution d, float alpha, float eta, float depth, float weight) {
-  return {0,
-          eta,
-          gray(1),
-          color(depth, 0.5f * depth, 2 * depth),
-          number(weight),
-          d,
-          number(alpha),
-          number(alpha),
-          alpha == 0};
+  return {
+      eta, gray(1),   color(depth, 0.5f * depth, 2 * depth), number(weight), d, number(alpha), number(alpha),
+      0,   alpha == 0};
 }
 
 BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
@@ -237,17 +231,17 @@ std::vector<BsdfCase> build() {
 
   for (const float roughness : {0.07f, 0.25f, 0.5f, 1.0f})
     list.push_back(nested("sheen_white_" + std::to_string(static_cast<int>(100 * roughness)),
-                          DiffuseMaterial{gray(1)}, SheenMaterial{0, gray(1), number(roughness)}));
+                          DiffuseMaterial{gray(1)}, SheenMaterial{gray(1), number(roughness), 0}));
   list.push_back(nested("sheen_alone", DiffuseMaterial{gray(0)},
-                        SheenMaterial{0, color(0.9f, 0.5f, 0.1f), number(0.3f)}));
+                        SheenMaterial{color(0.9f, 0.5f, 0.1f), number(0.3f), 0}));
   list.push_back(nested("sheen_plastic", plastic(kGgx, 0.3f, true),
-                        SheenMaterial{0, color(0.2f, 0.8f, 0.4f), number(0.4f)}));
+                        SheenMaterial{color(0.2f, 0.8f, 0.4f), number(0.4f), 0}));
   list.push_back(
-      nested("sheen_metal", conductor(kGgx, 0.08f, 0.4f), SheenMaterial{0, gray(0.7f), number(0.6f)}));
-  list.push_back(nested("sheen_mirror", perfect_mirror(kGgx, 0), SheenMaterial{0, gray(0.7f), number(0.6f)}));
+      nested("sheen_metal", conductor(kGgx, 0.08f, 0.4f), SheenMaterial{gray(0.7f), number(0.6f), 0}));
+  list.push_back(nested("sheen_mirror", perfect_mirror(kGgx, 0), SheenMaterial{gray(0.7f), number(0.6f), 0}));
   for (const float alpha : {0.0f, 0.3f}) {
     BsdfCase coated_sheen = nested(alpha == 0 ? "sheen_coated" : "sheen_coated_rough",
-                                   plastic(kGgx, 0.2f, true), SheenMaterial{0, gray(1), number(0.8f)});
+                                   plastic(kGgx, 0.2f, true), SheenMaterial{gray(1), number(0.8f), 0});
     coated_sheen.set.materials.push_back(layer(kGgx, alpha, 1.5f, 0.1f * alpha, 1));
     std::get<CoatingMaterial>(coated_sheen.set.materials.back()).nested = 1;
     coated_sheen.material = 2;
@@ -292,7 +286,7 @@ std::vector<BsdfCase> build() {
       4, 4, [](int x, int y) { return Rgb(0.1f * static_cast<float>(x) + 0.05f * static_cast<float>(y)); }));
   list.push_back(bump);
 
-  BsdfCase normal = nested("normalmap", DiffuseMaterial{gray(0.7f)}, NormalMapMaterial{0, 0});
+  BsdfCase normal = nested("normalmap", DiffuseMaterial{gray(0.7f)}, NormalMapMaterial{0, 1, false, 0});
   normal.set.textures.textures.push_back(ConstantTexture{{0.7f, 0.4f, 0.9f}});
   list.push_back(normal);
 

@@ -224,9 +224,9 @@ TEST(Bump, RampTiltsTheNormal) {
 }
 
 TEST(NormalMap, DecodesTheTangentFrame) {
-  const MaterialSet set =
-      materials({DiffuseMaterial{gray(1)}, NormalMapMaterial{0, 0}, NormalMapMaterial{1, 0}},
-                {ConstantTexture{{0.8f, 0.5f, 0.9f}}, ConstantTexture{{0.5f, 0.5f, 0.2f}}});
+  const MaterialSet set = materials(
+      {DiffuseMaterial{gray(1)}, NormalMapMaterial{0, 1, false, 0}, NormalMapMaterial{1, 1, false, 0}},
+      {ConstantTexture{{0.8f, 0.5f, 0.9f}}, ConstantTexture{{0.5f, 0.5f, 0.2f}}});
   SurfacePoint at = point_with_normal(kUp);
   at.shading = Frame{{0, 1, 0}, {-1, 0, 0}, kUp};
   // 2·rgb - 1 = (0.6, 0, 0.8): along s, which is y here.

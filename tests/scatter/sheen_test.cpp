@@ -40,7 +40,7 @@ TEST(CharlieSheen, FallsWithTheCosineAndIsHeldBelowOne) {
 TEST(CharlieSheen, CoversWhatIsBelow) {
   MaterialSet set;
   set.materials.push_back(DiffuseMaterial{{Rgb(1), -1}});
-  set.materials.push_back(SheenMaterial{0, {Rgb(1, 0.5f, 0), -1}, {0.5f, -1}});
+  set.materials.push_back(SheenMaterial{{Rgb(1, 0.5f, 0), -1}, {0.5f, -1}, 0});
   const SurfacePoint at = point_with_normal({0, 0, 1});
   const Closure from_front = set.closure(1, at, {0, 0, 1});
   ASSERT_EQ(from_front.count, 2);

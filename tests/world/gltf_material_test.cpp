@@ -220,13 +220,13 @@ TEST(GltfBrdf, NormalMapsFollowMirroredUvs) {
     const Point p = built(scene_of(material(0, 1), v_along));
     set.textures.textures.push_back(scatter::ConstantTexture{{0.5f, 0.75f, 0.933f}});
     set.materials.push_back(scatter::DiffuseMaterial{{Rgb(0.5f), -1}});
-    set.materials.push_back(scatter::NormalMapMaterial{0, 0, 1, true});
+    set.materials.push_back(scatter::NormalMapMaterial{0, 1, true, 0});
     const Vec3f n = set.closure(1, p.hit.point, {0, 0, 1}).frame.n;
     EXPECT_NEAR(n.x, 0, 1e-5f);
     // v runs along v_along · y, so up is -v_along · y: (0.5, 0.866) by the color.
     EXPECT_NEAR(n.y, -0.5f * static_cast<float>(v_along), 1e-3f);
     // Flattened to half: tan is half of 0.5 / 0.866.
-    set.materials.push_back(scatter::NormalMapMaterial{0, 0, 0.5f, true});
+    set.materials.push_back(scatter::NormalMapMaterial{0, 0.5f, true, 0});
     const Vec3f half = set.closure(2, p.hit.point, {0, 0, 1}).frame.n;
     EXPECT_NEAR(std::abs(half.y) / half.z, 0.25 / 0.866, 1e-3);
   }

@@ -126,6 +126,39 @@ void light_dark_rows(std::size_t draws, std::span<Rgb> sums) {
   }
 }
 
+// Columns that fit, by a stretch for each thread: first with one column, then, where that is short, with
+// some more, which are cheaper by the piece.
+std::size_t columns_that_fit(const RowGroups& row_groups, std::span<const matrix::ScaledColumn> drawn,
+                             const RunOptions& options, const RunClock& clock,
+                             WorkspacePool<CoarseWork>& pool, double& entry_seconds, std::span<Rgb> sums) {
+  const std::vector<std::uint32_t> order = coarse_to_fine(row_groups.size());
+  const std::size_t tried = std::min(row_groups.size(), static_cast<std::size_t>(current_threads()));
+  std::size_t max_count = 1;
+  for (const std::size_t count : {std::size_t{1}, std::min<std::size_t>(8, drawn.size())}) {
+    if (count > max_count) break;
+    // The fastest of three: the first warms caches, and others may be at work on the machine.
+    double took = 1e9;
+    for (int repeat = 0; repeat < 3; ++repeat) {
+      const double begin = clock.seconds();
+      parallel_for(tried, 1, [&](std::size_t b, std::size_t e) {
+        WorkspacePool<CoarseWork>::Lease w(pool);
+        for (std::size_t k = b; k < e; ++k)
+          sum_stretch(row_groups[order[k]], drawn.first(count), 1, *w, sums);
+      });
+      took = std::min(took, clock.seconds() - begin);
+    }
+    std::size_t read = 0;
+    for (std::size_t k = 0; k < tried; ++k) read += row_groups[order[k]].size();
+    entry_seconds = took / static_cast<double>(read * count);
+    const double column = std::max(entry_seconds * static_cast<double>(sums.size()), 1e-12);
+    const double fit = options.time_seconds / column;
+    max_count = static_cast<std::size_t>(
+        std::clamp(std::max(kCoarseShare * fit, std::min(kFewDrawsShare * fit, double{kMinDraws})), 1.0,
+                   static_cast<double>(drawn.size())));
+  }
+  return max_count;
+}
+
 }  // namespace
 
 CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const RunOptions& options,
@@ -143,35 +176,8 @@ CoarsePicture make_coarse_picture(const matrix::LightingMatrix& matrix, const Ru
     w->reader = matrix.reader();
     return w;
   });
-  // Columns that fit, by a stretch for each thread: first with one column, then, where that is short, with
-  // some more, which are cheaper by the piece.
-  const auto fitting = [&]() -> std::size_t {
-    const std::vector<std::uint32_t> order = coarse_to_fine(row_groups.size());
-    const std::size_t tried = std::min(row_groups.size(), static_cast<std::size_t>(current_threads()));
-    std::size_t max_count = 1;
-    for (const std::size_t count : {std::size_t{1}, std::min<std::size_t>(8, drawn.size())}) {
-      if (count > max_count) break;
-      // The fastest of three: the first warms caches, and others may be at work on the machine.
-      double took = 1e9;
-      for (int repeat = 0; repeat < 3; ++repeat) {
-        const double begin = clock.seconds();
-        parallel_for(tried, 1, [&](std::size_t b, std::size_t e) {
-          WorkspacePool<CoarseWork>::Lease w(pool);
-          for (std::size_t k = b; k < e; ++k)
-            sum_stretch(row_groups[order[k]], std::span(drawn).first(count), 1, *w, sums);
-        });
-        took = std::min(took, clock.seconds() - begin);
-      }
-      std::size_t read = 0;
-      for (std::size_t k = 0; k < tried; ++k) read += row_groups[order[k]].size();
-      picture.entry_seconds = took / static_cast<double>(read * count);
-      const double column = std::max(picture.entry_seconds * static_cast<double>(rows), 1e-12);
-      const double fit = options.time_seconds / column;
-      max_count = static_cast<std::size_t>(
-          std::clamp(std::max(kCoarseShare * fit, std::min(kFewDrawsShare * fit, double{kMinDraws})), 1.0,
-                     static_cast<double>(drawn.size())));
-    }
-    return max_count;
+  const auto fitting = [&] {
+    return columns_that_fit(row_groups, drawn, options, clock, pool, picture.entry_seconds, sums);
   };
   picture.columns = timed_choice(options, "coarse_columns", static_cast<std::int64_t>(drawn.size()), fitting);
   // A prefix of the draws is a fair sample of them.

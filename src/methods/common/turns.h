@@ -104,7 +104,7 @@ RowGroupResult run_in_turns(Turns& turns, const RowGroups& row_groups, const Row
   return turns.run(
       row_groups, method, sums,
       [&](const RowGroupControl& of_turn, const Turn& turn, std::span<Rgb> out) {
-        // `out` may be where fresh estimates go before they are taken in: on_unit does that.
+        // `out` may be where fresh estimates go before they are taken in: on_group does that.
         return run_row_groups(row_groups, of_turn, sums, pool, [&](std::size_t group, Workspace& w) {
           body(group, w, turn, out);
           of_turn.on_group(group);

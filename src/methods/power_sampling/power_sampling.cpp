@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "base/parallel.h"
@@ -41,119 +42,168 @@ const Fields<PowerSamplingSettings> kPowerSamplingFields{
         &PowerSamplingSettings::drawing, {"stratified", "independent"})};
 
 // Sums of several rounds, weighted by their numbers of draws: every round is unbiased, so their mean is too.
+class PowerRounds {
+ public:
+  PowerRounds(const PowerSamplingSettings& settings, const matrix::LightingMatrix& matrix,
+              const RunOptions& options)
+      : settings_(settings),
+        matrix_(matrix),
+        options_(options),
+        timer_(options),
+        rows_for_error_(matrix, options, timer_),
+        open_ended_(options.time_seconds > 0 || options.target_error > 0),
+        all_(matrix.columns()),
+        known_(options.target_error > 0 && options.time_seconds <= 0
+                   ? read_rows(matrix, kRowsOfTarget, options.seed)
+                   : ExactRows(matrix)),
+        aim_(target_for_sampling(options.target_error, known_.lights().value, known_.clamping().value)),
+        max_rendered_(static_cast<std::size_t>(
+            (options.time_seconds > 0 ? kMaxShareOfColumnsInTime : kMaxShareOfColumns) *
+            static_cast<double>(matrix.columns()))) {
+    std::iota(all_.begin(), all_.end(), 0u);
+    estimate_.sums.assign(matrix.rows(), Rgb(0));
+  }
+
+  Estimate run() {
+    for (std::size_t round = 0;; ++round) {
+      const auto count = draws_of_round();
+      if (!count || !add_round(round, *count)) break;
+    }
+    state_error();
+    write_numbers();
+    return std::move(estimate_);
+  }
+
+ private:
+  static constexpr std::size_t kRowsOfTarget = 64;
+
+  // None where time is up.
+  std::optional<std::size_t> draws_of_round() const {
+    std::size_t count = !open_ended_ ? settings_.columns : std::max<std::size_t>(draws_, 32);
+    if (options_.time_seconds > 0 && draws_ > 0) {
+      const auto affordable = timed_choice(options_, "affordable_draws", INT64_MAX, [&] {
+        const double left = deadline_of(options_) - timer_.seconds();
+        const double fit = left * static_cast<double>(rendered_) / std::max(seconds_, 1e-12);
+        return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMaxPowerDraws)));
+      });
+      if (affordable == 0) return std::nullopt;
+      // A last round that would be cut short is better made to fit.
+      if (affordable < 2 * count || options_.target_error <= 0) count = affordable;
+    }
+    if (open_ended_) count = std::min({count, kMaxPowerDraws, kMaxDrawsOfColumn * all_.size()});
+    return count;
+  }
+
+  // Whether another one follows.
+  bool add_round(std::size_t round, std::size_t count) {
+    const auto drawn =
+        draw_columns(all_, matrix_.column_features().power,
+                     {count, settings_.drawing == Drawing::stratified, options_.seed, Stage::method, round});
+    std::vector<Rgb> sums(matrix_.rows(), Rgb(0));
+    const PassResult pass = render(drawn, sums);
+    float gain = 1;
+    if (pass.done < drawn.size()) {
+      estimate_.interrupted = pass.cancelled;
+      estimate_.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
+      if (pass.done == 0) return false;
+      // What was done of the round is a fair sample of it.
+      gain = static_cast<float>(drawn.size()) / static_cast<float>(pass.done);
+      sums = scaled_sums(sums, gain);
+      count = std::max<std::size_t>(1, count * pass.done / drawn.size());
+    }
+    if (draws_ == count)
+      estimate_.trace.numbers["predicted_error"] = 0.5 * relative_l1_difference(sums, estimate_.sums);
+    const float share = static_cast<float>(count) / static_cast<float>(count + draws_);
+    mix_in_sums(sums, share);
+    mix_in(estimate_.combination, std::span(drawn).first(pass.done), gain, share);
+    draws_ += count;
+    if (options_.on_estimate) options_.on_estimate(estimate_.sums);
+    return !estimate_.interrupted && !pass.out_of_time && open_ended_ && !enough();
+  }
+
+  PassResult render(std::span<const matrix::ScaledColumn> drawn, std::span<Rgb> sums) {
+    PassControl control{options_, timer_, deadline_of(options_), {}};
+    if (options_.on_estimate && draws_ == 0)
+      control.on_block = [&](std::span<const Rgb> part, std::size_t done) {
+        options_.on_estimate(scaled_sums(part, static_cast<float>(drawn.size()) / static_cast<float>(done)));
+      };
+    const PassResult pass = render_columns(matrix_, drawn, control, sums);
+    seconds_ += pass.seconds;
+    rendered_ += pass.done;
+    for (std::size_t k = 0; k < pass.done; ++k) distinct_.insert(drawn[k].column);
+    return pass;
+  }
+
+  void mix_in_sums(std::span<const Rgb> sums, float share) {
+    std::vector<Rgb>& mean = estimate_.sums;
+    parallel_for(mean.size(), 16384, [&](std::size_t b, std::size_t e) {
+      for (std::size_t i = b; i < e; ++i) mean[i] = draws_ == 0 ? sums[i] : lerp(mean[i], sums[i], share);
+    });
+  }
+
+  // Whether the target is met, or the rounds have cost what they may: without that, an error that cannot be
+  // had would be pursued for ever.
+  bool enough() {
+    if (rendered_ >= max_rendered_) {
+      if (options_.target_error > 0) estimate_.trace.notes["target"] = "not reached";
+      return true;
+    }
+    const auto& numbers = estimate_.trace.numbers;
+    const auto predicted = numbers.find("predicted_error");
+    return options_.target_error > 0 && predicted != numbers.end() && predicted->second < aim_ &&
+           (options_.time_seconds > 0 || known_.sampling(estimate_.sums).value < aim_);
+  }
+
+  void state_error() {
+    if (estimate_.interrupted) return;
+    if (known_.lit())
+      write_error({known_.sampling(estimate_.sums), known_.lights(), known_.clamping()}, estimate_.trace);
+    else
+      rows_for_error_.state(estimate_.sums, static_cast<double>(rendered_), estimate_.trace);
+  }
+
+  void write_numbers() {
+    auto& numbers = estimate_.trace.numbers;
+    if (options_.time_seconds > 0) {
+      numbers["budget.coarse_share"] = 0;  // every row has all columns that were rendered
+      if (draws_ < settings_.columns && rendered_ < max_rendered_ && draws_ > 0)
+        numbers["budget.seconds_wanted"] =
+            1.1 * timer_.seconds() * static_cast<double>(settings_.columns) / static_cast<double>(draws_);
+    }
+    numbers["seconds.columns"] = seconds_;
+    numbers["rows"] = static_cast<double>(known_.size());
+    numbers["draws"] = static_cast<double>(draws_);
+    numbers["columns"] = static_cast<double>(distinct_.size());
+    numbers["sampling_rate"] =
+        matrix_.columns() > 0 ? static_cast<double>(rendered_) / static_cast<double>(matrix_.columns()) : 1.0;
+  }
+
+  const PowerSamplingSettings& settings_;
+  const matrix::LightingMatrix& matrix_;
+  const RunOptions& options_;
+  const RunClock timer_;
+  RowsForError rows_for_error_;
+  const bool open_ended_;  // until a target is met
+  std::vector<matrix::Index> all_;
+  const ExactRows known_;  // rows that tell when to stop: draws know nothing of them
+  const double aim_;
+  const std::size_t max_rendered_;
+
+  Estimate estimate_;
+  std::set<matrix::Index> distinct_;
+  std::size_t draws_ = 0, rendered_ = 0;
+  double seconds_ = 0;
+};
+
 class PowerSampling final : public Method {
  public:
   explicit PowerSampling(const PowerSamplingSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    const RunClock timer(options);
-    RowsForError rows_for_error(matrix, options, timer);
-    const bool open_ended = options.time_seconds > 0 || options.target_error > 0;
-    std::vector<matrix::Index> all(matrix.columns());
-    std::iota(all.begin(), all.end(), 0u);
-    const auto power = matrix.column_features().power;
-
-    // Rows tell when to stop: draws know nothing of them.
-    constexpr std::size_t kRows = 64;
-    const ExactRows known = options.target_error > 0 && options.time_seconds <= 0
-                                ? read_rows(matrix, kRows, options.seed)
-                                : ExactRows(matrix);
-    const double aim =
-        target_for_sampling(options.target_error, known.lights().value, known.clamping().value);
-
-    Estimate estimate;
-    estimate.sums.assign(matrix.rows(), Rgb(0));
-    auto& numbers = estimate.trace.numbers;
-    std::set<matrix::Index> distinct;
-    std::size_t draws = 0, rendered = 0;
-    double seconds = 0;
-    // Without this an error that cannot be had would be pursued for ever.
-    const auto max_rendered =
-        static_cast<std::size_t>((options.time_seconds > 0 ? kMaxShareOfColumnsInTime : kMaxShareOfColumns) *
-                                 static_cast<double>(all.size()));
-    for (std::size_t round = 0;; ++round) {
-      std::size_t count = !open_ended ? settings_.columns : std::max<std::size_t>(draws, 32);
-      if (options.time_seconds > 0 && draws > 0) {
-        const auto affordable = timed_choice(options, "affordable_draws", INT64_MAX, [&] {
-          const double left = deadline_of(options) - timer.seconds();
-          const double fit = left * static_cast<double>(rendered) / std::max(seconds, 1e-12);
-          return static_cast<std::size_t>(std::clamp(fit, 0.0, static_cast<double>(kMaxPowerDraws)));
-        });
-        if (affordable == 0) break;
-        // A last round that would be cut short is better made to fit.
-        if (affordable < 2 * count || options.target_error <= 0) count = affordable;
-      }
-      if (open_ended) count = std::min({count, kMaxPowerDraws, kMaxDrawsOfColumn * all.size()});
-      const auto drawn = draw_columns(
-          all, power, {count, settings_.drawing == Drawing::stratified, options.seed, Stage::method, round});
-      std::vector<Rgb> sums(matrix.rows(), Rgb(0));
-      PassControl control{options, timer, deadline_of(options), {}};
-      if (options.on_estimate && draws == 0)
-        control.on_block = [&](std::span<const Rgb> part, std::size_t done) {
-          options.on_estimate(scaled_sums(part, static_cast<float>(drawn.size()) / static_cast<float>(done)));
-        };
-      const PassResult pass = render_columns(matrix, drawn, control, sums);
-      seconds += pass.seconds;
-      rendered += pass.done;
-      for (std::size_t k = 0; k < pass.done; ++k) distinct.insert(drawn[k].column);
-      float gain = 1;
-      if (pass.done < drawn.size()) {
-        estimate.interrupted = pass.cancelled;
-        estimate.trace.notes["stopped"] = pass.cancelled ? "cancelled" : "time budget";
-        if (pass.done == 0) break;
-        // What was done of the round is a fair sample of it.
-        gain = static_cast<float>(drawn.size()) / static_cast<float>(pass.done);
-        sums = scaled_sums(sums, gain);
-        count = std::max<std::size_t>(1, count * pass.done / drawn.size());
-      }
-      if (draws == count) numbers["predicted_error"] = 0.5 * relative_l1_difference(sums, estimate.sums);
-      add_round(estimate.sums, draws, sums, count);
-      mix_in(estimate.combination, std::span(drawn).first(pass.done), gain, share_of_round(draws, count));
-      draws += count;
-      if (options.on_estimate) options.on_estimate(estimate.sums);
-      if (estimate.interrupted || pass.out_of_time || !open_ended) break;
-      if (rendered >= max_rendered) {
-        if (options.target_error > 0) estimate.trace.notes["target"] = "not reached";
-        break;
-      }
-      const auto predicted = numbers.find("predicted_error");
-      if (options.target_error > 0 && predicted != numbers.end() && predicted->second < aim &&
-          (options.time_seconds > 0 || known.sampling(estimate.sums).value < aim))
-        break;
-    }
-    if (!estimate.interrupted) {
-      if (known.lit())
-        write_error({known.sampling(estimate.sums), known.lights(), known.clamping()}, estimate.trace);
-      else
-        rows_for_error.state(estimate.sums, static_cast<double>(rendered), estimate.trace);
-    }
-    if (options.time_seconds > 0) {
-      numbers["budget.coarse_share"] = 0;  // every row has all columns that were rendered
-      if (draws < settings_.columns && rendered < max_rendered && draws > 0)
-        numbers["budget.seconds_wanted"] =
-            1.1 * timer.seconds() * static_cast<double>(settings_.columns) / static_cast<double>(draws);
-    }
-    numbers["seconds.columns"] = seconds;
-    numbers["rows"] = static_cast<double>(known.size());
-    numbers["draws"] = static_cast<double>(draws);
-    numbers["columns"] = static_cast<double>(distinct.size());
-    numbers["sampling_rate"] =
-        matrix.columns() > 0 ? static_cast<double>(rendered) / static_cast<double>(matrix.columns()) : 1.0;
-    return estimate;
+    return PowerRounds(settings_, matrix, options).run();
   }
 
  private:
-  static float share_of_round(std::size_t old_draws, std::size_t draws) {
-    return static_cast<float>(draws) / static_cast<float>(draws + old_draws);
-  }
-  static void add_round(std::span<Rgb> mean, std::size_t old_draws, std::span<const Rgb> sums,
-                        std::size_t draws) {
-    const float share = share_of_round(old_draws, draws);
-    parallel_for(mean.size(), 16384, [&](std::size_t b, std::size_t e) {
-      for (std::size_t i = b; i < e; ++i) mean[i] = old_draws == 0 ? sums[i] : lerp(mean[i], sums[i], share);
-    });
-  }
-
   PowerSamplingSettings settings_;
 };
 

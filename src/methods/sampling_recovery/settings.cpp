@@ -6,7 +6,7 @@ namespace lumirank::methods {
 
 namespace {
 
-Fields<RecoverySettings> own_fields() {
+Fields<RecoverySettings> prediction_fields() {
   using S = RecoverySettings;
   const std::vector<std::string> off_on{"off", "on"};
   return {
@@ -43,7 +43,13 @@ Fields<RecoverySettings> own_fields() {
       number_field<S>({"bright", "of a slice's unoccluded light",
                        "Columns above this share are sampled wholly: the sun, lamps close by; 0: none, as in "
                        "the paper."},
-                      &S::bright, 0, 1),
+                      &S::bright, 0, 1)};
+}
+
+Fields<RecoverySettings> separation_fields() {
+  using S = RecoverySettings;
+  const std::vector<std::string> off_on{"off", "on"};
+  return {
       experiment(choice_field<S>(
           {"separation", "",
            "Whether the predicted matrix is separated into one of low rank and sparse errors."},
@@ -84,7 +90,8 @@ const Fields<RecoverySettings>& recovery_fields() {
         &S::parameters, {"by-target", "given", "automatic"})};
     for (const auto& field : slice_cut_fields())
       all.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
-    for (auto& field : own_fields()) all.push_back(std::move(field));
+    for (auto& field : prediction_fields()) all.push_back(std::move(field));
+    for (auto& field : separation_fields()) all.push_back(std::move(field));
     return all;
   }();
   return fields;

@@ -24,9 +24,8 @@ std::size_t SliceRows::gather_alike(const matrix::RowFeatures& features, std::sp
                                   placed.begin());
 }
 
-void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index> slice) {
+void SliceRows::place(const matrix::RowFeatures& features, std::span<const Index> slice) {
   const bool with_pixels = !features.pixel.empty();
-  const bool with_places = !features.position.empty();
   placed_.clear();
   for (const Index i : slice) {
     if (with_pixels)
@@ -38,9 +37,13 @@ void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index
   std::sort(placed_.begin(), placed_.end(), [](const Placed& a, const Placed& b) {
     return a.y != b.y ? a.y < b.y : a.x != b.x ? a.x < b.x : a.receiver < b.receiver;
   });
+}
+
+Vec3f SliceRows::gather(const matrix::RowFeatures& features) {
+  const bool with_places = !features.position.empty();
   group_first_.clear();
   group_points_.clear();
-  Vec3f normal{}, center{};
+  Vec3f normal{};
   for (std::size_t k = 0; k < placed_.size();) {
     group_first_.push_back(static_cast<std::uint32_t>(k));
     const Placed pixel = placed_[k];
@@ -55,19 +58,31 @@ void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index
       if (!features.normal.empty()) normal = normal + features.normal[i];
     }
     group_points_.push_back(sum / count);
-    center = center + group_points_.back();
   }
-  const std::size_t rows = group_points_.size();
   group_first_.push_back(static_cast<std::uint32_t>(placed_.size()));
-  center = center / std::max(static_cast<float>(rows), 1.0f);
+  return normal;
+}
+
+void SliceRows::center() {
+  const auto rows = static_cast<float>(group_points_.size());
+  Vec3f middle{};
+  for (const Vec3f& p : group_points_) middle = middle + p;
+  middle = middle / std::max(rows, 1.0f);
   double spread = 0;
   for (Vec3f& p : group_points_) {
-    p = p - center;
+    p = p - middle;
     spread += static_cast<double>(length_squared(p));
   }
-  const auto unit =
-      static_cast<float>(std::sqrt(std::max(spread, 1e-30) / std::max(static_cast<double>(rows), 1.0)));
+  const auto unit = static_cast<float>(
+      std::sqrt(std::max(spread, 1e-30) / std::max(static_cast<double>(group_points_.size()), 1.0)));
   for (Vec3f& p : group_points_) p = p / unit;
+}
+
+void SliceRows::build(const matrix::RowFeatures& features, std::span<const Index> slice) {
+  place(features, slice);
+  const Vec3f normal = gather(features);
+  center();
+  const std::size_t rows = group_points_.size();
   plane_.resize(rows);
   tangent_coordinates(group_points_, normal, plane_);
   curves_.build(plane_);

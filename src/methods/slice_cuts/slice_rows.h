@@ -36,6 +36,11 @@ class SliceRows {
   };
   // The first of `placed` that are alike come first; how many.
   static std::size_t gather_alike(const matrix::RowFeatures& features, std::span<Placed> placed);
+  // The steps of build(): the receivers in the order of their pixels; the rows' receivers and places, with
+  // the sum of all normals; the places around 0.
+  void place(const matrix::RowFeatures& features, std::span<const matrix::Index> slice);
+  Vec3f gather(const matrix::RowFeatures& features);
+  void center();
   std::vector<Placed> placed_;
   std::vector<std::uint32_t> group_first_, first_;
   std::vector<matrix::Index> receivers_;

@@ -2,6 +2,7 @@
 
 #include "base/near_origin.h"
 #include "scenedesc/gltf/reader.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {

@@ -17,8 +17,7 @@ bool is_black(const ColorInput& input) { return input.texture == kNone && input.
 }  // namespace
 
 int Reader::add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind) {
-  scene_.bsdfs.push_back({at.text("name", at.path()), at.where(), std::move(kind)});
-  return static_cast<int>(scene_.bsdfs.size()) - 1;
+  return SceneReader::add_bsdf(at.text("name", at.path()), at.where(), std::move(kind));
 }
 
 int Reader::mix(const Element& at, FloatInput weight, int one, int other) {
@@ -129,14 +128,7 @@ int Reader::uv_set_of(const Element& material) {
   return std::max(found, 0);
 }
 
-Reader::BuiltMaterial Reader::make_material(const Element& material, bool colored) {
-  BuiltMaterial out;
-  out.uv_set = uv_set_of(material);
-  out.name = material.text("name", material.path());
-  const Json nothing{Json::Kind::object, false, material.where().line, 0, {}, {}, {}};
-  const auto given = material.find("pbrMetallicRoughness");
-  const Element pbr = given ? *given : Element(nothing, material.path(), material.file());
-
+Reader::Surface Reader::surface_of(const Element& material, const Element& pbr, bool colored) {
   Surface s;
   s.base = color_input(pbr, "baseColorFactor", Rgb(1), "baseColorTexture");
   if (colored) {
@@ -156,34 +148,55 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
       ior->at("ior").fail("is less than 1", "give 1 or more, or 0");
     }
   }
+  return s;
+}
 
+// The surface with its layers and sides, as one that light falls on.
+int Reader::lit_bsdf(const Element& material, const Surface& s) {
+  const auto transmission = material.extension("KHR_materials_transmission");
+  const auto sheen = material.extension("KHR_materials_sheen");
+  const bool transmits = transmission && transmission->real("transmissionFactor", 0, 0, 1) > 0;
+  if (transmits && sheen) warn(material, "sheen on a surface that transmits light", "");
+  int bsdf = transmits ? transmitting_bsdf(material, s, *transmission)
+                       : (sheen ? sheen_bsdf(material, s, *sheen) : opaque_bsdf(material, s));
+  if (const auto clearcoat = material.extension("KHR_materials_clearcoat"))
+    bsdf = coated_bsdf(*clearcoat, bsdf);
+  if (!transmits) bsdf = two_sided(material, bsdf);
+  return normal_mapped(material, bsdf);
+}
+
+std::optional<ColorInput> Reader::emission_of(const Element& material) {
+  const float strength = [&] {
+    const auto extension = material.extension("KHR_materials_emissive_strength");
+    return extension ? extension->real("emissiveStrength", 1, 0) : 1.0f;
+  }();
+  ColorInput emission = color_input(material, "emissiveFactor", Rgb(0), "emissiveTexture");
+  if (emission.texture != kNone)
+    emission.texture = scaled(material, emission.texture, Rgb(strength));
+  else
+    emission.value *= strength;
+  if (is_black(emission) || !(strength > 0)) return std::nullopt;
+  if (material.flag("doubleSided", false))
+    warn(material, "emission from the back of a double-sided material", "emission from its front");
+  return emission;
+}
+
+Reader::BuiltMaterial Reader::make_material(const Element& material, bool colored) {
+  BuiltMaterial out;
+  out.uv_set = uv_set_of(material);
+  out.name = material.text("name", material.path());
+  const Json nothing{Json::Kind::object, false, material.where().line, 0, {}, {}, {}};
+  const auto given = material.find("pbrMetallicRoughness");
+  const Element pbr = given ? *given : Element(nothing, material.path(), material.file());
+
+  const Surface s = surface_of(material, pbr, colored);
   if (material.extension("KHR_materials_unlit")) {
     warn(material, "an unlit material", "a black surface that shines in its base color");
     out.bsdf = add_bsdf(material, DiffuseDesc{{Rgb(0)}});
     out.emission = s.base;
   } else {
-    const auto transmission = material.extension("KHR_materials_transmission");
-    const auto sheen = material.extension("KHR_materials_sheen");
-    const bool transmits = transmission && transmission->real("transmissionFactor", 0, 0, 1) > 0;
-    if (transmits && sheen) warn(material, "sheen on a surface that transmits light", "");
-    out.bsdf = transmits ? transmitting_bsdf(material, s, *transmission)
-                         : (sheen ? sheen_bsdf(material, s, *sheen) : opaque_bsdf(material, s));
-    if (const auto clearcoat = material.extension("KHR_materials_clearcoat"))
-      out.bsdf = coated_bsdf(*clearcoat, out.bsdf);
-    if (!transmits) out.bsdf = two_sided(material, out.bsdf);
-    out.bsdf = normal_mapped(material, out.bsdf);
-    const float strength = [&] {
-      const auto extension = material.extension("KHR_materials_emissive_strength");
-      return extension ? extension->real("emissiveStrength", 1, 0) : 1.0f;
-    }();
-    ColorInput emission = color_input(material, "emissiveFactor", Rgb(0), "emissiveTexture");
-    if (emission.texture != kNone)
-      emission.texture = scaled(material, emission.texture, Rgb(strength));
-    else
-      emission.value *= strength;
-    if (!is_black(emission) && strength > 0) out.emission = emission;
-    if (out.emission && material.flag("doubleSided", false))
-      warn(material, "emission from the back of a double-sided material", "emission from its front");
+    out.bsdf = lit_bsdf(material, s);
+    out.emission = emission_of(material);
     if (material.has("occlusionTexture"))
       note(material, "baked occlusion, which light transport makes by itself, is left out");
   }

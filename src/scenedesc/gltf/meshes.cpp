@@ -48,6 +48,45 @@ std::vector<std::uint32_t> Reader::triangles(const Element& primitive, std::vect
   return out;
 }
 
+std::vector<std::uint32_t> Reader::read_attributes(const Element& primitive, const Element& attributes,
+                                                   int uv_set, MeshData& mesh) {
+  mesh.positions = vec3s(accessors_.floats(attributes.at("POSITION"), 3, 3));
+  const std::size_t vertices = mesh.positions.size();
+  if (const auto normals = attributes.find("NORMAL")) {
+    check_count(*normals, accessors_.count(*normals), vertices);
+    mesh.normals = vec3s(accessors_.floats(*normals, 3, 3));
+  }
+  if (const auto uvs = attributes.find("TEXCOORD_" + std::to_string(uv_set))) {
+    check_count(*uvs, accessors_.count(*uvs), vertices);
+    const Numbers n = accessors_.floats(*uvs, 2, 2);
+    for (std::size_t k = 0; k < n.count; ++k) mesh.uvs.push_back({n.values[2 * k], n.values[2 * k + 1]});
+  }
+  if (const auto colors = attributes.find("COLOR_0")) {
+    check_count(*colors, accessors_.count(*colors), vertices);
+    const Numbers n = accessors_.floats(*colors, 3, 4);
+    bool clear = false;
+    for (std::size_t k = 0; k < n.count; ++k) {
+      const float* c = &n.values[k * n.components];
+      mesh.colors.push_back({c[0], c[1], c[2]});
+      clear = clear || (n.components == 4 && c[3] < 1);
+    }
+    if (clear) warn(*colors, "the alpha of vertex colors", "1");
+  }
+  std::vector<std::uint32_t> corners;
+  if (const auto indices = primitive.find("indices")) {
+    corners = accessors_.integers(*indices);
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      if (corners[k] >= vertices)
+        indices->fail("names vertex " + std::to_string(corners[k]) + " of " + std::to_string(vertices) +
+                          " (its element " + std::to_string(k) + ")",
+                      "vertices are counted from 0");
+  } else {
+    corners.resize(vertices);
+    for (std::size_t k = 0; k < vertices; ++k) corners[k] = static_cast<std::uint32_t>(k);
+  }
+  return corners;
+}
+
 std::shared_ptr<const MeshData> Reader::build_mesh(const Element& primitive, int uv_set,
                                                    const std::vector<float>& weights,
                                                    const std::vector<Transform>& joints) {
@@ -65,44 +104,11 @@ std::shared_ptr<const MeshData> Reader::build_mesh(const Element& primitive, int
   }
   MeshData mesh;
   std::vector<std::uint32_t> corners;
-  const std::string uv_name = "TEXCOORD_" + std::to_string(uv_set);
   if (const auto draco = primitive.extension("KHR_draco_mesh_compression")) {
     decode_draco(primitive, *draco, uv_set, mesh);
     corners = std::move(mesh.indices);
   } else {
-    mesh.positions = vec3s(accessors_.floats(attributes.at("POSITION"), 3, 3));
-    const std::size_t vertices = mesh.positions.size();
-    if (const auto normals = attributes.find("NORMAL")) {
-      check_count(*normals, accessors_.count(*normals), vertices);
-      mesh.normals = vec3s(accessors_.floats(*normals, 3, 3));
-    }
-    if (const auto uvs = attributes.find(uv_name)) {
-      check_count(*uvs, accessors_.count(*uvs), vertices);
-      const Numbers n = accessors_.floats(*uvs, 2, 2);
-      for (std::size_t k = 0; k < n.count; ++k) mesh.uvs.push_back({n.values[2 * k], n.values[2 * k + 1]});
-    }
-    if (const auto colors = attributes.find("COLOR_0")) {
-      check_count(*colors, accessors_.count(*colors), vertices);
-      const Numbers n = accessors_.floats(*colors, 3, 4);
-      bool clear = false;
-      for (std::size_t k = 0; k < n.count; ++k) {
-        const float* c = &n.values[k * n.components];
-        mesh.colors.push_back({c[0], c[1], c[2]});
-        clear = clear || (n.components == 4 && c[3] < 1);
-      }
-      if (clear) warn(*colors, "the alpha of vertex colors", "1");
-    }
-    if (const auto indices = primitive.find("indices")) {
-      corners = accessors_.integers(*indices);
-      for (std::size_t k = 0; k < corners.size(); ++k)
-        if (corners[k] >= vertices)
-          indices->fail("names vertex " + std::to_string(corners[k]) + " of " + std::to_string(vertices) +
-                            " (its element " + std::to_string(k) + ")",
-                        "vertices are counted from 0");
-    } else {
-      corners.resize(vertices);
-      for (std::size_t k = 0; k < vertices; ++k) corners[k] = static_cast<std::uint32_t>(k);
-    }
+    corners = read_attributes(primitive, attributes, uv_set, mesh);
   }
   mesh.indices = triangles(primitive, std::move(corners), mode);
   morph(primitive, weights, mesh);
@@ -162,7 +168,7 @@ void Reader::build_shapes(const Node& node, const Element& mesh_index) {
   } catch (const MissingFile& error) {
     if (!options_.allow_missing) throw;
     const std::string text = what_is_missing(error);
-    if (warned_.insert(text).second) missing_file(scene_, options_, error.where(), text, "");
+    if (is_new(text)) missing_file(error.where(), text, "");
     scene_.shapes.resize(before);
     ShapeDesc shape;
     shape.id = name_of(node);

@@ -7,6 +7,7 @@
 #include "scenedesc/gltf/read_gltf.h"
 #include "scenedesc/gltf/uri.h"
 #include "scenedesc/schema/expansion.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {
@@ -38,8 +39,8 @@ bool contains(const List& list, const std::string& name) {
 
 Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const std::string& filename,
                const ReadOptions& options)
-    : root_(root),
-      options_(options),
+    : SceneReader(filename, "glTF 2.0", options),
+      root_(root),
       buffers_(root, binary, is_glb),
       accessors_(root, buffers_),
       meshes_(root.list("meshes")),
@@ -49,22 +50,20 @@ Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const 
       samplers_(root.list("samplers")),
       cameras_(root.list("cameras")),
       skins_(root.list("skins")) {
-  scene_.source_file = filename;
-  scene_.format = "glTF 2.0";
   scene_.lumens_per_unit = 1;  // candela, lux and nits are its units
   if (const auto punctual = root.extension("KHR_lights_punctual")) lights_ = punctual->list("lights");
 }
 
 void Reader::warn(const Element& at, const std::string& what, const std::string& used_instead) {
-  add_warning(scene_, options_, at.where(), what + " (" + at.path() + ")", used_instead);
+  SceneReader::warn(at.where(), what + " (" + at.path() + ")", used_instead);
 }
 
 void Reader::warn_once(const Element& at, const std::string& what, const std::string& used_instead) {
-  if (warned_.insert(what).second) warn(at, what, used_instead);
+  if (is_new(what)) warn(at, what, used_instead);
 }
 
 void Reader::note(const Element& at, const std::string& what) {
-  if (warned_.insert(what).second) add_note(scene_, at.where(), what + " (" + at.path() + ")");
+  if (is_new(what)) add_note(scene_, at.where(), what + " (" + at.path() + ")");
 }
 
 std::size_t Reader::index_of(const Element& index, std::size_t count, const char* what) const {

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -13,9 +12,7 @@
 #include "scenedesc/gltf/buffers.h"
 #include "scenedesc/gltf/element.h"
 #include "scenedesc/meshes/mesh_reader.h"
-#include "scenedesc/schema/read_options.h"
-#include "scenedesc/schema/scene_desc.h"
-#include "scenedesc/schema/warnings.h"
+#include "scenedesc/schema/scene_reader.h"
 
 namespace lumirank::scenedesc::gltf {
 
@@ -28,7 +25,7 @@ struct Node {
   std::vector<int> children;
 };
 
-class Reader {
+class Reader : public SceneReader {
  public:
   // `root` and what `binary` points to must outlive this.
   Reader(const Element& root, std::string_view binary, bool is_glb, const std::string& filename,
@@ -37,9 +34,8 @@ class Reader {
   SceneDesc read();
 
  private:
-  // The file has `what` and Lumirank does not. With `strict`, an InputError.
+  // As SceneReader's, with the element's path; notes are for what no picture shows, once for each text.
   void warn(const Element& at, const std::string& what, const std::string& used_instead);
-  // The same, once for each text.
   void warn_once(const Element& at, const std::string& what, const std::string& used_instead);
   void note(const Element& at, const std::string& what);
 
@@ -62,6 +58,9 @@ class Reader {
   std::shared_ptr<const MeshData> build_mesh(const Element& primitive, int uv_set,
                                              const std::vector<float>& weights,
                                              const std::vector<Transform>& joints);
+  // Positions, normals, uvs and colors of the accessors; the vertices of the corners.
+  std::vector<std::uint32_t> read_attributes(const Element& primitive, const Element& attributes, int uv_set,
+                                             MeshData& mesh);
   std::vector<std::uint32_t> triangles(const Element& primitive, std::vector<std::uint32_t> corners,
                                        int mode);
   // skins.cpp
@@ -83,6 +82,9 @@ class Reader {
   BuiltMaterial make_material(const Element& material, bool colored);
   int uv_set_of(const Element& material);
   struct Surface;  // a material's inputs on their way to a BSDF
+  Surface surface_of(const Element& material, const Element& metallic_roughness, bool colored);
+  int lit_bsdf(const Element& material, const Surface& surface);
+  std::optional<ColorInput> emission_of(const Element& material);
   int opaque_bsdf(const Element& material, const Surface& surface);
   int transmitting_bsdf(const Element& material, const Surface& surface, const Element& transmission);
   int sheen_bsdf(const Element& material, const Surface& surface, const Element& sheen);  // layers.cpp
@@ -111,13 +113,10 @@ class Reader {
   std::string name_of(const Node& node) const;
 
   Element root_;
-  const ReadOptions& options_;
-  SceneDesc scene_;
   Buffers buffers_;
   Accessors accessors_;
   std::vector<Element> meshes_, materials_, textures_, images_, samplers_, cameras_, skins_, lights_;
   std::vector<Node> nodes_;
-  std::set<std::string> warned_;
   std::map<std::pair<int, bool>, BuiltMaterial> built_materials_;
   std::map<std::tuple<std::string, bool, int, std::vector<float>>, int> built_textures_;
   std::map<std::size_t, BitmapTextureDesc> built_images_;

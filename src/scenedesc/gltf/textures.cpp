@@ -4,6 +4,7 @@
 
 #include "scenedesc/gltf/reader.h"
 #include "scenedesc/gltf/uri.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {
@@ -52,8 +53,7 @@ UvTransform uv_transform(const Element& info) {
 }  // namespace
 
 int Reader::add_texture(const Element& at, decltype(TextureDesc::kind) kind) {
-  scene_.textures.push_back({at.path(), at.where(), std::move(kind)});
-  return static_cast<int>(scene_.textures.size()) - 1;
+  return SceneReader::add_texture(at.path(), at.where(), std::move(kind));
 }
 
 int Reader::build_texture(const Element& info, bool raw, TextureChannel channel) {
@@ -92,7 +92,7 @@ int Reader::build_texture(const Element& info, bool raw, TextureChannel channel)
       }
     } catch (const MissingFile& error) {
       if (!options_.allow_missing) throw;
-      missing_file(scene_, options_, error.where(), what_is_missing(error), kMissingPicture);
+      missing_file(error.where(), what_is_missing(error), kMissingPicture);
       if (image->second.filename.empty()) image->second.filename = scene_.source_file;
       image->second.missing = true;
     }

@@ -1,24 +1,18 @@
 #include "scenedesc/mitsuba/reader.h"
 
-#include <filesystem>
-
 #include "scenedesc/mitsuba/plugin.h"
 #include "scenedesc/mitsuba/read_mitsuba.h"
 #include "scenedesc/schema/expansion.h"
 #include "scenedesc/schema/files.h"
-#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
 Reader::Reader(const Document& document, const std::string& filename, const ReadOptions& options)
-    : document_(document), options_(options) {
-  scene_.source_file = filename;
-  scene_.format = "mitsuba " + std::to_string(dialect().major) + "." + std::to_string(dialect().minor);
-}
-
-void Reader::warn(const SourceLocation& where, const std::string& what, const std::string& used_instead) {
-  add_warning(scene_, options_, where, what, used_instead);
-}
+    : SceneReader(
+          filename,
+          "mitsuba " + std::to_string(document.dialect.major) + "." + std::to_string(document.dialect.minor),
+          options),
+      document_(document) {}
 
 OpenGuard::OpenGuard(Reader& reader, const Element& element) : reader_(reader), element_(element) {
   const std::string* id = element.find("id");
@@ -73,28 +67,7 @@ const Element& Reader::resolve(const Element& element) const {
 
 Reader::NamedFile Reader::file(const std::string& name, const SourceLocation& where, const std::string& kind,
                                const std::string& stand_in) {
-  const std::string filename = resolve_path(name, where.file);
-  if (found_files_.count(filename)) return {filename, false};
-  std::error_code error;
-  const auto status = std::filesystem::status(filename, error);
-  if (!std::filesystem::exists(status)) {
-    missing_file(scene_, options_, where, kind + " not found: " + filename, stand_in);
-    return {filename, true};
-  }
-  if (std::filesystem::is_directory(status))
-    throw InputError(where, kind + " " + filename + " is a folder", "name a file in it");
-  found_files_.insert(filename);
-  return {filename, false};
-}
-
-int Reader::add_bsdf(const std::string& id, const SourceLocation& where, decltype(BsdfDesc::kind) kind) {
-  scene_.bsdfs.push_back({id, where, std::move(kind)});
-  return static_cast<int>(scene_.bsdfs.size()) - 1;
-}
-int Reader::add_texture(const std::string& id, const SourceLocation& where,
-                        decltype(TextureDesc::kind) kind) {
-  scene_.textures.push_back({id, where, std::move(kind)});
-  return static_cast<int>(scene_.textures.size()) - 1;
+  return named_file(resolve_path(name, where.file), where, kind, stand_in);
 }
 
 void Reader::build_top_level(const Element& element) {

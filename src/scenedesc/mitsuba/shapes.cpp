@@ -39,6 +39,36 @@ decltype(ShapeDesc::kind) mesh_file(Reader& reader, Plugin& p, MeshFormat format
 
 Vec3d point(Plugin& p, const std::string& name, Vec3d fallback) { return p.vec3(name).value_or(fallback); }
 
+// The kinds that are no group and no instance; false: Lumirank does not have it.
+bool plain_shape(Reader& reader, Plugin& p, ShapeDesc& shape) {
+  const std::string& type = p.type();
+  if (type == "obj" || type == "ply" || type == "serialized") {
+    shape.kind = mesh_file(
+        reader, p,
+        type == "obj" ? MeshFormat::obj : (type == "ply" ? MeshFormat::ply : MeshFormat::serialized));
+  } else if (type == "bsplinecurve" || type == "linearcurve" || type == "hair") {
+    shape.to_world = p.regular_transform();
+    shape.kind = curves(reader, p, shape.to_world);
+  } else if (type == "rectangle") {
+    shape.kind = RectangleDesc{};
+  } else if (type == "cube") {
+    shape.kind = CubeDesc{};
+  } else if (type == "sphere") {
+    shape.kind = SphereDesc{point(p, "center", {}), p.positive("radius", 1)};
+  } else if (type == "disk") {
+    shape.kind = DiskDesc{};
+  } else if (type == "cylinder") {
+    const CylinderDesc cylinder{point(p, "p0", {0, 0, 0}), point(p, "p1", {0, 0, 1}),
+                                p.positive("radius", 1)};
+    if (cylinder.p1 == cylinder.p0)
+      throw InputError(p.where_of("p1"), "p0 and p1 of " + p.title() + " are the same point");
+    shape.kind = cylinder;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 AreaEmitterDesc Reader::area_emitter(const Element& element) {
@@ -51,6 +81,45 @@ AreaEmitterDesc Reader::area_emitter(const Element& element) {
   p.finish();
   used_area_emitters_.insert(&element);
   return out;
+}
+
+ShapeGroupDesc Reader::shape_group(Plugin& p) {
+  ShapeGroupDesc out;
+  for (const Element* member : p.take_all("shape"))
+    if (const int index = build_shape(*member, true); index != kNone) out.shapes.push_back(index);
+  if (out.shapes.empty()) throw InputError(p.where(), p.title() + " holds no shapes", "nest a <shape>");
+  return out;
+}
+
+InstanceDesc Reader::shape_instance(Plugin& p) {
+  const Element* target = p.take_one("shape");
+  if (!target) throw InputError(p.where(), p.title() + " names no shapegroup", "add <ref id=\"…\"/>");
+  if (target->require("type") != "shapegroup")
+    throw InputError(p.where(), p.title() + " refers to a shape that is not a shapegroup",
+                     "put that shape into a shapegroup");
+  return InstanceDesc{build_shape(*target, false)};
+}
+
+void Reader::add_surface(Plugin& p, ShapeDesc& shape) {
+  const auto bsdfs = p.take_all("bsdf");
+  if (bsdfs.size() > 1)
+    throw InputError(bsdfs[1]->where, p.title() + " has more than one BSDF", "keep one of them");
+  if (!bsdfs.empty()) shape.bsdf = build_bsdf(*bsdfs[0]);
+  if (const Element* emitter = p.take_one("emitter")) {
+    if (emitter->require("type") != "area")
+      throw InputError(emitter->where, "an emitter \"" + emitter->require("type") + "\" in a shape",
+                       "only area emitters can be there");
+    if (shape.in_group)
+      throw InputError(emitter->where, "an area emitter in a shapegroup",
+                       "instances cannot emit light; take the shape out of the group");
+    shape.emitter = area_emitter(*emitter);
+    if (shape.emitter->id.empty()) shape.emitter->id = shape.id;
+  }
+  // Without a BSDF, lamps are black in both dialects, and in 0.6 the boundary of a medium cannot be seen.
+  if (shape.bsdf == kNone && shape.emitter)
+    shape.bsdf = add_bsdf("", p.where(), DiffuseDesc{{Rgb(0), kNone}});
+  else if (shape.bsdf == kNone && dialect().camel_case() && p.has_object("medium"))
+    shape.bsdf = add_bsdf("", p.where(), NullBsdfDesc{});
 }
 
 int Reader::build_shape(const Element& element, bool in_group) {
@@ -66,68 +135,17 @@ int Reader::build_shape(const Element& element, bool in_group) {
   if (in_group && (group || instance))
     throw InputError(p.where(), "a " + type + " in a shapegroup", "groups cannot be nested; take it out");
 
-  if (type == "obj" || type == "ply" || type == "serialized") {
-    shape.kind = mesh_file(
-        *this, p,
-        type == "obj" ? MeshFormat::obj : (type == "ply" ? MeshFormat::ply : MeshFormat::serialized));
-  } else if (type == "bsplinecurve" || type == "linearcurve" || type == "hair") {
-    shape.to_world = p.regular_transform();
-    shape.kind = curves(*this, p, shape.to_world);
-  } else if (type == "rectangle") {
-    shape.kind = RectangleDesc{};
-  } else if (type == "cube") {
-    shape.kind = CubeDesc{};
-  } else if (type == "sphere") {
-    shape.kind = SphereDesc{point(p, "center", {}), p.positive("radius", 1)};
-  } else if (type == "disk") {
-    shape.kind = DiskDesc{};
-  } else if (type == "cylinder") {
-    const CylinderDesc cylinder{point(p, "p0", {0, 0, 0}), point(p, "p1", {0, 0, 1}),
-                                p.positive("radius", 1)};
-    if (cylinder.p1 == cylinder.p0)
-      throw InputError(p.where_of("p1"), "p0 and p1 of " + p.title() + " are the same point");
-    shape.kind = cylinder;
-  } else if (group) {
-    ShapeGroupDesc out;
-    for (const Element* member : p.take_all("shape"))
-      if (const int index = build_shape(*member, true); index != kNone) out.shapes.push_back(index);
-    if (out.shapes.empty()) throw InputError(p.where(), p.title() + " holds no shapes", "nest a <shape>");
-    shape.kind = out;
+  if (group) {
+    shape.kind = shape_group(p);
   } else if (instance) {
-    const Element* target = p.take_one("shape");
-    if (!target) throw InputError(p.where(), p.title() + " names no shapegroup", "add <ref id=\"…\"/>");
-    if (target->require("type") != "shapegroup")
-      throw InputError(p.where(), p.title() + " refers to a shape that is not a shapegroup",
-                       "put that shape into a shapegroup");
-    shape.kind = InstanceDesc{build_shape(*target, false)};
-  } else {
+    shape.kind = shape_instance(p);
+  } else if (!plain_shape(*this, p, shape)) {
     warn(p.where(), "the shape \"" + type + "\"", "");
     return kNone;
   }
-
   if (!group) shape.to_world = p.regular_transform();
   shape.flip_normals = p.flag("flip_normals", false);
-  if (!group && !instance) {
-    const auto bsdfs = p.take_all("bsdf");
-    if (bsdfs.size() > 1)
-      throw InputError(bsdfs[1]->where, p.title() + " has more than one BSDF", "keep one of them");
-    if (!bsdfs.empty()) shape.bsdf = build_bsdf(*bsdfs[0]);
-    if (const Element* emitter = p.take_one("emitter")) {
-      if (emitter->require("type") != "area")
-        throw InputError(emitter->where, "an emitter \"" + emitter->require("type") + "\" in a shape",
-                         "only area emitters can be there");
-      if (in_group)
-        throw InputError(emitter->where, "an area emitter in a shapegroup",
-                         "instances cannot emit light; take the shape out of the group");
-      shape.emitter = area_emitter(*emitter);
-      if (shape.emitter->id.empty()) shape.emitter->id = shape.id;
-    }
-    // Without a BSDF, lamps are black in both dialects, and in 0.6 the boundary of a medium cannot be seen.
-    if (shape.bsdf == kNone && shape.emitter)
-      shape.bsdf = add_bsdf("", p.where(), DiffuseDesc{{Rgb(0), kNone}});
-    else if (shape.bsdf == kNone && dialect().camel_case() && p.has_object("medium"))
-      shape.bsdf = add_bsdf("", p.where(), NullBsdfDesc{});
-  }
+  if (!group && !instance) add_surface(p, shape);
   p.finish();
   scene_.shapes.push_back(std::move(shape));
   const int index = static_cast<int>(scene_.shapes.size()) - 1;

@@ -66,8 +66,8 @@ decltype(EmitterDesc::kind) goniometric(Reader& reader, Params& p, const Transfo
   Transform swap;
   swap.m = {1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
   out.to_world = to_world * swap;
-  const auto file = reader.named_file(p.required_text("filename"), p.where_of("filename"), "picture",
-                                      "the same intensity in all directions");
+  const auto file = reader.file(p.required_text("filename"), p.where_of("filename"), "picture",
+                                "the same intensity in all directions");
   out.filename = file.name;
   out.intensity = spectrum(p, "I") * scale_of(p);
   if (const float power = p.number("power", -1); power > 0) out.power = power;
@@ -100,7 +100,7 @@ decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform&
   if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
   EnvironmentMapDesc out;
   const auto file =
-      reader.named_file(p.text("filename", ""), p.where_of("filename"), "environment map", "a gray sky");
+      reader.file(p.text("filename", ""), p.where_of("filename"), "environment map", "a gray sky");
   out.filename = file.name;
   out.scale = scale;
   if (file.missing)
@@ -155,8 +155,8 @@ void Reader::read_area_light(Params& p, const std::string& type) {
   if (p.has("filename")) {
     if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
     BitmapTextureDesc picture;
-    const auto file = named_file(p.text("filename", ""), p.where_of("filename"), "picture", kMissingPicture);
-    picture.filename = file.name, picture.missing = file.missing;
+    const auto found = file(p.text("filename", ""), p.where_of("filename"), "picture", kMissingPicture);
+    picture.filename = found.name, picture.missing = found.missing;
     picture.wrap_u = picture.wrap_v = WrapMode::clamp;
     const int texture = add_texture("", p.where(), std::move(picture));
     light->radiance.texture = add_texture("", p.where(), ScaleTextureDesc{{Rgb(0), texture}, Rgb(scale)});

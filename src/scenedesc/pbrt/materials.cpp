@@ -94,8 +94,8 @@ class MaterialMaker {
   int detailed(int bsdf) {
     if (p_.has("normalmap")) {
       BitmapTextureDesc map;
-      const auto file = reader_.named_file(p_.text("normalmap", ""), p_.where_of("normalmap"), "normal map",
-                                           "the surface without it");
+      const auto file = reader_.file(p_.text("normalmap", ""), p_.where_of("normalmap"), "normal map",
+                                     "the surface without it");
       map.filename = file.name, map.missing = file.missing;
       map.raw = true;
       bsdf = add(NormalMapDesc{reader_.add_texture("", p_.where_of("normalmap"), map), bsdf});

@@ -7,7 +7,6 @@
 #include "scenedesc/pbrt/read_pbrt.h"
 #include "scenedesc/schema/expansion.h"
 #include "scenedesc/schema/files.h"
-#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -34,19 +33,8 @@ std::string plain_option(const std::string& name) {
 }  // namespace
 
 Reader::Reader(const std::string& filename, const ReadOptions& options)
-    : main_file_(filename), options_(options) {
-  scene_.source_file = filename;
-  scene_.format = "pbrt-v4";
+    : SceneReader(filename, "pbrt-v4", options), main_file_(filename) {
   film_.width = 1280, film_.height = 720;
-}
-
-void Reader::warn(const SourceLocation& where, const std::string& what, const std::string& used_instead) {
-  add_warning(scene_, options_, where, what, used_instead);
-}
-
-void Reader::warn_once(const SourceLocation& where, const std::string& what,
-                       const std::string& used_instead) {
-  if (said_.insert(what).second) warn(where, what, used_instead);
 }
 
 std::string Reader::resolve(const std::string& name, const Place& where) const {
@@ -58,29 +46,22 @@ std::string Reader::resolve(const std::string& name, const Place& where) const {
 }
 
 std::string Reader::existing_file(const std::string& name, const Place& where, const std::string& kind) {
-  std::string path = resolve(name, where);
+  const std::string path = resolve(name, where);
   if (path.empty())
     throw InputError(where, kind + " not found: " + resolve_path(name, main_file_), "check the name");
-  if (std::error_code error; std::filesystem::is_directory(path, error))
-    throw InputError(where, kind + " " + path + " is a folder", "name a file in it");
-  return path;
+  return named_file(path, where, kind, "").name;
 }
 
-Reader::NamedFile Reader::named_file(const std::string& name, const Place& where, const std::string& kind,
-                                     const std::string& stand_in) {
+Reader::NamedFile Reader::file(const std::string& name, const Place& where, const std::string& kind,
+                               const std::string& stand_in) {
   if (!resolve(name, where).empty()) return {existing_file(name, where, kind), false};
   const std::string path = resolve_path(name, main_file_);
-  missing_file(scene_, options_, where, kind + " not found: " + path, stand_in);
+  missing_file(where, kind + " not found: " + path, stand_in);
   return {path, true};
 }
 
 std::string Reader::file_text(const std::string& path, const Place& where) const {
   return read_file(path, where, kMaxText);
-}
-
-int Reader::add_bsdf(const std::string& id, const Place& where, decltype(BsdfDesc::kind) kind) {
-  scene_.bsdfs.push_back({id, where, std::move(kind)});
-  return static_cast<int>(scene_.bsdfs.size()) - 1;
 }
 
 std::string Reader::take_text(Tokens& tokens, const Token& word, const char* what) {

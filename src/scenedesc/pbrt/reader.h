@@ -5,15 +5,13 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/pbrt/params.h"
 #include "scenedesc/pbrt/spectra.h"
-#include "scenedesc/schema/read_options.h"
-#include "scenedesc/schema/scene_desc.h"
+#include "scenedesc/schema/scene_reader.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -37,16 +35,11 @@ struct GraphicsState {
   std::map<std::string, std::shared_ptr<const std::vector<Parameter>>, std::less<>> defaults;
 };
 
-class Reader {
+class Reader : public SceneReader {
  public:
   Reader(const std::string& filename, const ReadOptions& options);
   SceneDesc read(std::string text);
 
-  // The format has `what` and Lumirank does not. With `strict`, an InputError. `once`: only the first time.
-  void warn(const SourceLocation& where, const std::string& what, const std::string& used_instead);
-  void warn_once(const SourceLocation& where, const std::string& what, const std::string& used_instead);
-
-  SceneDesc& scene() { return scene_; }
   GraphicsState& state() { return state_; }
   // Factor of pixel values to radiance: exposure time × ISO / 100.
   float imaging_ratio() const { return imaging_ratio_; }
@@ -56,18 +49,12 @@ class Reader {
   std::string resolve(const std::string& name, const Place& where) const;
   std::string existing_file(const std::string& name, const Place& where, const std::string& kind);
   // The same, but what is missing may be a warning that `stand_in` is in its place ("": nothing is).
-  struct NamedFile {
-    std::string name;
-    bool missing = false;
-  };
-  NamedFile named_file(const std::string& name, const Place& where, const std::string& kind,
-                       const std::string& stand_in);
+  NamedFile file(const std::string& name, const Place& where, const std::string& kind,
+                 const std::string& stand_in);
   std::string file_text(const std::string& path, const Place& where) const;
 
-  int add_bsdf(const std::string& id, const Place& where, decltype(BsdfDesc::kind) kind);
-  int add_texture(const std::string& id, const Place& where, decltype(TextureDesc::kind) kind);
-
   // textures.cpp
+  int add_texture(const std::string& id, const Place& where, decltype(TextureDesc::kind) kind);
   void read_texture(Params& p, const std::string& name, const std::string& type, const std::string& kind);
   ColorInput color(Params& p, const char* name, ColorInput fallback, Intent intent);
   FloatInput scalar(Params& p, const char* name, FloatInput fallback);
@@ -134,9 +121,6 @@ class Reader {
   void add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light);
 
   const std::string main_file_;
-  const ReadOptions& options_;
-  SceneDesc scene_;
-  std::set<std::string> said_;  // warnings given once
 
   GraphicsState state_;
   std::vector<Saved> saved_;

@@ -47,7 +47,7 @@ std::optional<ShapeKind> disk(Params& p) {
 std::optional<ShapeKind> ply_mesh(Reader& reader, Params& p) {
   MeshFileDesc out;
   out.format = MeshFormat::ply;
-  const auto file = reader.named_file(p.required_text("filename"), p.where_of("filename"), "mesh file", "");
+  const auto file = reader.file(p.required_text("filename"), p.where_of("filename"), "mesh file", "");
   out.filename = file.name;
   out.smooth_without_normals = false;
   if (p.has("displacement")) {

@@ -25,7 +25,7 @@ UvTransform uv_mapping(Params& p) {
 BitmapTextureDesc image_map(Reader& reader, Params& p, bool spectrum) {
   BitmapTextureDesc out;
   const std::string name = p.required_text("filename");
-  const auto file = reader.named_file(name, p.where_of("filename"), "texture", kMissingPicture);
+  const auto file = reader.file(name, p.where_of("filename"), "texture", kMissingPicture);
   out.filename = file.name, out.missing = file.missing;
   if (!spectrum) out.channel = TextureChannel::scalar;
   const std::string filter = p.text("filter", "bilinear");
@@ -86,8 +86,7 @@ int Reader::add_texture(const std::string& id, const Place& where, decltype(Text
     throw InputError(where, "the texture " + in_quotes(id) + " is made of more than 1,000 others",
                      "textures of textures multiply; simplify them");
   texture_parts_.push_back(parts);
-  scene_.textures.push_back({id, where, std::move(kind)});
-  return static_cast<int>(scene_.textures.size()) - 1;
+  return SceneReader::add_texture(id, where, std::move(kind));
 }
 
 ColorInput Reader::color(Params& p, const char* name, ColorInput fallback, Intent intent) {

@@ -1,6 +1,7 @@
 // BSDFs of a scene description. Each lists its fields once (fields.h). A new one is a struct here, and then:
-// a line in mitsuba/bsdfs.cpp that reads it, a material in scatter/material.h with its lobes, and what makes
-// the one of the other in world/material_builder.cpp (docs/adding-a-bsdf.md).
+// a line in mitsuba/bsdfs.cpp that reads it, and a material in scatter/material.h with its lobes
+// (docs/adding-a-bsdf.md). World makes the material from the list, by position: a material has its members in
+// the order of the fields, and the materials are in the order of BsdfKind.
 #pragma once
 
 #include <string>
@@ -73,7 +74,7 @@ struct DielectricDesc {             // smooth if alpha_u and alpha_v are the con
   static constexpr BsdfInfo kInfo{"dielectric", nullptr, nullptr, true};
   static constexpr auto fields() {
     return std::tuple{
-        Field{"eta", &DielectricDesc::eta, Role::index, Range::any, "bk7"},
+        Field{"eta", &DielectricDesc::eta, Role::index, Range::index, "bk7"},
         Field{"specular_reflectance", &DielectricDesc::specular_reflectance, Role::reflectance},
         Field{"specular_transmittance", &DielectricDesc::specular_transmittance, Role::reflectance},
         Field{"distribution", &DielectricDesc::distribution, Role::roughness},
@@ -88,7 +89,7 @@ struct ThinDielectricDesc {
   static constexpr BsdfInfo kInfo{"thindielectric", nullptr, nullptr, true};
   static constexpr auto fields() {
     return std::tuple{
-        Field{"eta", &ThinDielectricDesc::eta, Role::index, Range::any, "bk7"},
+        Field{"eta", &ThinDielectricDesc::eta, Role::index, Range::index, "bk7"},
         Field{"specular_reflectance", &ThinDielectricDesc::specular_reflectance, Role::reflectance},
         Field{"specular_transmittance", &ThinDielectricDesc::specular_transmittance, Role::reflectance}};
   }
@@ -106,7 +107,7 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
 
   static constexpr BsdfInfo kInfo{"plastic"};
   static constexpr auto fields() {
-    return std::tuple{Field{"eta", &PlasticDesc::eta, Role::index, Range::any, "polypropylene"},
+    return std::tuple{Field{"eta", &PlasticDesc::eta, Role::index, Range::index, "polypropylene"},
                       Field{"diffuse_reflectance", &PlasticDesc::diffuse_reflectance, Role::reflectance},
                       Field{"specular_reflectance", &PlasticDesc::specular_reflectance, Role::reflectance},
                       Field{"nonlinear", &PlasticDesc::nonlinear, Role::flag},
@@ -160,7 +161,7 @@ struct PrincipledDesc {  // Mitsuba 3's "principled"
                       Field{"clearcoat", &PrincipledDesc::clearcoat, Role::number, Range::to_1},
                       Field{"clearcoat_gloss", &PrincipledDesc::clearcoat_gloss, Role::number, Range::to_1},
                       Field{"flatness", &PrincipledDesc::flatness, Role::number, Range::to_1},
-                      Field{"eta", &PrincipledDesc::eta, Role::own}};
+                      Field{"eta", &PrincipledDesc::eta, Role::own, Range::index}};
   }
 };
 struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fiber
@@ -191,7 +192,7 @@ struct PrincipledThinDesc {  // Mitsuba 3's "principledthin": a sheet without th
                       Field{"sheen_tint", &PrincipledThinDesc::sheen_tint, Role::number, Range::to_1},
                       Field{"flatness", &PrincipledThinDesc::flatness, Role::number, Range::to_1},
                       Field{"diff_trans", &PrincipledThinDesc::diff_trans, Role::number, Range::to_2},
-                      Field{"eta", &PrincipledThinDesc::eta, Role::own}};
+                      Field{"eta", &PrincipledThinDesc::eta, Role::own, Range::index}};
   }
 };
 // A thin sheet that reflects and lets through diffusely, alike on both sides: Mitsuba 0.6's "difftrans",
@@ -228,7 +229,7 @@ struct CoatingDesc {
 
   static constexpr BsdfInfo kInfo{"coating"};
   static constexpr auto fields() {
-    return std::tuple{Field{"eta", &CoatingDesc::eta, Role::index, Range::any, "bk7"},
+    return std::tuple{Field{"eta", &CoatingDesc::eta, Role::index, Range::index, "bk7"},
                       Field{"specular_reflectance", &CoatingDesc::specular_reflectance, Role::reflectance},
                       Field{"absorption", &CoatingDesc::absorption, Role::own},
                       Field{"weight", &CoatingDesc::weight, Role::own},
@@ -279,7 +280,7 @@ struct BumpMapDesc {
   static constexpr BsdfInfo kInfo{"bumpmap"};
   static constexpr auto fields() {
     return std::tuple{Field{"texture", &BumpMapDesc::texture, Role::texture},
-                      Field{"scale", &BumpMapDesc::scale, Role::own},
+                      Field{"scale", &BumpMapDesc::scale, Role::own, Range::any, "bump map's scale"},
                       Field{"nested", &BumpMapDesc::nested, Role::nested}};
   }
 };
@@ -294,7 +295,7 @@ struct NormalMapDesc {
   static constexpr BsdfInfo kInfo{"normalmap"};
   static constexpr auto fields() {
     return std::tuple{Field{"texture", &NormalMapDesc::texture, Role::texture},
-                      Field{"scale", &NormalMapDesc::scale, Role::own},
+                      Field{"scale", &NormalMapDesc::scale, Role::own, Range::any, "normal map's scale"},
                       Field{"follow_uv", &NormalMapDesc::follow_uv, Role::own},
                       Field{"nested", &NormalMapDesc::nested, Role::nested}};
   }

@@ -1,5 +1,5 @@
-// The fields of a description, listed once beside its struct: what readers, the writer, listings and walks
-// over textures and nested BSDFs do with every field alike is made from the list.
+// The fields of a description, listed once beside its struct: what readers, the writer, listings, walks over
+// textures and nested BSDFs, and the world's materials do with every field alike is made from the list.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ enum class Role : std::uint8_t {
   file,     // `detail` says in messages what the file is
   nested,   // index of a BSDF
   texture,  // index of a texture
-  own,      // read and written by code of its own
+  own,      // read and written by code of its own; `detail` names a float in messages
 };
 
-// In which a constant number must lie.
-enum class Range : std::uint8_t { any, not_negative, to_1, to_2 };
+// In which a constant number must lie; `index`: a relative index of refraction, positive and finite.
+enum class Range : std::uint8_t { any, not_negative, to_1, to_2, index };
 
 template <typename Desc, typename Member>
 struct Field {

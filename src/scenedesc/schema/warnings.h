@@ -1,25 +1,14 @@
-// Warnings of readers: what a format has and Lumirank does not.
+// Notes about a scene, and what stands in for files that are missing. Warnings: SceneReader (scene_reader.h).
 #pragma once
 
 #include <string>
 
-#include "scenedesc/schema/read_options.h"
 #include "scenedesc/schema/scene_desc.h"
 
 namespace lumirank::scenedesc {
 
-// With `options.strict` an InputError. `used_instead`: "" if it is left out.
-void add_warning(SceneDesc& scene, const ReadOptions& options, const SourceLocation& where,
-                 const std::string& what, const std::string& used_instead);
-
 // A note, for what no picture shows or what is no replacement at all: --strict lets it pass.
 void add_note(SceneDesc& scene, const SourceLocation& where, const std::string& what);
-
-// The scene names a file that does not exist; `what` says what it is and its name: "texture not found:
-// a.png". An InputError, or with `options.allow_missing` a warning that `stand_in` is in its place ("": it is
-// left out).
-void missing_file(SceneDesc& scene, const ReadOptions& options, const SourceLocation& where,
-                  const std::string& what, const std::string& stand_in);
 
 // What is shown in place of pictures; TextureBuilder and MaterialBuilder do it.
 inline constexpr const char* kMissingPicture =

@@ -25,6 +25,25 @@ bool has_sharp_lobe(const VirtualLights& lights, Index j) {
                      [](const scatter::Lobe& lobe) { return scatter::lobe_roughness(lobe) < 0.5f; });
 }
 
+// The radius, and what a sphere may send beyond a point: samples of lobes, and what is hidden of its disc.
+void raise_by_sphere(const VirtualLights& lights, Index j, const SphereRules& rules, bool two_sided,
+                     ColumnSet& set) {
+  const bool matt = lights.closure[j] == VirtualLights::kLambertian;
+  set.spherical = true;
+  set.radius = set.min_radius = lights.radius[j];
+  if (rules.strategies == SphereRules::Strategies::all) {
+    if (rules.samples == SphereRules::Samples::cone) {
+      set.intensity *= 3;  // as many of each kind
+    } else if (!matt && has_sharp_lobe(lights, j)) {
+      set.intensity *= kLobeSamples;
+    }
+  }
+  // The light of a disc lies on the part of it that the receiver's own plane does not hide: of one-sided
+  // receivers at least half, and no less than what the light sees.
+  const float hidden = std::min(lights.hidden[j], two_sided ? 1.0f : 0.5f);
+  set.intensity *= 1 / std::max(1 - hidden, 1e-6f);
+}
+
 }  // namespace
 
 ColumnSet SceneMatrix::column_set(Index j) const {
@@ -77,22 +96,7 @@ ColumnSet SceneMatrix::column_set(Index j) const {
     if (oriented) set.emission = Emission::oriented, set.cone = {lights.ng[j], 1};
     set.intensity *= oriented || disc ? peak.max_f : peak.max_f_cos;
   }
-  if (sphere) {
-    set.spherical = true;
-    set.radius = set.min_radius = lights.radius[j];
-    const SphereRules& rules = impl_->settings.spheres;
-    if (rules.strategies == SphereRules::Strategies::all) {
-      if (rules.samples == SphereRules::Samples::cone) {
-        set.intensity *= 3;  // as many of each kind
-      } else if (!matt && has_sharp_lobe(lights, j)) {
-        set.intensity *= kLobeSamples;
-      }
-    }
-    // The light of a disc lies on the part of it that the receiver's own plane does not hide: of one-sided
-    // receivers at least half, and no less than what the light sees.
-    const float hidden = std::min(lights.hidden[j], impl_->context.has_two_sided ? 1.0f : 0.5f);
-    set.intensity *= 1 / std::max(1 - hidden, 1e-6f);
-  }
+  if (sphere) raise_by_sphere(lights, j, impl_->settings.spheres, impl_->context.has_two_sided, set);
   return set;
 }
 

@@ -116,28 +116,39 @@ inline std::uint32_t cull_pair(const RowGroup& r, const ColumnGroup& c, const Pa
   return bits(pair_geometry<row_kind, column_kind>(r, c, extras).alive);
 }
 
+// The geometric term of the kind of light: cosθx·cosθy/d², cosθx/d² or cosθx.
+template <ColumnKind column_kind>
+[[gnu::always_inline]] inline Lane geometric_term(const PairGeometry& at) {
+  if constexpr (column_kind == kColumnFacing || column_kind == kColumnScatter)
+    return (abs(at.cos_x) * at.inv) * (abs(at.cos_y) * at.inv);
+  else if constexpr (column_kind == kColumnDirectional)
+    return abs(at.cos_x);
+  else
+    return (abs(at.cos_x) * at.inv) * at.inv_d;
+}
+
+// spot_share() of the spots, 0 where nothing arrives.
+[[gnu::always_inline]] inline Lane spot_shares(const PairExtras& extras, const PairGeometry& at) {
+  Lane fall_off;
+  const Lane3 away = at.w * (-at.inv_d);
+  for (int k = 0; k < kLanes; ++k)
+    fall_off[k] = extras.spots[k] && (bits(at.alive) >> k & 1)
+                      ? spot_share(*extras.spots[k], at.spot_cosine[k], {away.x[k], away.y[k], away.z[k]})
+                      : 0;
+  return fall_off;
+}
+
 template <std::uint16_t row_kind, ColumnKind column_kind>
 inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const PairExtras& extras) {
-  constexpr bool directional = column_kind == kColumnDirectional;
   constexpr bool facing = column_kind == kColumnFacing;
   constexpr bool scattering_row = row_kind == kRowScatter;
   constexpr bool scattering_column = column_kind == kColumnScatter;
   const Lane zero{};
-  PairGeometry at = pair_geometry<row_kind, column_kind>(r, c, extras);
+  const PairGeometry at = pair_geometry<row_kind, column_kind>(r, c, extras);
   const Lane3 w = at.w;
   const Lane inv_d = at.inv_d;
-  LaneMask alive = at.alive;
-
-  // The geometric term of the kind of light: cosθx·cosθy/d², cosθx/d² or cosθx.
-  Lane g;
-  if constexpr (facing || scattering_column) {
-    g = (abs(at.cos_x) * at.inv) * (abs(at.cos_y) * at.inv);
-  } else if constexpr (directional) {
-    g = abs(at.cos_x);
-  } else {
-    g = (abs(at.cos_x) * at.inv) * inv_d;
-  }
-
+  const LaneMask alive = at.alive;
+  Lane g = geometric_term<column_kind>(at);
   PairResult out;
   out.clamped = 0;
   out.excess = zero;
@@ -155,15 +166,7 @@ inline PairResult evaluate_pair(const RowGroup& r, const ColumnGroup& c, const P
     power = power * fy;
     clamp_area = clamp_area * (max_component(fy) * splat(kPi));
   }
-  if constexpr (column_kind == kColumnSpot) {
-    Lane fall_off;
-    const Lane3 away = w * (-inv_d);
-    for (int k = 0; k < kLanes; ++k)
-      fall_off[k] = extras.spots[k] && (bits(alive) >> k & 1)
-                        ? spot_share(*extras.spots[k], at.spot_cosine[k], {away.x[k], away.y[k], away.z[k]})
-                        : 0;
-    power = power * fall_off;
-  }
+  if constexpr (column_kind == kColumnSpot) power = power * spot_shares(extras, at);
 
   if constexpr (facing || scattering_column) {
     const Lane bound = (clamp_area * (max_component(f) * splat(kPi))) * g;

@@ -1,0 +1,104 @@
+#include "settings/table.h"
+
+#include "methods/method.h"
+
+namespace lumirank::settings {
+namespace {
+
+Row method_row() {
+  Field field{"method", "choice", "auto", "auto", "", "how the row sums of the matrix are estimated"};
+  for (const auto& m : methods::all_methods()) field.range += "|" + m.name;
+  return {field,
+          [](RenderSettings& s, const std::string& text) {
+            if (text != "auto") methods::find_method(text);  // throws with the list
+            s.method.name = text;
+          },
+          [](const RenderSettings& s) { return s.method.name; }};
+}
+
+}  // namespace
+
+void add_light_rows(std::vector<Row>& t) {
+  using S = RenderSettings;
+  t.push_back(number(
+      {"lights", "", "100000", "1 … 50000000", "lights",
+       "virtual lights to generate, all kinds together; costs memory (about 400 B each) and time in rows"},
+      At<&S::lights, &VirtualLightSettings::count>{}, 1, 5e7));
+  t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"},
+                     At<&S::lights, &VirtualLightSettings::type>{}));
+  t.push_back(number({"radius-scale", "", "0", "0 … 1000", "",
+                      "spherical lights: radius over the distance to the 10th nearest light; 0: by the "
+                      "number of lights"},
+                     At<&S::lights, &VirtualLightSettings::radius_scale>{}, 0, 1000));
+  t.push_back(
+      choice({"sphere-indicator", "", "disc", "", "",
+              "spherical lights: what is taken for the lit surface close by; cosine: as in the paper"},
+             At<&S::lights, &VirtualLightSettings::sphere_indicator>{}));
+  t.push_back(choice({"sphere-strategies", "", "all", "", "",
+                      "spherical lights: sample cone and both BSDFs, or the cone alone"},
+                     At<&S::lights, &VirtualLightSettings::sphere_strategies>{}));
+  t.push_back(
+      choice({"sphere-samples", "", "overlap", "", "",
+              "spherical lights: samples by the overlap of lobes and cone, or by the cone alone as in "
+              "the paper"},
+             At<&S::lights, &VirtualLightSettings::sphere_samples>{}));
+}
+
+void add_run_rows(std::vector<Row>& t) {
+  using S = RenderSettings;
+  t.push_back(number({"seed", "", "1", "0 … 2^63", "", "fixes every random choice"}, Top<&S::seed>{}, 0,
+                     9223372036854775808.0));
+  t.push_back(number({"method-seed", "", "0", "0 … 2^63", "",
+                      "other random choices of the method on the same lights and receivers; 0: as --seed"},
+                     At<&S::method, &MethodSettings::seed>{}, 0, 9223372036854775808.0));
+  t.push_back(number({"threads", "", "0", "0 … 1024", "threads", "0: all; the image does not depend on it"},
+                     Top<&S::threads>{}, 0, 1024));
+  t.push_back(number(
+      {"time", "", "0", "0 … 1e7", "s", "time budget for seconds.total, divided among the stages; 0: none"},
+      Top<&S::time>{}, 0, 1e7));
+  t.push_back(number({"error", "", "0", "0 … 10", "",
+                      "stop when the estimated relative error is below; 0: the method's default"},
+                     At<&S::method, &MethodSettings::target_error>{}, 0, 10));
+}
+
+void add_traced_rows(std::vector<Row>& t) {
+  using S = RenderSettings;
+  t.push_back(choice({"direct", "", "auto", "", "",
+                      "direct light at receivers: by columns, traced with multiple importance sampling, or "
+                      "traced in sharp lobes (roughness below 0.15) and by columns in the others"},
+                     At<&S::traced, &TracedLightSettings::direct>{}));
+  t.push_back(number({"local-paths", "", "0", "0 … 1048576", "paths per receiver",
+                      "trace the light that virtual lights blur, in sharp lobes and from close by, "
+                      "instead of gathering it from columns (unbiased, noisy); 0: do not"},
+                     At<&S::traced, &TracedLightSettings::local_paths>{}, 0, 1 << 20));
+  t.push_back(number({"local-sharp", "", "0.3", "0 … 1", "roughness",
+                      "with local-paths: lobes sharper than this are traced"},
+                     At<&S::traced, &TracedLightSettings::local_sharp>{}, 0, 1));
+  t.push_back(number({"local-near", "", "4", "0 … 1000", "radii",
+                      "with local-paths, of spherical lights: places nearer than this are traced"},
+                     At<&S::traced, &TracedLightSettings::local_near>{}, 0, 1000));
+  t.push_back(choice({"rest", "", "auto", "", "",
+                      "paths that columns cannot carry: leave out, add by path tracing (noisy), or add "
+                      "where a pilot finds that they bring more than 0.5 % of the light"},
+                     At<&S::traced, &TracedLightSettings::rest>{}));
+  t.push_back(number({"compensate", "", "0", "0 … 1048576", "paths per pixel",
+                      "give back what clamping took from indirect light by path tracing (unbiased, "
+                      "noisy); 0: do not"},
+                     At<&S::traced, &TracedLightSettings::compensate>{}, 0, 1 << 20));
+}
+
+const std::vector<Row>& table() {
+  static const std::vector<Row> rows = [] {
+    std::vector<Row> t;
+    t.push_back(method_row());
+    add_light_rows(t);
+    add_view_rows(t);
+    add_run_rows(t);
+    add_traced_rows(t);
+    add_output_rows(t);
+    return t;
+  }();
+  return rows;
+}
+
+}  // namespace lumirank::settings

@@ -1,0 +1,230 @@
+// A description → a world, in steps: what is placed, its materials and textures, its light, the ray scene.
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/error.h"
+#include "world/impl.h"
+#include "world/lights.h"
+#include "world/material_builder.h"
+#include "world/mesh_store.h"
+#include "world/notes.h"
+#include "world/placer.h"
+#include "world/surface.h"
+#include "world/texture_builder.h"
+
+namespace lumirank::world {
+
+namespace sd = scenedesc;
+
+namespace {
+
+geometry::Blocking blocking(scatter::MaterialSet::Passage passage) {
+  switch (passage) {
+    case scatter::MaterialSet::Passage::attenuating:
+      return geometry::Blocking::attenuating;
+    case scatter::MaterialSet::Passage::cutout:
+      return geometry::Blocking::cutout;
+    case scatter::MaterialSet::Passage::opaque:
+      break;
+  }
+  return geometry::Blocking::opaque;
+}
+
+std::size_t bytes_of(const geometry::TriangleMesh& m) {
+  return m.positions.size() * sizeof(Vec3f) + m.normals.size() * sizeof(Vec3f) +
+         m.uvs.size() * sizeof(Vec2f) + m.colors.size() * sizeof(Rgb) +
+         m.indices.size() * sizeof(std::uint32_t) +
+         m.fibers.points.size() * (sizeof(geometry::Fibers::Point) + sizeof(float)) +
+         m.fibers.segments.size() * sizeof(std::uint32_t);
+}
+
+std::size_t bytes_of(const emitters::Emitter& emitter) {
+  if (const auto* area = std::get_if<emitters::AreaEmitter>(&emitter.kind))
+    return area->triangles.size() * (sizeof(emitters::AreaEmitter::Triangle) + sizeof(double));
+  if (const auto* sky = std::get_if<emitters::EnvironmentEmitter>(&emitter.kind))
+    return sky->radiance.size() * (sizeof(Rgb) + sizeof(double));
+  return 0;
+}
+
+Carrier carrier(const sd::ShapeDesc& shape) {
+  return std::holds_alternative<sd::CurvesDesc>(shape.kind) ? Carrier::fibers : Carrier::surface;
+}
+
+}  // namespace
+
+class World::Builder {
+ public:
+  Builder(const sd::SceneDesc& desc, const BuildOptions& options, std::vector<sd::Warning>& warnings,
+          const Sinks& sinks)
+      : desc_(desc),
+        sinks_(sinks),
+        notes_(warnings, options.strict),
+        textures_(desc),
+        materials_(desc, textures_, notes_) {}
+
+  std::unique_ptr<Impl> build() {
+    check_cameras();
+    step(0);
+    place();
+    step(0.4);
+    assemble_geometry();
+    step(0.5);
+    set_materials();
+    step(0.6);
+    for (std::size_t i = 0; i < geometry_.placed.size(); ++i) {
+      set_placement(i);
+      if (geometry_.placed[i].shines) add_area_emitter(i);
+    }
+    add_other_lights();
+    count();
+    step(0.7);
+    make_rays();
+    step(1);
+    return std::move(impl_);
+  }
+
+ private:
+  void step(double fraction) const {
+    if (sinks_.cancelled()) throw Cancelled();
+    sinks_.report("scene", fraction);
+  }
+  SourceLocation whole_scene() const { return {desc_.source_file, 0}; }
+  int material_of(const Placed& p) {
+    return materials_.use(p.shape->bsdf, p.shape->where, carrier(*p.shape));
+  }
+  scatter::ColorInput radiance_of(const Placed& p) {
+    return p.shines ? textures_.color(p.shape->emitter->radiance, p.shape->emitter->where)
+                    : scatter::ColorInput{};
+  }
+
+  void check_cameras() const {
+    if (desc_.sensors.empty()) throw InputError(whole_scene(), "the scene has no sensor", "add a camera");
+    for (const auto& sensor : desc_.sensors) Camera{sensor};  // throws where one makes no sense
+  }
+
+  // What is used is noted before anything is loaded: errors in the scene come first.
+  void place() {
+    placed_ = place_shapes(desc_, store_, notes_);
+    if (placed_.empty()) throw InputError(whole_scene(), "the scene has no geometry", "add a shape");
+    for (const Placed& p : placed_) {
+      textures_.needed_by(*p.shape);
+      material_of(p);
+      radiance_of(p);
+    }
+    store_.load(notes_);
+  }
+
+  void assemble_geometry() {
+    w_.info.meshes = store_.size() - store_.left_out(), w_.info.meshes_left_out = store_.left_out();
+    w_.units = units_for(placed_, store_);
+    geometry_ = assemble(std::move(placed_), store_, w_.units, notes_);
+    if (geometry_.placements.empty())
+      throw InputError(whole_scene(),
+                       "no shape of the scene has any area" +
+                           (store_.left_out() > 0 ? ": " + store_.why_left_out() : std::string()),
+                       "add a shape that has");
+  }
+
+  // Indices are settled: the builders answer from memory from here on.
+  void set_materials() {
+    for (const Placed& p : geometry_.placed) {
+      material_of_.push_back(material_of(p));
+      radiance_of_.push_back(radiance_of(p));
+    }
+    w_.materials.materials = materials_.take();
+    // Heights of bumps are lengths.
+    for (auto& material : w_.materials.materials)
+      if (auto* bump = std::get_if<scatter::BumpMaterial>(&material))
+        bump->scale *= static_cast<float>(w_.units.scale());
+    w_.materials.textures = textures_.finish();
+  }
+
+  void set_placement(std::size_t i) {
+    auto& placement = geometry_.placements[i];
+    placement.material = static_cast<std::uint32_t>(material_of_[i]);
+    placement.blocking = blocking(w_.materials.passage(material_of_[i]));
+    w_.placements.push_back({placement.to_world.is_identity(), w_.materials.is_hair(material_of_[i]),
+                             geometry_.flip[i], placement.to_world,
+                             placement.to_world.inverse().value_or(Transform{})});
+  }
+
+  void add_area_emitter(std::size_t i) {
+    const sd::ShapeDesc& shape = *geometry_.placed[i].shape;
+    auto& placement = geometry_.placements[i];
+    emitters::AreaEmitter area =
+        make_area_emitter(geometry_.meshes[placement.mesh], static_cast<std::uint32_t>(i), radiance_of_[i],
+                          w_.materials.textures);
+    for (const auto& t : area.triangles) {
+      if (!is_finite(t.mean_radiance))
+        throw InputError(shape.emitter->where, "the radiance is not finite", "give finite numbers");
+      check_light(max_component(t.mean_radiance), "the radiance", shape.emitter->where);
+    }
+    if (!(area.by_power.total() > 0)) return;  // black
+    placement.emitter = static_cast<std::uint32_t>(w_.emitters.size());
+    emitters::Emitter emitter;
+    emitter.kind = std::move(area);
+    names_.name(emitter, shape.emitter->id.empty() ? shape.id : shape.emitter->id, shape.emitter->where);
+    w_.emitters.push_back(std::move(emitter));
+    w_.radiance.push_back(radiance_of_[i]);
+  }
+
+  void add_other_lights() {
+    w_.environment = add_lights(desc_, names_, w_.units, notes_, w_.emitters);
+    w_.radiance.resize(w_.emitters.size());
+    for (std::size_t k = 0; k < w_.emitters.size(); ++k) {
+      const auto* sun = std::get_if<emitters::DirectionalEmitter>(&w_.emitters[k].kind);
+      if (sun && sun->cos_half_angle < 1) w_.suns.push_back(k);
+    }
+    if (w_.emitters.empty()) notes_.warn(whole_scene(), "the scene has no light", "a black picture");
+  }
+
+  void count() {
+    w_.info.instances = geometry_.placements.size();
+    w_.info.triangles = geometry_.triangles;
+    w_.info.segments = geometry_.segments;
+    w_.info.unique_triangles = geometry_.unique_triangles;
+    w_.info.textures = w_.materials.textures.textures.size();
+    w_.info.materials = w_.materials.materials.size();
+    w_.info.emitters = w_.emitters.size();
+    w_.info.memory_bytes = textures_.memory_bytes();
+    for (const auto& mesh : geometry_.meshes) w_.info.memory_bytes += bytes_of(mesh);
+    for (const auto& emitter : w_.emitters) w_.info.memory_bytes += bytes_of(emitter);
+  }
+
+  void make_rays() {
+    Impl& w = w_;
+    geometry::RayScene::PassageCallbacks callbacks;
+    callbacks.opacity = [&w](const geometry::Hit& hit) {
+      return w.materials.opacity(static_cast<int>(w.rays->placements()[hit.instance].material), w.uv(hit));
+    };
+    callbacks.transmittance = [&w](const geometry::Hit& hit, Vec3f direction) {
+      const SurfaceHit at = w.surface(hit, direction);
+      return w.materials.transmittance(at.material, at.point, normalize(direction));
+    };
+    w.rays.emplace(std::move(geometry_.meshes), std::move(geometry_.placements), std::move(callbacks));
+    w.bounds = w.rays->bounds();
+    w.info.memory_bytes += w.rays->memory_bytes();
+  }
+
+  const sd::SceneDesc& desc_;
+  const Sinks& sinks_;
+  Notes notes_;
+  MeshStore store_;
+  TextureBuilder textures_;
+  MaterialBuilder materials_;
+  EmitterNames names_;
+  std::vector<Placed> placed_;
+  Geometry geometry_;
+  std::vector<int> material_of_;                  // of each of geometry_.placed
+  std::vector<scatter::ColorInput> radiance_of_;  // where it shines
+  std::unique_ptr<Impl> impl_ = std::make_unique<Impl>();
+  Impl& w_ = *impl_;
+};
+
+World World::build(const sd::SceneDesc& desc, const BuildOptions& options, std::vector<sd::Warning>& warnings,
+                   const Sinks& sinks) {
+  return World(Builder(desc, options, warnings, sinks).build());
+}
+
+}  // namespace lumirank::world
