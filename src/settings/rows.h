@@ -1,5 +1,5 @@
-// What a row of the table of render settings is made of: its field with the functions that read it from text
-// and write it, from a member of RenderSettings.
+// Row of the table of render settings: its field with the functions that read it from text and write it, from
+// a member of RenderSettings.
 #pragma once
 
 #include <charconv>

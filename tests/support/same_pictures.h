@@ -1,4 +1,4 @@
-// Whether two pictures with independent noise are estimates of the same picture.
+// Check of whether two pictures with independent noise are estimates of the same picture.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Whether this is a build with the address or the thread sanitizer, where everything takes ten times as long.
+// Test of whether this is a build with the address or the thread sanitizer, where everything takes ten times
+// as long.
 #pragma once
 
 namespace lumirank::test {

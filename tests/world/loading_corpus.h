@@ -1,5 +1,4 @@
-// What the corpus of scenes that are not whole consists of: each case a scene of a few lines, and what
-// loading it must come to.
+// Corpus of scenes that are not whole: each case a scene of a few lines, and what loading it must come to.
 #pragma once
 
 #include <string>

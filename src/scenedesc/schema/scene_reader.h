@@ -1,5 +1,5 @@
-// What the readers of all formats have in common: the description that they build, how they say what a format
-// has and Lumirank does not, and what becomes of files that are named and missing.
+// Base of the readers of all formats: the description that they build, how they say what a format has and
+// Lumirank does not, and what becomes of files that are named and missing.
 #pragma once
 
 #include <set>
