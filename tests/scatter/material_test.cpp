@@ -60,7 +60,7 @@ TEST(Inputs, AreHeldToPhysicalRanges) {
 TEST(Plastic, SmoothMatchesItsFormula) {
   const float n = 1.49f, rho = 0.6f;
   for (const bool nonlinear : {false, true}) {
-    PlasticMaterial m{n, gray(rho), gray(1), nonlinear, NormalDistribution::ggx, number(0), true};
+    PlasticMaterial m{n, gray(rho), gray(1), nonlinear, NormalDistribution::ggx, number(0), false, true};
     const MaterialSet set = materials({m});
     const Closure c = set.closure(0, point_with_normal(kUp), kTilted);
     const float r = fresnel_diffuse_reflectance(1 / n);
@@ -91,7 +91,7 @@ TEST(Plastic, WhiteLosslessSendsBackAllAtAnyRoughness) {
 }
 
 TEST(Plastic, WhiteNonlinearIsLossless) {
-  PlasticMaterial m{1.6f, gray(1), gray(1), true, NormalDistribution::ggx, number(0), true};
+  PlasticMaterial m{1.6f, gray(1), gray(1), true, NormalDistribution::ggx, number(0), false, true};
   const MaterialSet set = materials({m});
   for (float cosine : {1.0f, 0.5f, 0.05f}) {
     const Vec3f wo = at_angle(cosine, 1);
