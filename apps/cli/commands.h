@@ -19,6 +19,7 @@ using Action = std::function<int(Streams)>;
 
 void add_render(CLI::App& app, Action& action);
 void add_reference(CLI::App& app, Action& action);
+void add_animate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_error(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
@@ -30,6 +31,9 @@ struct CommonOptions {
   std::string scene, environment;
   std::vector<std::string> defines;
   bool strict = false, allow_missing = false, quiet = false, verbose = false;
+  std::string at, clip;  // "": as the file stands; the first clip
+  int frame = -1;        // -1: not given
+  double fps = 24;
   std::map<std::string, std::string> fields;  // render settings that were given, by key
   std::vector<std::string> method_settings;   // KEY=VALUE
   std::string replay;
@@ -41,6 +45,8 @@ struct CommonOptions {
 
 // Scene, --define, --environment, --strict, --quiet, --verbose.
 void add_scene_options(CLI::App& command, CommonOptions& common);
+// --at, --frame, --fps, --clip: which moment of a scene that moves.
+void add_moment_options(CLI::App& command, CommonOptions& common);
 // An option for each of the named render settings ("" keys: all of them), --set and --replay.
 void add_setting_options(CLI::App& command, CommonOptions& common, const std::vector<std::string>& keys);
 

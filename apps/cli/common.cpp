@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "commands.h"
+#include "values.h"
 
 namespace lumirank::cli {
 namespace {
@@ -29,6 +30,11 @@ LoadOptions CommonOptions::load_options() const {
   options.strict = strict;
   options.environment = environment;
   options.allow_missing = allow_missing;
+  options.clip = clip;
+  options.frames_per_second = fps;
+  if (!at.empty() && frame >= 0) throw InputError("--at and --frame both say when", "give one of them");
+  if (!at.empty()) options.time = read_number("--at", at, {-1e7, 1e7, false, "seconds"});
+  if (frame >= 0) options.time = frame / fps;
   for (const auto& text : defines)
     options.defines.insert_or_assign(split_assignment(text, "--define").first,
                                      split_assignment(text, "--define").second);
@@ -71,6 +77,16 @@ void add_scene_options(CLI::App& command, CommonOptions& common) {
   command.add_flag("--strict", common.strict, "warnings about the scene are errors");
   auto* quiet = command.add_flag("--quiet", common.quiet, "print nothing but errors");
   command.add_flag("--verbose", common.verbose, "say more")->excludes(quiet);
+}
+
+void add_moment_options(CLI::App& command, CommonOptions& common) {
+  command.add_option("--at", common.at,
+                     "SECONDS: the moment of a scene that moves (default: as the file stands)");
+  add_count(command, "--frame", common.frame, 0, 10'000'000, "the moment by its number, from 0 at second 0");
+  add_number(command, "--fps", common.fps, {0, 1000, true, "frames per second"},
+             "frames per second of --frame (default 24)");
+  command.add_option("--clip", common.clip,
+                     "glTF: the animation to show, by name or number; '*': all (default: the first)");
 }
 
 void add_setting_options(CLI::App& command, CommonOptions& common, const std::vector<std::string>& keys) {

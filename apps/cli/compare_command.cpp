@@ -84,6 +84,7 @@ void add_compare(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("compare", "several methods against one reference: tables, plots, one page");
   add_scene_options(*command, options->common);
+  add_moment_options(*command, options->common);
   command
       ->add_option("-o,--output", options->folder,
                    "folder for results.json, results.csv, images and index.html")

@@ -14,6 +14,7 @@ void add_convert(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("convert", "write the scene as Mitsuba 3 XML");
   add_scene_options(*command, options->common);
+  add_moment_options(*command, options->common);
   command->add_option("output", options->output, "OUT.xml; meshes and pictures are written beside it")
       ->required();
   command->footer("Example:\n  lumirank convert room.glb room.xml\n");

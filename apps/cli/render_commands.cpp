@@ -14,6 +14,7 @@ void add_render(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "render one image");
   add_scene_options(*command, options->common);
+  add_moment_options(*command, options->common);
   add_output_options(*command, options->outputs);
   add_setting_options(*command, options->common, {});
   command->footer(
@@ -46,6 +47,7 @@ void add_reference(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("reference", "ground truth by path tracing; states its own error");
   add_scene_options(*command, options->common);
+  add_moment_options(*command, options->common);
   add_output_options(*command, options->outputs);
   add_setting_options(*command, options->common,
                       {"size", "max-depth", "only", "seed", "threads", "camera", "crop", "aov"});
@@ -102,6 +104,7 @@ void add_info(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("info", "what was loaded, and what was replaced");
   add_scene_options(*command, options->common);
+  add_moment_options(*command, options->common);
   command->add_flag("--json", options->json, "as JSON");
   command->footer("Example:\n  lumirank info room.xml\n");
   command->callback([options, &action] {

@@ -36,8 +36,12 @@ struct LUMIRANK_API SceneInfo {
   };
   std::vector<Camera> cameras;
 
-  int max_depth = -1;             // of paths, as the file says; -1: unlimited
-  std::uint64_t scene_bytes = 0;  // of memory
+  int max_depth = -1;                       // of paths, as the file says; -1: unlimited
+  std::uint64_t scene_bytes = 0;            // of memory
+  double motion_begin = 0, motion_end = 0;  // seconds of the first and the last key; equal: nothing moves
+  std::vector<std::string> moving;          // what moves, by name
+  std::vector<std::string> clips;           // names for LoadOptions::clip
+
   // What the file has and Lumirank does not, with what is used instead; and what no picture shows.
   std::vector<std::string> warnings, notes;
   std::string listing;  // every sensor, emitter, texture, BSDF and shape, a line each

@@ -9,20 +9,40 @@
 
 namespace lumirank {
 
-Scene Scene::load(const std::string& filename, const LoadOptions& options, const Sinks& sinks) {
-  auto impl = std::make_shared<Impl>();
+namespace {
+
+Scene read(const std::string& filename, const LoadOptions& options,
+           const std::shared_ptr<scenedesc::MeshCache>& meshes, const Sinks& sinks) {
+  auto impl = std::make_shared<Scene::Impl>();
   impl->options = options;
+  impl->meshes = meshes;
   scenedesc::ReadOptions read;
   read.defines = options.defines;
   read.strict = options.strict;
   read.environment = options.environment;
   read.allow_missing = options.allow_missing;
+  read.time = options.time, read.clip = options.clip;
+  read.frames_per_second = options.frames_per_second;
+  read.meshes = meshes;
   const scenedesc::FilesRead files;
   pipeline::within_memory("the scene is too large for this machine",
                           [&] { impl->desc = scenedesc::read_scene(filename, read); });
   impl->files_read = files.names();
   api::report_warnings(sinks, impl->desc.warnings);
   return Scene(std::move(impl));
+}
+
+}  // namespace
+
+Scene Scene::load(const std::string& filename, const LoadOptions& options, const Sinks& sinks) {
+  return read(filename, options, std::make_shared<scenedesc::MeshCache>(), sinks);
+}
+
+Scene Scene::at(double seconds, const Sinks& sinks) const {
+  if (!impl_->meshes) return *this;
+  LoadOptions options = impl_->options;
+  options.time = seconds;
+  return read(impl_->desc.source_file, options, impl_->meshes, sinks);
 }
 
 std::vector<std::string> Scene::files() const {

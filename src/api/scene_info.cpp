@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kEmittersShown = 32;
+constexpr std::size_t kEmittersShown = 32, kMovingShown = 32;
 
 Json bounds_json(const SceneInfo& info) { return {info.bounds[0], info.bounds[1]}; }
 
@@ -47,6 +47,8 @@ SceneInfo Scene::info(const Sinks& sinks) const {
     info.cameras.push_back({s.id, s.film.width, s.film.height, static_cast<double>(s.fov_x)});
   info.max_depth = desc.max_depth;
   info.scene_bytes = built.memory_bytes;
+  info.motion_begin = desc.motion.begin, info.motion_end = desc.motion.end;
+  info.moving = desc.motion.moving, info.clips = desc.motion.clips;
   const auto add = [&](const scenedesc::Warning& w) {
     (w.harmless ? info.notes : info.warnings).push_back(api::warning_text(w));
   };
@@ -77,6 +79,7 @@ std::string SceneInfo::json() const {
     json["cameras"].push_back({{"id", c.id}, {"width", c.width}, {"height", c.height}, {"fov_x", c.fov_x}});
   json["max_depth"] = max_depth;
   json["memory.scene_bytes"] = scene_bytes;
+  json["motion"] = {{"begin", motion_begin}, {"end", motion_end}, {"moving", moving}, {"clips", clips}};
   json["warnings"] = warnings;
   json["notes"] = notes;
   return json.dump(1) + "\n";
@@ -95,6 +98,14 @@ std::string SceneInfo::text() const {
     text += "  " + emitters[k].name + "  " + Json(emitters[k].power).dump() + " W\n";
   if (emitters.size() > kEmittersShown)
     text += "  … and " + std::to_string(emitters.size() - kEmittersShown) + " more (see --json)\n";
+  if (motion_end > motion_begin || !moving.empty()) {
+    text += "moves from " + Json(motion_begin).dump() + " to " + Json(motion_end).dump() + " s";
+    for (std::size_t k = 0; k < clips.size(); ++k) text += (k == 0 ? "; clips: " : ", ") + clips[k];
+    text += "\n";
+    for (std::size_t k = 0; k < std::min(moving.size(), kMovingShown); ++k) text += "  " + moving[k] + "\n";
+    if (moving.size() > kMovingShown)
+      text += "  … and " + std::to_string(moving.size() - kMovingShown) + " more (see --json)\n";
+  }
   text += "warnings: " + std::to_string(warnings.size()) + "\n";
   for (const std::string& warning : warnings) text += "  " + warning + "\n";
   if (!notes.empty()) text += "notes (nothing that a picture shows):\n";

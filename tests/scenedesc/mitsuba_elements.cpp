@@ -95,15 +95,16 @@ TEST(MitsubaWarnings, StrictMakesTheFirstAnError) {
   }
 }
 
-TEST(MitsubaAnimation, TheKeyOfTheLeastTimeIsUsed) {
+TEST(MitsubaAnimation, WithoutATimeTheFirstKeyIsShown) {
   const SceneDesc scene =
       parse(kCamera +
-                "<shape type=\"sphere\"><animation name=\"toWorld\"><transform time=\"1\"><translate "
-                "x=\"5\"/></transform>"
-                "<transform time=\"0\"><translate x=\"3\"/></transform></animation></shape>",
+                "<shape type=\"sphere\"><animation name=\"toWorld\"><transform time=\"0\"><translate "
+                "x=\"3\"/></transform>"
+                "<transform time=\"1\"><translate x=\"5\"/></transform></animation></shape>",
             "0.6.0");
   EXPECT_EQ(scene.shapes.at(0).to_world.point({0, 0, 0}), (Vec3f{3, 0, 0}));
-  EXPECT_EQ(scene.warnings.size(), 1u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_TRUE(scene.warnings[0].harmless);
 }
 
 // In both dialects a lamp without a BSDF is black; in 0.6 a boundary of media without one is not there.

@@ -19,6 +19,7 @@ class Element {
       : json_(&json), path_(std::move(path)), file_(&file) {}
 
   SourceLocation where() const { return {*file_, json_->line}; }
+  const Json& json() const { return *json_; }
   const std::string& path() const { return path_; }
   const std::string& file() const { return *file_; }
   // Throws InputError: the path, then the message.

@@ -3,6 +3,7 @@
 
 #include "scenedesc/gltf/reader.h"
 #include "scenedesc/gltf/uri.h"
+#include "scenedesc/schema/mesh_cache.h"
 
 namespace lumirank::scenedesc::gltf {
 namespace {
@@ -160,6 +161,17 @@ std::vector<Transform> Reader::instances(const Node& node) {
   return out;
 }
 
+// What no time changes: readings of other moments share it.
+std::shared_ptr<const MeshData> Reader::still_mesh(const Element& primitive, int uv_set,
+                                                   const std::vector<float>& weights) {
+  const std::string key = primitive.path() + " uv " + std::to_string(uv_set);
+  if (options_.meshes)
+    if (auto kept = options_.meshes->find(key)) return kept;
+  auto made = build_mesh(primitive, uv_set, weights, {});
+  if (options_.meshes) options_.meshes->keep(key, made);
+  return made;
+}
+
 // A buffer that does not exist takes along all that it holds: the mesh is left out and counted.
 void Reader::build_shapes(const Node& node, const Element& mesh_index) {
   const std::size_t before = scene_.shapes.size();
@@ -198,7 +210,7 @@ void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
       data = build_mesh(primitive, built.uv_set, weights, joints);
     } else {
       const auto [found, fresh] = built_meshes_.try_emplace({primitive.path(), built.uv_set});
-      if (fresh) found->second = build_mesh(primitive, built.uv_set, weights, {});
+      if (fresh) found->second = still_mesh(primitive, built.uv_set, weights);
       data = found->second;
     }
     if (!data) continue;

@@ -114,6 +114,12 @@ void Reader::build_scene() {
   }
   for (std::size_t k = 0; k < open.size(); ++k) {
     Node& node = nodes_[static_cast<std::size_t>(open[k])];
+    // KHR_node_visibility: what is not visible hides all below it.
+    if (const auto shown = node.element.extension("KHR_node_visibility");
+        shown && !shown->flag("visible", true)) {
+      node.in_scene = false;
+      continue;
+    }
     node.in_scene = true;
     open.insert(open.end(), node.children.begin(), node.children.end());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "scenedesc/gltf/animation.h"
 #include "scenedesc/gltf/container.h"
 #include "scenedesc/gltf/read_gltf.h"
 #include "scenedesc/gltf/uri.h"
@@ -25,10 +26,11 @@ constexpr std::array kExtensions = {"KHR_materials_emissive_strength",
                                     "KHR_draco_mesh_compression",
                                     "EXT_meshopt_compression",
                                     "EXT_mesh_gpu_instancing",
-                                    "KHR_mesh_quantization"};
-// They say nothing about a still picture: variants leave the primitives' own materials, metadata are words.
-constexpr std::array kWithoutEffect = {"KHR_materials_variants", "KHR_xmp_json_ld", "KHR_xmp",
-                                       "KHR_animation_pointer"};
+                                    "KHR_mesh_quantization",
+                                    "KHR_animation_pointer",
+                                    "KHR_node_visibility"};
+// Variants leave the primitives' own materials, metadata are words.
+constexpr std::array kWithoutEffect = {"KHR_materials_variants", "KHR_xmp_json_ld", "KHR_xmp"};
 
 template <typename List>
 bool contains(const List& list, const std::string& name) {
@@ -98,8 +100,9 @@ void Reader::check_extensions() {
 }
 
 void Reader::warn_unused() {
-  if (const auto animations = root_.find("animations"); animations && animations->size() > 0)
-    warn(*animations, "animations", "the nodes as they stand");
+  if (const auto animations = root_.find("animations");
+      !options_.time && animations && animations->size() > 0)
+    note(*animations, "animations: this is the pose in which the nodes stand; --at SECONDS shows another");
 }
 
 SceneDesc Reader::read() {
@@ -116,12 +119,40 @@ SceneDesc Reader::read() {
 }  // namespace lumirank::scenedesc::gltf
 
 namespace lumirank::scenedesc {
+namespace gltf {
+namespace {
+
+Motion motion_of(const Animation& animation, const Element& root) {
+  return {animation.begin(), animation.end(), animation.moving(), clip_names(root)};
+}
+
+}  // namespace
+}  // namespace gltf
 
 SceneDesc parse_gltf(const std::string& bytes, const std::string& filename, const ReadOptions& options) {
   const gltf::Container container = gltf::open_container(bytes, filename);
   const gltf::Json json = gltf::parse_json(container.json, filename);
   const gltf::Element root(json, "", filename);
-  return gltf::Reader(root, container.binary, container.is_glb, filename, options).read();
+  if (!root.find("animations") && options.clip.empty())
+    return gltf::Reader(root, container.binary, container.is_glb, filename, options).read();
+  gltf::Buffers buffers(root, container.binary, container.is_glb);
+  gltf::Accessors accessors(root, buffers);
+  if (options.time) {
+    const gltf::Animation animation(root, accessors, options.clip);
+    const gltf::Json posed = animation.at(json, *options.time);
+    const gltf::Element shown(posed, "", filename);
+    SceneDesc scene = gltf::Reader(shown, container.binary, container.is_glb, filename, options).read();
+    scene.motion = gltf::motion_of(animation, root);
+    return scene;
+  }
+  SceneDesc scene = gltf::Reader(root, container.binary, container.is_glb, filename, options).read();
+  try {
+    scene.motion = gltf::motion_of(gltf::Animation(root, accessors, options.clip), root);
+  } catch (const InputError& error) {  // a still picture does not need it
+    if (!options.clip.empty()) throw;
+    add_note(scene, error.where(), std::string("an animation that cannot be shown: ") + error.what());
+  }
+  return scene;
 }
 
 SceneDesc read_gltf(const std::string& filename, const ReadOptions& options) {

@@ -58,6 +58,8 @@ class Reader : public SceneReader {
   std::shared_ptr<const MeshData> build_mesh(const Element& primitive, int uv_set,
                                              const std::vector<float>& weights,
                                              const std::vector<Transform>& joints);
+  std::shared_ptr<const MeshData> still_mesh(const Element& primitive, int uv_set,
+                                             const std::vector<float>& weights);
   // Positions, normals, uvs and colors of the accessors; the vertices of the corners.
   std::vector<std::uint32_t> read_attributes(const Element& primitive, const Element& attributes, int uv_set,
                                              MeshData& mesh);

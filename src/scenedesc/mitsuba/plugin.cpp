@@ -150,19 +150,7 @@ Transform Plugin::transform(const std::string& name) {
   const Child* child = find_tag(name, {"transform", "animation"});
   if (!child) return {};
   if (child->element->tag == "transform") return parse_transform(*child->element);
-  const Element* first = nullptr;
-  double first_time = 0;
-  for (const auto& key : child->element->children) {
-    if (key->tag != "transform")
-      throw InputError(key->where, "<" + key->tag + "> in an <animation>",
-                       "only <transform time=\"…\"> can be there");
-    const double time = parse_double(key->require("time"), key->where, "time of <transform>");
-    if (!first || time < first_time) first = key.get(), first_time = time;
-  }
-  if (!first) throw InputError(child->element->where, "the <animation> has no <transform>");
-  if (child->element->children.size() > 1)
-    reader_.warn(child->element->where, "the <animation> of " + title(), "its first key");
-  return parse_transform(*first);
+  return reader_.animated(*child->element, title());
 }
 
 Transform Plugin::regular_transform(const std::string& name) {

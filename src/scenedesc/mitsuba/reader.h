@@ -23,6 +23,9 @@ class Reader : public SceneReader {
 
   const Dialect& dialect() const { return document_.dialect; }
 
+  // What an <animation> of `title` is at the time that is read, or its first key.
+  Transform animated(const Element& animation, const std::string& title);
+
   // The element itself, or what a <ref> names.
   const Element& resolve(const Element& element) const;
 

@@ -1,5 +1,6 @@
 #include "scenedesc/mitsuba/curves.h"
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -9,7 +10,9 @@ decltype(ShapeDesc::kind) mesh_file(Reader& reader, Plugin& p, MeshFormat format
   MeshFileDesc out;
   out.format = format;
   const std::string name = p.required_text("filename");
-  const auto file = reader.file(name, p.where_of("filename"), "mesh file", "");
+  const SourceLocation where = p.where_of("filename");
+  const auto file =
+      reader.named_file(reader.path_at_time(resolve_path(name, where.file)), where, "mesh file", "");
   out.filename = file.name;
   out.face_normals = p.flag("face_normals", false);
   // The same defaults in 0.6 and 3.x: the v of OBJ runs up and is flipped, that of the others runs down

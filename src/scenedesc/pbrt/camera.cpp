@@ -37,10 +37,11 @@ void Reader::read_camera(Params& p, const std::string& type) {
   has_camera_ = true;
   camera_.type = type;
   camera_.where = p.where();
-  const auto inverse = state_.to_world.inverse();
-  if (!inverse) throw InputError(p.where(), "the camera's transform is singular", "a Scale by 0 perhaps");
-  camera_.to_world = *inverse;
-  coordinate_systems_["camera"] = *inverse;
+  const auto inverse = state_.at_start.inverse(), inverse_at_end = state_.at_end.inverse();
+  if (!inverse || !inverse_at_end)
+    throw InputError(p.where(), "the camera's transform is singular", "a Scale by 0 perhaps");
+  camera_.to_world = between(*inverse, *inverse_at_end, p.where());
+  coordinate_systems_["camera"] = {*inverse, *inverse_at_end};
   if (type == "realistic" || type == "spherical") {
     warn(p.where(), "the camera \"" + type + "\"", "a perspective camera");
     p.ignore({"lensfile", "aperturediameter", "aperture", "focusdistance", "mapping"});

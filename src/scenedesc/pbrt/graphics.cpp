@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/schema/keyed_transform.h"
+#include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -33,17 +35,39 @@ Transform look_at(const std::vector<double>& v, const Place& where) {
 }  // namespace
 
 void Reader::apply(const Transform& step, const Place& where) {
-  if (!state_.start_active) return;
-  const Transform next = state_.to_world * step;
-  if (!next.is_finite()) throw InputError(where, "the transform overflows", "use smaller factors");
-  state_.to_world = next;
+  const auto move = [&](Transform& t) {
+    const Transform next = t * step;
+    if (!next.is_finite()) throw InputError(where, "the transform overflows", "use smaller factors");
+    t = next;
+  };
+  if (state_.start_active) move(state_.at_start);
+  if (state_.end_active) move(state_.at_end);
+}
+
+void Reader::set_transform(const Transform& at_start, const Transform& at_end) {
+  if (state_.start_active) state_.at_start = at_start;
+  if (state_.end_active) state_.at_end = at_end;
+}
+
+Transform Reader::between(const Transform& at_start, const Transform& at_end, const Place& where) {
+  if (at_start == at_end) return at_start;
+  if (is_new("moves at " + to_string(where)))
+    add_motion(to_string(where) + ": ActiveTransform", start_time_, end_time_);
+  if (!options_.time) {
+    if (is_new("ActiveTransform"))
+      add_note(
+          scene_, where,
+          "moving objects (ActiveTransform): as they are at the start; --at SECONDS shows another moment");
+    return at_start;
+  }
+  return transform_at({{start_time_, at_start}, {end_time_, at_end}}, *options_.time);
 }
 
 bool Reader::transform_directive(Tokens& tokens, const Token& word) {
   const std::string_view name = word.value;
   const Place where = tokens.place(word);
   if (name == "Identity") {
-    if (state_.start_active) state_.to_world = {};
+    set_transform({}, {});
   } else if (name == "Translate") {
     const auto v = take_numbers(tokens, word, 3);
     apply(Transform::translate(v[0], v[1], v[2]), where);
@@ -59,27 +83,30 @@ bool Reader::transform_directive(Tokens& tokens, const Token& word) {
     apply(look_at(take_numbers(tokens, word, 9), where), where);
   } else if (name == "Transform") {
     const Transform t = from_columns(take_numbers(tokens, word, 16));
-    if (state_.start_active) state_.to_world = t;
+    set_transform(t, t);
   } else if (name == "ConcatTransform") {
     apply(from_columns(take_numbers(tokens, word, 16)), where);
   } else if (name == "CoordinateSystem") {
-    coordinate_systems_[take_text(tokens, word, "name")] = state_.to_world;
+    coordinate_systems_[take_text(tokens, word, "name")] = {state_.at_start, state_.at_end};
   } else if (name == "CoordSysTransform") {
     const std::string system = take_text(tokens, word, "name");
     const auto found = coordinate_systems_.find(system);
     if (found == coordinate_systems_.end())
       throw InputError(where, "the coordinate system " + in_quotes(system) + " is not defined",
                        "define it with CoordinateSystem");
-    if (state_.start_active) state_.to_world = found->second;
+    set_transform(found->second.first, found->second.second);
   } else if (name == "ActiveTransform") {
     const Token which = tokens.take();
     if (which.kind != Token::Kind::word ||
         (which.value != "StartTime" && which.value != "EndTime" && which.value != "All"))
       throw InputError(where, "ActiveTransform is not followed by StartTime, EndTime or All");
     state_.start_active = which.value != "EndTime";
-    if (which.value != "All") warn_once(where, "moving objects (ActiveTransform)", "the scene at the start");
+    state_.end_active = which.value != "StartTime";
   } else if (name == "TransformTimes") {
-    take_numbers(tokens, word, 2);
+    const auto v = take_numbers(tokens, word, 2);
+    if (!(v[1] > v[0]))
+      throw InputError(where, "TransformTimes does not rise", "give the start, then the end");
+    start_time_ = v[0], end_time_ = v[1];
   } else {
     return false;
   }
@@ -98,16 +125,16 @@ bool Reader::block_directive(Tokens& tokens, const Token& word) {
   } else if (name == "TransformEnd") {
     GraphicsState kept = state_;
     pop("TransformBegin", "TransformEnd", where);
-    kept.to_world = state_.to_world;
-    kept.start_active = state_.start_active;
+    kept.at_start = state_.at_start, kept.at_end = state_.at_end;
+    kept.start_active = state_.start_active, kept.end_active = state_.end_active;
     state_ = std::move(kept);
   } else if (name == "WorldBegin") {
     require_world(word, where, false);
     if (!saved_.empty())
       throw InputError(where, "WorldBegin in a block of " + std::string(saved_.back().by), "close it first");
     in_world_ = true;
-    state_.to_world = {};
-    state_.start_active = true;
+    state_.at_start = state_.at_end = {};
+    state_.start_active = state_.end_active = true;
     coordinate_systems_["world"] = {};
     finish_camera();
   } else if (name == "WorldEnd") {

@@ -121,7 +121,7 @@ void Reader::read_light(Params& p, const std::string& type) {
   }
   EmitterDesc out;
   out.where = p.where();
-  const Transform& to_world = state_.to_world;
+  const Transform to_world = this->to_world(p.where());
   if (type == "point") {
     out.kind = point(p, to_world);
   } else if (type == "spot") {

@@ -25,11 +25,11 @@ struct AreaLight {
 
 // What the attribute directives change and AttributeEnd restores.
 struct GraphicsState {
-  Transform to_world;
+  Transform at_start, at_end;  // of the shutter: they differ for what moves (ActiveTransform)
   bool reverse = false;
   int bsdf = kNone;  // kNone: pbrt's default, made when it is needed
   std::shared_ptr<const AreaLight> light;
-  bool start_active = true;  // transforms change the scene at the start of the shutter
+  bool start_active = true, end_active = true;  // which of them directives change
   ColorSpace space = ColorSpace::srgb;
   // By Attribute: of "shape", "light", "material", "medium", "texture".
   std::map<std::string, std::shared_ptr<const std::vector<Parameter>>, std::less<>> defaults;
@@ -111,6 +111,10 @@ class Reader : public SceneReader {
   std::string take_text(Tokens& tokens, const Token& word, const char* what);
   Params take_params(Tokens& tokens, const Token& word, const std::string& type, const char* defaults);
   void apply(const Transform& step, const Place& where);
+  void set_transform(const Transform& at_start, const Transform& at_end);
+  // At the time that is read, or the start.
+  Transform between(const Transform& at_start, const Transform& at_end, const Place& where);
+  Transform to_world(const Place& where) { return between(state_.at_start, state_.at_end, where); }
   void push(const char* by, const Place& where);
   void pop(const char* by, const char* end, const Place& where);
   void inherit(Tokens& tokens, const Token& word);
@@ -129,7 +133,8 @@ class Reader : public SceneReader {
   std::size_t files_ = 0;
   bool in_world_ = false;
   Place world_at_;
-  std::map<std::string, Transform> coordinate_systems_;
+  std::map<std::string, std::pair<Transform, Transform>> coordinate_systems_;  // at the start and the end
+  double start_time_ = 0, end_time_ = 1;                                       // TransformTimes
 
   void check_mixtures() const;
   std::size_t parts_of(const ColorInput& input) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scenedesc/pbrt/grids.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -47,7 +48,10 @@ std::optional<ShapeKind> disk(Params& p) {
 std::optional<ShapeKind> ply_mesh(Reader& reader, Params& p) {
   MeshFileDesc out;
   out.format = MeshFormat::ply;
-  const auto file = reader.file(p.required_text("filename"), p.where_of("filename"), "mesh file", "");
+  const std::string name = p.required_text("filename");
+  const std::string path = resolve_path(name, SourceLocation(p.where_of("filename")).file);
+  const std::string now = reader.path_at_time(path);
+  const auto file = reader.file(now == path ? name : now, p.where_of("filename"), "mesh file", "");
   out.filename = file.name;
   out.smooth_without_normals = false;
   if (p.has("displacement")) {

@@ -48,7 +48,7 @@ int Reader::masked(Params& p, int bsdf) {
 void Reader::read_shape(Params& p, const std::string& type) {
   ShapeDesc shape;
   shape.where = p.where();
-  shape.to_world = state_.to_world;
+  shape.to_world = to_world(p.where());
   shape.flip_normals = state_.reverse;
   if (!shape.to_world.inverse())
     throw InputError(p.where(), "the transform of " + p.title() + " is singular", "a Scale by 0 perhaps");
@@ -121,7 +121,7 @@ void Reader::read_instance(const std::string& name, const Place& where) {
                      "objects cannot hold instances");
   ShapeDesc shape;
   shape.where = where;
-  shape.to_world = state_.to_world;
+  shape.to_world = to_world(where);
   const auto found = objects_.find(name);
   shape.kind = InstanceDesc{found == objects_.end() ? kNone : found->second};
   if (found == objects_.end()) pending_instances_.emplace_back(static_cast<int>(scene_.shapes.size()), name);

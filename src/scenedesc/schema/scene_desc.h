@@ -23,6 +23,13 @@ struct Warning {
   bool harmless = false;     // only a note: no picture shows the difference, so --strict lets it pass
 };
 
+// What of the scene moves, and when.
+struct Motion {
+  double begin = 0, end = 0;        // seconds: the first and the last key; equal: nothing moves
+  std::vector<std::string> moving;  // for listings: "nodes[3] (Fox): rotation"
+  std::vector<std::string> clips;   // names that ReadOptions::clip may have
+};
+
 struct SceneDesc {
   std::string source_file;
   std::string format;  // "mitsuba 0.6", "mitsuba 3.0", …
@@ -36,6 +43,7 @@ struct SceneDesc {
   std::vector<SensorDesc> sensors;  // at least one after a successful read
   int max_depth = -1;               // Mitsuba's count; -1: unlimited
   std::string integrator;           // as named in the file
+  Motion motion;
   std::vector<Warning> warnings;
 };
 

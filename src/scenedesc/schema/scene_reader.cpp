@@ -1,6 +1,10 @@
 #include "scenedesc/schema/scene_reader.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+
+#include "scenedesc/schema/frame_files.h"
 
 namespace lumirank::scenedesc {
 
@@ -33,6 +37,24 @@ int SceneReader::add_texture(const std::string& id, const SourceLocation& where,
                              decltype(TextureDesc::kind) kind) {
   scene_.textures.push_back({id, where, std::move(kind)});
   return static_cast<int>(scene_.textures.size()) - 1;
+}
+
+std::string SceneReader::path_at_time(const std::string& path) {
+  std::optional<int> frame;
+  if (options_.time) frame = static_cast<int>(std::lround(*options_.time * options_.frames_per_second));
+  const auto found = file_of_frame(path, frame);
+  if (!found) return path;
+  add_motion(std::filesystem::path(path).filename().string(), found->first / options_.frames_per_second,
+             found->last / options_.frames_per_second);
+  return found->path;
+}
+
+void SceneReader::add_motion(const std::string& what, double begin, double end) {
+  Motion& motion = scene_.motion;
+  const bool first = motion.moving.empty();
+  motion.begin = first ? begin : std::min(motion.begin, begin);
+  motion.end = first ? end : std::max(motion.end, end);
+  motion.moving.push_back(what);
 }
 
 SceneReader::NamedFile SceneReader::named_file(const std::string& path, const SourceLocation& where,

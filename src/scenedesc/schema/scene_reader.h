@@ -36,6 +36,12 @@ class SceneReader {
   NamedFile named_file(const std::string& path, const SourceLocation& where, const std::string& kind,
                        const std::string& stand_in);
 
+  // `path`, or where that is a numbered sequence (frame_files.h) its file at the time to be read.
+  std::string path_at_time(const std::string& path);
+
+  // Something of the name `what` moves from `begin` to `end` (seconds).
+  void add_motion(const std::string& what, double begin, double end);
+
  protected:
   // `format` as in SceneDesc. `options` must outlive this.
   SceneReader(const std::string& filename, const std::string& format, const ReadOptions& options);

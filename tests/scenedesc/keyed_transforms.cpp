@@ -1,0 +1,133 @@
+// Transforms between keys, and the Mitsuba and pbrt scenes and numbered mesh files that move by them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "scenedesc/pbrt_scene.h"
+#include "scenedesc/schema/frame_files.h"
+#include "scenedesc/schema/keyed_transform.h"
+#include "support/scene_file.h"
+
+namespace lumirank::scenedesc {
+namespace {
+
+void expect_near(const Transform& have, const Transform& want, double tolerance = 1e-9) {
+  for (std::size_t k = 0; k < 16; ++k) EXPECT_NEAR(have.m[k], want.m[k], tolerance) << "element " << k;
+}
+
+ReadOptions moment(double seconds) {
+  ReadOptions options;
+  options.time = seconds;
+  return options;
+}
+
+TEST(KeyedTransform, KeysAreMetAndHeldOutside) {
+  const Transform a =
+      Transform::translate(1, 2, 3) * Transform::rotate(1, 2, 0, 70) * Transform::scale(2, 1, 0.5);
+  const Transform b =
+      Transform::rotate(0, 1, 1, -120) * Transform::scale(1, 3, 1) * Transform::rotate(1, 0, 0, 20);
+  const std::vector<TransformKey> keys = {{1, a}, {3, b}};
+  for (const double before : {-5.0, 1.0}) EXPECT_EQ(transform_at(keys, before), a);
+  for (const double after : {3.0, 7.0}) EXPECT_EQ(transform_at(keys, after), b);
+  expect_near(transform_at(keys, 1 + 1e-12), a);
+  expect_near(transform_at(keys, 3 - 1e-12), b);
+}
+
+// Closed form: turning about one axis while moving and growing.
+TEST(KeyedTransform, TurnsMovesAndStretchesApart) {
+  const auto pose = [](double t) {
+    return Transform::translate(4 * t, 0, -t) * Transform::rotate(0.3, 1, 0.2, 10 + 150 * t) *
+           Transform::scale(1 + t, 2 - t, 1);
+  };
+  for (const double t : {0.1, 0.5, 0.8}) expect_near(transform_at({{0, pose(0)}, {1, pose(1)}}, t), pose(t));
+}
+
+TEST(KeyedTransform, MirrorsStayMirrors) {
+  const auto pose = [](double t) { return Transform::rotate(0, 0, 1, 90 * t) * Transform::scale(-1, 1, 1); };
+  const Transform half = transform_at({{0, pose(0)}, {1, pose(1)}}, 0.5);
+  EXPECT_NEAR(half.determinant3(), -1, 1e-12);
+  expect_near(half, pose(0.5));
+  // Nothing lies between a mirror and none: the earlier one is kept.
+  EXPECT_EQ(transform_at({{0, pose(0)}, {1, Transform{}}}, 0.9), pose(0));
+}
+
+SceneDesc mitsuba(const std::string& keys, const ReadOptions& options) {
+  return parse_mitsuba("<scene version=\"3.0.0\"><shape type=\"sphere\"><animation name=\"to_world\">" +
+                           keys + "</animation></shape><sensor type=\"perspective\"/></scene>",
+                       testing::TempDir() + "moving.xml", options);
+}
+
+TEST(MitsubaMotion, AnimationsAtAMoment) {
+  const std::string keys =
+      "<transform time=\"1\"><translate x=\"2\"/></transform>"
+      "<transform time=\"2\"><rotate z=\"1\" angle=\"90\"/><translate x=\"4\"/></transform>";
+  EXPECT_EQ(mitsuba(keys, {}).shapes[0].to_world.origin(), (Vec3d{2, 0, 0}));
+  const SceneDesc half = mitsuba(keys, moment(1.5));
+  EXPECT_NEAR(half.shapes[0].to_world.origin().x, 3, 1e-12);
+  EXPECT_NEAR(half.shapes[0].to_world.axis(0).y, std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(half.motion.begin, 1);
+  EXPECT_EQ(half.motion.end, 2);
+  EXPECT_EQ(half.motion.moving.size(), 1u);
+  for (const char* wrong :
+       {"<transform time=\"1\"/><transform time=\"0\"/>", "<transform time=\"1\"/><transform time=\"1\"/>"})
+    EXPECT_THROW(mitsuba(wrong, moment(0)), InputError) << wrong;
+}
+
+TEST(PbrtMotion, ActiveTransformsAtAMoment) {
+  const std::string world =
+      "ActiveTransform EndTime\nTranslate 4 0 0\nRotate 90 0 0 1\nActiveTransform All\nTranslate 0 0 1\n"
+      "Shape \"sphere\"\n";
+  const std::string head = "TransformTimes 1 3\n";
+  EXPECT_EQ(pbrt_world(world, head).shapes[0].to_world.origin(), (Vec3d{0, 0, 1}));
+  const SceneDesc half = pbrt_world(world, head, moment(2)), end = pbrt_world(world, head, moment(5));
+  EXPECT_NEAR(half.shapes[0].to_world.origin().x, 2, 1e-12);
+  EXPECT_NEAR(half.shapes[0].to_world.axis(0).y, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(end.shapes[0].to_world.axis(0).y, 1, 1e-12);
+  EXPECT_EQ(half.motion.begin, 1);
+  EXPECT_EQ(half.motion.end, 3);
+  EXPECT_EQ(pbrt_world("Shape \"sphere\"\n").motion.moving.size(), 0u);
+  EXPECT_THROW(pbrt_world(world, "TransformTimes 3 1\n"), InputError);
+}
+
+TEST(FrameFiles, TheNearestOfThoseThatThereAre) {
+  const test::TemporaryFolder folder;
+  for (const char* name :
+       {"cloth.0003.ply", "cloth.0005.ply", "cloth.0010.ply", "cloth.x.ply", "cloth.12.ply"})
+    std::ofstream(folder / name) << "ply";
+  const std::string pattern = folder / "cloth.####.ply";
+  const auto number = [&](std::optional<int> frame) {
+    const auto found = file_of_frame(pattern, frame);
+    return found ? std::filesystem::path(found->path).filename().string() : "";
+  };
+  EXPECT_EQ(number({}), "cloth.0003.ply");
+  EXPECT_EQ(number(0), "cloth.0003.ply");
+  EXPECT_EQ(number(4), "cloth.0003.ply");
+  EXPECT_EQ(number(5), "cloth.0005.ply");
+  EXPECT_EQ(number(8), "cloth.0010.ply");
+  EXPECT_EQ(number(99), "cloth.0010.ply");
+  EXPECT_EQ(file_of_frame(pattern, 1)->last, 10);
+  EXPECT_FALSE(file_of_frame(folder / "cloth.0003.ply", 1));
+  EXPECT_FALSE(file_of_frame(folder / "other.##.ply", 1));
+}
+
+TEST(FrameFiles, MeshesOfASceneMoveByThem) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"m_00.ply", "m_01.ply", "m_02.ply"}) std::ofstream(folder / name) << "ply\n";
+  const auto file_at = [&](const ReadOptions& options) {
+    const SceneDesc scene = parse_mitsuba(
+        "<scene version=\"3.0.0\"><shape type=\"ply\"><string name=\"filename\" value=\"m_##.ply\"/></shape>"
+        "<sensor type=\"perspective\"/></scene>",
+        folder / "a.xml", options);
+    EXPECT_NEAR(scene.motion.end, 2.0 / options.frames_per_second, 1e-12);
+    return std::filesystem::path(std::get<MeshFileDesc>(scene.shapes[0].kind).filename).filename().string();
+  };
+  ReadOptions options = moment(0.1);
+  options.frames_per_second = 10;
+  EXPECT_EQ(file_at(options), "m_01.ply");
+  EXPECT_EQ(file_at({}), "m_00.ply");
+}
+
+}  // namespace
+}  // namespace lumirank::scenedesc
