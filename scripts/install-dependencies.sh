@@ -2,7 +2,7 @@
 # Installs what Lumirank needs from Debian's or Ubuntu's own packages: `build` for the program, `test` for the tests as well.
 set -eu
 
-build="g++ make cmake ninja-build pkg-config libtbb-dev libeigen3-dev libopenblas-dev libpugixml-dev zlib1g-dev \
+build="g++ make cmake ninja-build pkg-config libtbb-dev libeigen3-dev libnanoflann-dev libopenblas-dev libpugixml-dev zlib1g-dev \
 libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev libcli11-dev nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev"
 test="libgtest-dev clang libclang-rt-dev clang-format clang-tidy python3 git"
 

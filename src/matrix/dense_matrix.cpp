@@ -28,6 +28,7 @@ DenseMatrix::DenseMatrix(DenseMatrix&& other) noexcept
       indirect(std::move(other.indirect)),
       half(std::move(other.half)),
       emitted(std::move(other.emitted)),
+      row_albedo(std::move(other.row_albedo)),
       row_id(std::move(other.row_id)),
       column_id(std::move(other.column_id)),
       rows_(other.rows_),
@@ -142,7 +143,7 @@ class MaxEntries final : public RowBounds {
 std::unique_ptr<RowBounds> DenseMatrix::row_bounds() const { return std::make_unique<MaxEntries>(); }
 
 RowFeatures DenseMatrix::row_features() const {
-  return {pixel, row_position, row_normal, row_weight, row_id};
+  return {pixel, row_position, row_normal, row_weight, row_id, row_albedo};
 }
 
 ColumnFeatures DenseMatrix::column_features() const {

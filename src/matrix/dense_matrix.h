@@ -48,6 +48,7 @@ class DenseMatrix : public LightingMatrix {
   std::vector<std::uint16_t> group;
   std::vector<std::uint8_t> indirect, half;
   std::vector<Rgb> emitted;
+  std::vector<Rgb> row_albedo;
   std::vector<std::uint64_t> row_id, column_id;
 
  private:

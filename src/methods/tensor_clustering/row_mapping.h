@@ -1,0 +1,34 @@
+// Which row of one frame shows what a row of another shows (Hašan et al. 2008, sections 4.4 and 5): the
+// nearest among them by place, normal and diffuse reflectance. So a column that was computed in one frame can
+// be used in another.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "matrix/lighting_matrix.h"
+
+namespace lumirank::methods {
+
+struct RowMapping {
+  std::vector<matrix::Index> from;  // of every row of the later frame, say, its row in the earlier one
+  // To it, over the distance from the row to its nearest neighbor in its own frame: 0 where the same point is
+  // seen, about 1 where the view moved, large where something was hidden before.
+  std::vector<float> distance;
+
+  // Through both: rows of c to rows of a, where this maps b to a and `next` maps c to b. The greater distance
+  // counts: what was hidden at one step has been hidden.
+  RowMapping then(const RowMapping& next) const;
+  static RowMapping identity(std::size_t rows);
+};
+
+// Distances are of 9-vectors: place, normal times an eighth of `scale`, reflectance times an eighth of
+// `scale` (ours; the paper states no weights); `scale` is the diagonal of the scene. Features that are
+// unknown count for nothing; where no place is known, rows map to their own number, which needs as many in
+// both frames.
+RowMapping nearest_rows(const matrix::LightingMatrix& of, const matrix::LightingMatrix& to, float scale);
+
+// The diagonal of the box of all places of a frame's rows; 0 where they are unknown.
+float diagonal_of_rows(const matrix::LightingMatrix& matrix);
+
+}  // namespace lumirank::methods

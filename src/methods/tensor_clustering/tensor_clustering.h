@@ -1,0 +1,53 @@
+// Tensor clustering: the row sums of all frames of a shot from few columns, each used in many frames (Hašan,
+// Velázquez-Armendáriz, Pellacini, Bala 2008).
+//
+// 1. Some rows of every frame are read whole: the reduced tensor.
+// 2. Light-frame pairs are clustered into rectangles of lights × frames: at first in lights alone, then by
+// splitting
+//    the costliest in lights or in time (linalg/rectangle_clustering.h).
+// 3. In each the pair of the largest norm is the representative. Its column is computed in its frame, scaled
+// per
+//    channel to the summed norms of the cluster's lights in every frame of the rectangle, and carried there
+//    by mappings of rows.
+//
+// Ours: columns of one frame that are carried to the same other frame are added up before they are carried,
+// since that is linear, so each pair of frames is mapped once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "linalg/rectangle_clustering.h"
+#include "matrix/lighting_tensor.h"
+#include "methods/method.h"
+
+namespace lumirank::methods {
+
+struct TensorClusteringSettings {
+  std::size_t rows = 100;              // of every frame
+  std::size_t columns = 200;           // clusters per frame, in the mean
+  std::size_t initial_clusters = 100;  // of lights, in all frames
+  std::size_t projection = 50;         // dimensions of the initial clustering; 0: none
+  double time_weight = 1;              // see RectangleClustering
+  // Rows whose mapping is longer than so many distances of neighboring rows show something that was hidden:
+  // they are shaded afresh, by each cluster's brightest light of their own frame. Ours; 0: mappings carry
+  // everything.
+  double max_distance = 10;
+  linalg::ReducedTensor::Precision precision = linalg::ReducedTensor::Precision::bits16;
+};
+
+struct TensorEstimate {
+  std::vector<std::vector<Rgb>> sums;  // of every frame, one per row of it
+  std::size_t clusters = 0;
+  std::vector<std::size_t> active;  // clusters that contribute to each frame: the effective number
+  double cost = 0;                  // of the clustering
+  matrix::Cost spent;
+  Trace trace;
+  bool interrupted = false;
+};
+
+TensorEstimate estimate_tensor(const matrix::LightingTensor& tensor, const TensorClusteringSettings& settings,
+                               const RunOptions& options);
+
+}  // namespace lumirank::methods

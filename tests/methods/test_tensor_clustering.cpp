@@ -1,0 +1,179 @@
+// Tensor clustering on made-up tensors: exact where it can be, better with more columns, and mappings.
+#include "methods/tensor_clustering/tensor_clustering.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "matrix/dense_matrix.h"
+#include "matrix/synthetic.h"
+#include "methods/common/column_pass.h"
+#include "methods/tensor_clustering/row_mapping.h"
+
+namespace lumirank::methods {
+namespace {
+
+using matrix::DenseMatrix;
+
+class DenseTensor : public matrix::LightingTensor {
+ public:
+  explicit DenseTensor(std::vector<std::shared_ptr<const DenseMatrix>> frames) : frames_(std::move(frames)) {}
+  std::size_t frames() const override { return frames_.size(); }
+  std::size_t columns() const override { return frames_.front()->columns(); }
+  std::shared_ptr<const matrix::LightingMatrix> frame(std::size_t k) const override { return frames_[k]; }
+  std::vector<Rgb> exact(std::size_t k) const { return frames_[k]->exact_sums(); }
+
+ private:
+  std::vector<std::shared_ptr<const DenseMatrix>> frames_;
+};
+
+// `parts` of lights alike, whose directions turn a little from frame to frame, each light with a color and a
+// brightness of its own that changes over time.
+DenseTensor smooth_tensor(std::size_t rows, std::size_t columns, std::size_t frames, std::size_t parts,
+                          double change) {
+  std::vector<std::shared_ptr<const DenseMatrix>> made;
+  for (std::size_t k = 0; k < frames; ++k) {
+    std::vector<Rgb> entries(rows * columns);
+    for (std::size_t j = 0; j < columns; ++j) {
+      const double phase = 2.399 * static_cast<double>(j % parts) + change * static_cast<double>(k);
+      const auto bright = static_cast<float>(1 + static_cast<double>(j % 5) + 0.1 * static_cast<double>(k));
+      const Rgb color{1, 0.2f + 0.1f * static_cast<float>(j % parts), 0.5f};
+      for (std::size_t i = 0; i < rows; ++i)
+        entries[i * columns + j] =
+            color * (bright * static_cast<float>(1.2 + std::sin(phase + 0.1 * static_cast<double>(i))));
+    }
+    made.push_back(std::make_shared<const DenseMatrix>(rows, columns, std::move(entries)));
+  }
+  return DenseTensor(std::move(made));
+}
+
+double worst_error(const DenseTensor& tensor, const TensorEstimate& estimate) {
+  double worst = 0;
+  for (std::size_t k = 0; k < tensor.frames(); ++k)
+    worst = std::max(worst, relative_difference(estimate.sums[k], tensor.exact(k)));
+  return worst;
+}
+
+TensorClusteringSettings settings_of(std::size_t columns) {
+  TensorClusteringSettings settings;
+  settings.columns = columns, settings.rows = 40, settings.initial_clusters = 10;
+  return settings;
+}
+
+// Lights that differ in brightness alone are one cluster, in time as well.
+TEST(TensorClustering, IsExactForAsManyClustersAsDirections) {
+  const DenseTensor tensor = smooth_tensor(90, 60, 8, 6, 0);
+  const TensorEstimate e = estimate_tensor(tensor, settings_of(2), {});
+  EXPECT_LE(e.clusters, 16u);
+  EXPECT_LT(worst_error(tensor, e), 2e-5);  // sixteen bits of directions
+  for (const std::size_t active : e.active) EXPECT_GE(active, 6u);
+  EXPECT_LE(e.spent.entries, 16u * 90 + 40u * 60 * 8);
+}
+
+TEST(TensorClustering, ErrorFallsToNothing) {
+  const DenseTensor tensor = smooth_tensor(90, 60, 10, 15, 0.15);
+  double before = 1;
+  for (const std::size_t columns : {1u, 3u, 10u, 60u}) {
+    const double error = worst_error(tensor, estimate_tensor(tensor, settings_of(columns), {}));
+    EXPECT_LT(error, before) << columns;
+    before = error;
+  }
+  EXPECT_LT(before, 1e-6);  // every light in every frame
+}
+
+TEST(TensorClustering, AStaticSceneIsTheSameInAllFrames) {
+  const DenseTensor tensor = [] {
+    const auto one = std::make_shared<const DenseMatrix>(matrix::low_rank_matrix({100, 80, 3}, 8));
+    return DenseTensor({one, one, one, one, one});
+  }();
+  const TensorEstimate e = estimate_tensor(tensor, settings_of(6), {});
+  for (std::size_t k = 1; k < 5; ++k) EXPECT_EQ(e.sums[k], e.sums[0]) << k;
+  EXPECT_EQ(e.active[0], e.clusters);  // no cluster is cut in time
+  EXPECT_LT(worst_error(tensor, e), 0.3);
+}
+
+TEST(TensorClustering, SixteenAndThirtyTwoBitsAgree) {
+  const DenseTensor tensor = smooth_tensor(90, 60, 10, 15, 0.15);
+  TensorClusteringSettings settings = settings_of(20);
+  const double short_error = worst_error(tensor, estimate_tensor(tensor, settings, {}));
+  settings.precision = linalg::ReducedTensor::Precision::bits32;
+  EXPECT_NEAR(worst_error(tensor, estimate_tensor(tensor, settings, {})), short_error, 0.2 * short_error);
+}
+
+// A plane of points that moves by one pixel in each frame: what is seen by row i of the next frame was seen
+// by row i + 1, and composed over frames by row i + steps, until the edge.
+TEST(RowMapping, FollowsAPlaneThatMovesRigidly) {
+  const std::size_t rows = 50;
+  const auto plane = [&](int frame) {
+    DenseMatrix m(rows, 1, std::vector<Rgb>(rows, Rgb(1)));
+    for (std::size_t i = 0; i < rows; ++i) {
+      m.row_position.push_back({static_cast<float>(static_cast<int>(i) + frame), 0, 0});
+      m.row_normal.push_back({0, 0, 1});
+    }
+    return m;
+  };
+  RowMapping all = RowMapping::identity(rows);
+  for (int frame = 1; frame <= 5; ++frame) all = all.then(nearest_rows(plane(frame), plane(frame - 1), 50));
+  for (std::size_t i = 0; i < rows; ++i) {
+    EXPECT_EQ(all.from[i], std::min(i + 5, rows - 1));
+    if (i + 5 < rows)
+      EXPECT_EQ(all.distance[i], 0);
+    else
+      EXPECT_GT(all.distance[i], 0);
+  }
+}
+
+// A wall of which a board hides a part, that moves away in the second frame: the rows behind it are far from
+// all that the first frame shows of the wall, so they are shaded afresh and exact, and get nothing of the
+// board's.
+TEST(TensorClustering, WhatWasHiddenIsShadedAfresh) {
+  const std::size_t rows = 40, hidden_from = 12, hidden_to = 28;
+  const auto frame = [&](bool board) {
+    std::vector<Rgb> entries(2 * rows);
+    std::vector<Vec3f> places(rows), normals(rows, Vec3f{0, 0, 1});
+    for (std::size_t i = 0; i < rows; ++i) {
+      const bool on_board = board && i >= hidden_from && i < hidden_to;
+      places[i] = {static_cast<float>(i), 0, on_board ? 5.0f : 0.0f};
+      for (std::size_t j = 0; j < 2; ++j) entries[2 * i + j] = Rgb(on_board ? 5.0f : 1.0f);
+    }
+    auto m = std::make_shared<DenseMatrix>(rows, 2, std::move(entries));
+    m->row_position = places, m->row_normal = normals;
+    return m;
+  };
+  const DenseTensor tensor({frame(true), frame(false)});
+  TensorClusteringSettings settings = settings_of(1);
+  settings.max_distance = 4;
+  settings.initial_clusters = 1, settings.rows = 2;  // rows 10 and 30: none of them sees the board
+  const TensorEstimate fresh = estimate_tensor(tensor, settings, {});
+  settings.max_distance = 0;
+  const TensorEstimate carried = estimate_tensor(tensor, settings, {});
+  double worst = 0, worst_carried = 0;
+  for (std::size_t i = hidden_from + 6; i < hidden_to - 6; ++i) {
+    worst = std::max(worst, std::abs(1 - static_cast<double>(fresh.sums[1][i].g / tensor.exact(1)[i].g)));
+    worst_carried = std::max(worst_carried,
+                             std::abs(1 - static_cast<double>(carried.sums[1][i].g / tensor.exact(1)[i].g)));
+  }
+  EXPECT_LT(worst, 1e-5);
+  EXPECT_GT(fresh.trace.numbers.at("rows.afresh"), 0);
+  EXPECT_EQ(carried.trace.numbers.at("rows.afresh"), 0);
+  EXPECT_GT(worst_carried, 3);  // without the bound the board leaves a ghost
+}
+
+// Two surfaces at one place are told apart by their normals and colors.
+TEST(RowMapping, TellsSurfacesApart) {
+  DenseMatrix a(4, 1, std::vector<Rgb>(4, Rgb(1)));
+  a.row_position = {{0, 0, 0}, {0, 0, 0}, {0.1f, 0, 0}, {0.1f, 0, 0}};
+  a.row_normal = {{0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {0, 0, 1}};
+  a.row_albedo = {Rgb(0.5f), Rgb(0.5f), {1, 0, 0}, {0, 0, 1}};
+  DenseMatrix b(4, 1, std::vector<Rgb>(4, Rgb(1)));
+  for (const std::size_t i : {3u, 1u, 0u, 2u}) {
+    b.row_position.push_back(a.row_position[i]);
+    b.row_normal.push_back(a.row_normal[i]);
+    b.row_albedo.push_back(a.row_albedo[i]);
+  }
+  EXPECT_EQ(nearest_rows(b, a, 2).from, (std::vector<matrix::Index>{3, 1, 0, 2}));
+}
+
+}  // namespace
+}  // namespace lumirank::methods
