@@ -72,6 +72,7 @@ int run_command(const std::vector<std::string>& arguments, Streams streams) {
   Action action;
   add_render(app, action);
   add_reference(app, action);
+  add_animate(app, action);
   add_compare(app, action);
   add_error(app, action);
   add_info(app, action);

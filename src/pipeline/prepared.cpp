@@ -54,6 +54,26 @@ SharedRows matrix_rows(const SharedRows& rows, const Recipe& recipe) {
       transport::broad_receivers(transport::Receivers(*rows), recipe.sharp_below));
 }
 
+TracedRows trace_rows_and_light(const world::World& world, const View& view, const Recipe& recipe,
+                                const Sinks& sinks, std::map<std::string, double>& seconds) {
+  TracedRows made;
+  Timer timer;
+  const SharedRows all = trace_rows(world, view, recipe, sinks);
+  seconds["receivers"] = timer.seconds();
+  timer = {};
+  if (const auto tracing = start_direct(world, *all, recipe)) {
+    if (!tracing->add(TracedDirectSettings{}.samples, sinks)) throw Cancelled();
+    made.traced.direct = per_sample(*all, tracing->radiance());
+    made.traced.direct_samples = tracing->samples();
+  }
+  if (recipe.traced_below > 0) seconds["traced_direct"] = timer.seconds();
+  timer = {};
+  made.traced.sharp = trace_sharp_lobes(world, *all, recipe, sinks);
+  made.rows = matrix_rows(all, recipe);
+  if (made.rows != all) seconds["traced_indirect"] = timer.seconds();
+  return made;
+}
+
 transport::Receivers aim_at(const world::World& world, const View& view, std::uint64_t seed,
                             const Sinks& sinks) {
   constexpr double kWanted = 16384;
@@ -174,19 +194,8 @@ SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe&
   if (keeps_rows) {
     rows = previous->rows, traced = previous->traced;
   } else {
-    Timer timer;
-    const SharedRows all = trace_rows(*world, view, recipe, sinks);
-    seconds["receivers"] = timer.seconds();
-    timer = {};
-    if (const auto tracing = start_direct(*world, *all, recipe)) {
-      if (!tracing->add(TracedDirectSettings{}.samples, sinks)) throw Cancelled();
-      traced.direct = per_sample(*all, tracing->radiance()), traced.direct_samples = tracing->samples();
-    }
-    if (recipe.traced_below > 0) seconds["traced_direct"] = timer.seconds();
-    timer = {};
-    traced.sharp = trace_sharp_lobes(*world, *all, recipe, sinks);
-    rows = matrix_rows(all, recipe);
-    if (rows != all) seconds["traced_indirect"] = timer.seconds();
+    TracedRows made = trace_rows_and_light(*world, view, recipe, sinks, seconds);
+    rows = std::move(made.rows), traced = std::move(made.traced);
   }
   if (keeps_columns) {
     columns = previous->columns;

@@ -72,6 +72,15 @@ std::vector<Rgb> trace_sharp_lobes(const world::World& world, const transport::R
 // What is left of the rows for the matrix: without lobes that are traced wholly.
 SharedRows matrix_rows(const SharedRows& rows, const Recipe& recipe);
 
+// Rows of the matrix, and the light at them that is traced with the default number of samples. Adds to
+// `seconds`.
+struct TracedRows {
+  SharedRows rows;
+  TracedLight traced;
+};
+TracedRows trace_rows_and_light(const world::World& world, const View& view, const Recipe& recipe,
+                                const Sinks& sinks, std::map<std::string, double>& seconds);
+
 // What lights are aimed at: some 16,000 receivers spread over the whole film. Lights thus depend on the view,
 // but neither on the crop nor on the number of pixels and samples.
 transport::Receivers aim_at(const world::World& world, const View& view, std::uint64_t seed,

@@ -1,0 +1,51 @@
+// A scene that moves, as numbered pictures.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumirank/export.h"
+#include "lumirank/lumirank.h"
+
+namespace lumirank {
+
+// Tensor clustering (Hašan et al. 2008): columns are used in many frames, so that a shot costs less than its
+// frames by themselves, and does not flicker.
+struct TensorSettings {
+  int chunk = 40;              // frames that are clustered together, counted from the first one of the motion
+  int rows = 100;              // of each frame, read whole
+  int columns = 200;           // for each frame, in the mean
+  int initial_clusters = 100;  // of lights, before they are split in lights or in time
+  double time_weight = 1;      // a split in time is taken if it leaves less cost by this factor; 0: none
+  // Light of other frames is not carried to what is farther from all that they show than so many distances
+  // between neighboring samples: it was hidden there, and is shaded afresh. 0: no bound, as in the paper.
+  double max_distance = 10;
+  int bits = 16;  // of the rows' entries in memory: 16 or 32
+};
+
+struct AnimateSettings {
+  RenderSettings render;  // of every frame: with the same seed, so the same random numbers, in each
+  double frames_per_second = 24;
+  int first = 0,
+      last = -1;  // frame k is the moment k / frames_per_second; last -1: the last one of the motion
+  std::vector<std::string> endings = {".exr", ".png"};  // of each frame's pictures
+  DisplaySettings display;
+  // Instead of the method of `render`, for columns; light that columns cannot carry is left out then.
+  std::optional<TensorSettings> tensor = {};
+};
+
+struct AnimationResult {
+  int rendered = 0, kept = 0;  // frames: made now, and found finished
+  bool interrupted = false;    // cancelled: what is finished stays
+};
+
+// Writes frame_0000.exr, …, and each frame's report frame_0000.json, into `folder` (made if absent). A frame
+// is finished when its report is there; finished frames are kept, so an interrupted shot goes on where it
+// stopped, and several processes may make different frames of one folder. What the frames are made of is in
+// shot.json: frames of another scene or with other settings are an InputError, and nothing is written over.
+// So are frames before the first key of the motion or after its last one.
+LUMIRANK_API AnimationResult animate(const Scene& scene, const AnimateSettings& settings,
+                                     const std::string& folder, const Sinks& sinks = {});
+
+}  // namespace lumirank

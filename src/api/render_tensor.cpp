@@ -1,0 +1,113 @@
+#include "api/render_tensor.h"
+
+#include "api/build_world.h"
+#include "api/scene.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "base/version.h"
+#include "methods/tensor_clustering/tensor_clustering.h"
+#include "pipeline/develop.h"
+#include "pipeline/memory.h"
+#include "pipeline/report.h"
+#include "pipeline/shot.h"
+
+namespace lumirank::api {
+namespace {
+
+methods::TensorClusteringSettings inner(const TensorSettings& t) {
+  methods::TensorClusteringSettings s;
+  s.rows = static_cast<std::size_t>(t.rows), s.columns = static_cast<std::size_t>(t.columns);
+  s.initial_clusters = static_cast<std::size_t>(t.initial_clusters);
+  s.time_weight = t.time_weight, s.max_distance = t.max_distance;
+  s.precision =
+      t.bits == 32 ? linalg::ReducedTensor::Precision::bits32 : linalg::ReducedTensor::Precision::bits16;
+  return s;
+}
+
+Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate& estimate, std::size_t k,
+                 std::size_t frames, const RenderSettings& settings) {
+  Report report;
+  report.method = "tensor-clustering";
+  report.version = program_version();
+  report.seed = settings.seed;
+  report.settings = settings;
+  report.seconds = frame.seconds;
+  // Of the chunk, a frame's part of it.
+  const auto part = static_cast<double>(frames);
+  for (const auto& [key, value] : estimate.trace.numbers)
+    if (key.starts_with("seconds."))
+      report.seconds[key.substr(8)] = value / part;
+    else
+      report.numbers[key] = value;
+  Report::Cost cost;
+  cost.entries = estimate.spent.entries / frames, cost.culled = estimate.spent.culled / frames;
+  cost.shadow_rays = estimate.spent.rays / frames;
+  cost.sampling_rate = static_cast<double>(cost.entries) / (static_cast<double>(frame.matrix->rows()) *
+                                                            static_cast<double>(frame.matrix->columns()));
+  report.cost = cost;
+  report.numbers["clusters"] = static_cast<double>(estimate.clusters) / part;
+  report.numbers["clusters.active"] = static_cast<double>(estimate.active[k]);
+  report.memory.peak = pipeline::peak_memory_bytes();
+  return report;
+}
+
+}  // namespace
+
+void check(const TensorSettings& t) {
+  const auto require = [](bool sound, const char* what, const char* remedy) {
+    if (!sound) throw InputError(std::string("tensor clustering: ") + what, remedy);
+  };
+  require(t.chunk >= 1 && t.chunk <= 1000, "a chunk has no such number of frames", "give 1 to 1000");
+  require(t.rows >= 1 && t.rows <= 10'000, "there is no such number of rows", "give 1 to 10000");
+  require(t.columns >= 1 && t.columns <= 1'000'000, "there is no such number of columns",
+          "give 1 to 1000000");
+  require(t.initial_clusters >= 1, "there are no initial clusters", "give 1 or more");
+  require(t.time_weight >= 0, "the weight of time is negative", "give 0 or more");
+  require(t.max_distance >= 0, "the greatest distance of a mapping is negative", "give 0 or more");
+  require(t.bits == 16 || t.bits == 32, "entries have 16 or 32 bits", "give one of them");
+}
+
+std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
+                                        const TensorSettings& tensor, const Sinks& sinks) {
+  std::vector<RenderResult> results;
+  pipeline::within_memory(pipeline::kSmallerPicture, [&] {
+    with_threads(settings.threads, [&] {
+      std::vector<pipeline::SharedWorld> worlds;
+      std::vector<pipeline::View> views;
+      Sinks silent;
+      silent.cancel = sinks.cancel;
+      for (const Scene& scene : scenes) {
+        worlds.push_back(build_world(scene, worlds.empty() ? sinks : silent));
+        views.push_back(pipeline::make_view(scene.impl().desc, settings.view));
+      }
+      const pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
+      try {
+        const auto frames =
+            pipeline::prepare_shot(worlds, views, recipe, settings.lights.count_or_default(), sinks);
+        const pipeline::ShotTensor shot(frames);
+        methods::RunOptions options;
+        options.seed = settings.seed;
+        options.sinks = sinks;
+        const methods::TensorEstimate estimate = methods::estimate_tensor(shot, inner(tensor), options);
+        if (estimate.interrupted) return;
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+          const pipeline::Prepared& frame = *frames[k];
+          RenderResult result;
+          result.picture = pipeline::to_picture(
+              pipeline::develop(frame.view, frame.receivers(),
+                                pipeline::sample_values(frame.receivers(), frame.traced, estimate.sums[k],
+                                                        pipeline::wanted_parts(settings.view.only))));
+          result.report = report_of(frame, estimate, k, frames.size(), settings);
+          result.report.numbers["lights.in_all_frames"] = shot.common_share();
+          results.push_back(std::move(result));
+        }
+      } catch (const Cancelled&) {
+        results.clear();
+      }
+    });
+  });
+  return results;
+}
+
+}  // namespace lumirank::api

@@ -1,0 +1,157 @@
+// Shots: frames, what is kept, what is refused.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "base/error.h"
+#include "lumirank/animate.h"
+#include "support/scene_file.h"
+
+namespace lumirank {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+
+// A lamp over a floor; a ball that moves from left to right in one second, unless `moves` is false.
+std::string moving_scene(const TemporaryFolder& folder, bool moves = true) {
+  const std::string file = folder / "moving.xml";
+  std::ofstream(file)
+      << "<scene version=\"3.0.0\"><sensor type=\"perspective\"><float name=\"fov\" value=\"50\"/><transform "
+         "name=\"to_world\"><lookat origin=\"0,3,6\" target=\"0,0,0\" up=\"0,1,0\"/></transform><film "
+         "type=\"hdrfilm\"><integer name=\"width\" value=\"16\"/><integer name=\"height\" "
+         "value=\"12\"/></film>"
+         "</sensor><shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" "
+         "angle=\"-90\"/><scale "
+         "value=\"4\"/></transform></shape><shape type=\"sphere\"><float name=\"radius\" value=\"0.6\"/>"
+         "<animation name=\"to_world\"><transform time=\"0\"><translate x=\"-1\" y=\"1\"/></transform>"
+      << "<transform time=\"1\"><translate x=\"" << (moves ? 1 : -1)
+      << "\" y=\"1\"/></transform></animation></shape><emitter type=\"point\"><point name=\"position\" "
+         "x=\"0\" "
+         "y=\"4\" z=\"1\"/></emitter></scene>";
+  return file;
+}
+
+AnimateSettings small_shot(int first, int last) {
+  AnimateSettings settings;
+  settings.render.lights.count = 150;
+  settings.render.view.spp = 1;
+  settings.render.method.name = "brute-force";
+  settings.render.traced.rest = RestOfPaths::skip;
+  settings.frames_per_second = 4;
+  settings.first = first, settings.last = last;
+  settings.endings = {".pfm"};
+  return settings;
+}
+
+std::string bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+std::string frame(const std::string& folder, int k) {
+  return folder + "/frame_000" + std::to_string(k) + ".pfm";
+}
+template <typename Work>
+std::string refused(const Work& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Animate, FramesAreThePicturesOfTheirMoments) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const std::string out = folder / "shot";
+  const AnimateSettings settings = small_shot(0, -1);
+  const AnimationResult result = animate(scene, settings, out);
+  EXPECT_EQ(result.rendered, 5);  // 0, ¼, ½, ¾, 1 s
+  EXPECT_FALSE(fs::exists(out + "/frame_0005.pfm"));
+  std::set<std::string> different;
+  for (int k = 0; k < 5; ++k) {
+    write_picture(folder / "still.pfm", render(scene.at(k / 4.0), settings.render).picture);
+    EXPECT_EQ(bytes_of(frame(out, k)), bytes_of(folder / "still.pfm")) << k;
+    different.insert(bytes_of(frame(out, k)));
+  }
+  EXPECT_EQ(different.size(), 5u);
+  EXPECT_EQ(scene.info().motion_end, 1);
+}
+
+// Lights, receivers and random numbers are the same in every frame, so nothing flickers where nothing moves.
+TEST(Animate, AStaticSceneHasOneFrame) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder, false));
+  AnimateSettings settings = small_shot(0, 3);
+  for (const char* method : {"brute-force", "row-column-sampling", "slice-cuts"}) {
+    settings.render.method.name = method;
+    const std::string out = folder / method;
+    animate(scene, settings, out);
+    for (int k = 1; k < 4; ++k) EXPECT_EQ(bytes_of(frame(out, k)), bytes_of(frame(out, 0))) << method << k;
+  }
+}
+
+TEST(Animate, GoesOnWhereItStoppedToTheSameBits) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const std::string whole = folder / "whole", parts = folder / "parts";
+  animate(scene, small_shot(0, 4), whole);
+  // Two processes with frames of their own, one of them killed between a picture and its report.
+  EXPECT_EQ(animate(scene, small_shot(2, 3), parts).rendered, 2);
+  fs::remove(parts + "/frame_0003.json");
+  std::ofstream(frame(parts, 3)) << "half";
+  const AnimationResult rest = animate(scene, small_shot(0, 4), parts);
+  EXPECT_EQ(rest.kept, 1);
+  EXPECT_EQ(rest.rendered, 4);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(bytes_of(frame(parts, k)), bytes_of(frame(whole, k))) << k;
+}
+
+TEST(Animate, CancelledItKeepsWhatIsFinished) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const std::string out = folder / "shot";
+  std::atomic<bool> stop = false;
+  Sinks sinks;
+  sinks.cancel = &stop;
+  sinks.progress = [&](const char*, double fraction) { stop = fraction > 0.3; };
+  const AnimationResult result = animate(scene, small_shot(0, 4), out, sinks);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.rendered, 2);
+  EXPECT_TRUE(fs::exists(out + "/frame_0001.json"));
+  EXPECT_FALSE(fs::exists(frame(out, 2)));
+}
+
+TEST(Animate, RefusesOtherShotsAndMomentsThatAreNot) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const std::string out = folder / "shot";
+  animate(scene, small_shot(0, 0), out);
+  const std::string kept = bytes_of(frame(out, 0));
+  AnimateSettings other = small_shot(0, 1);
+  other.render.seed = 2;
+  EXPECT_NE(refused([&] { animate(scene, other, out); }).find("frames of another shot: its \"settings\""),
+            std::string::npos);
+  other = small_shot(0, 1);
+  other.frames_per_second = 8;
+  EXPECT_NE(refused([&] { animate(scene, other, out); }).find("frames_per_second"), std::string::npos);
+  EXPECT_EQ(bytes_of(frame(out, 0)), kept);
+  EXPECT_FALSE(fs::exists(frame(out, 1)));
+  EXPECT_NE(refused([&] { animate(scene, small_shot(0, 5), out); }).find("has frames 0 to 4 at 4.0"),
+            std::string::npos);
+  EXPECT_NE(refused([&] { animate(scene, small_shot(3, 2), out); }).find("no frames from 3 to 2"),
+            std::string::npos);
+  const std::string strange = folder / "strange";
+  fs::create_directories(strange);
+  std::ofstream(strange + "/frame_0001.exr") << "x";
+  EXPECT_NE(refused([&] { animate(scene, small_shot(0, 1), strange); }).find("no shot.json"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(strange + "/shot.json"));
+}
+
+}  // namespace
+}  // namespace lumirank
