@@ -192,6 +192,23 @@ def gltf():
     meshopt = scene()
     meshopt["bufferViews"][0]["extensions"] = {"EXT_meshopt_compression": packed}
     write_json("meshopt.gltf", meshopt)
+    # Keys at 0 and 1 s; a translation, a rotation as a cubic spline of six values, an intensity by a pointer.
+    moving = scene(corners + struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 1, 2, 3)
+                   + struct.pack("<24f", *([0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0] * 2)) + struct.pack("<2f", 1, 0))
+    moving["bufferViews"] += [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in
+                              ((60, 8), (68, 24), (92, 96), (188, 8))]
+    moving["accessors"] += [{"bufferView": view, "componentType": 5126, "count": count, "type": kind} for view, count, kind in
+                            ((2, 2, "SCALAR"), (3, 2, "VEC3"), (4, 6, "VEC4"), (5, 2, "SCALAR"))]
+    moving["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 1}]}}
+    pointer = {"path": "pointer", "extensions": {"KHR_animation_pointer": {
+        "pointer": "/extensions/KHR_lights_punctual/lights/0/intensity"}}}
+    moving["animations"] = [{
+        "name": "walk",
+        "samplers": [{"input": 2, "output": 3}, {"input": 2, "output": 4, "interpolation": "CUBICSPLINE"},
+                     {"input": 2, "output": 5, "interpolation": "STEP"}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}},
+                     {"sampler": 1, "target": {"node": 0, "path": "rotation"}}, {"sampler": 2, "target": pointer}]}]
+    write_json("moving.gltf", moving)
     draco = scene()
     draco["meshes"][0]["primitives"][0]["extensions"] = {
         "KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}

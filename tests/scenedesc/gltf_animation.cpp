@@ -220,6 +220,14 @@ TEST(GltfAnimation, BadOnesAreRefusedWithTheirPlace) {
   fails({.path = "rotation", .values = two}, "values of 3 numbers");
   fails({.path = "color", .values = two}, "translation, rotation, scale and weights");
   fails({.values = two, .node = 7}, "7");
+  // Pointers to what is not there, or is no number.
+  for (const char* pointer : {"/foo/weights", "/nodes/abc/translation", "/nodes/9/scale", "/nodes",
+                              "/asset/version", "nodes/0/scale", "/nodes/0/mesh/x"}) {
+    GltfMaker p = animated({{.values = two}});
+    p.root["animations"][0]["channels"][0]["target"] = {
+        {"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+    EXPECT_NE(failure(p.gltf(), moment(0.5)), "") << pointer;
+  }
   GltfMaker m = animated({{.values = two}, {.values = two}});
   EXPECT_NE(failure(m.gltf(), moment(0)).find("another channel moves"), std::string::npos);
   m = animated({{.values = two}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace lumirank::scenedesc::gltf {
 namespace {
@@ -28,14 +29,17 @@ Steps steps_of(const Element& pointer) {
 }
 
 // One step down; null if there is nothing.
-Json* below(Json& json, const std::string& step) {
-  if (json.kind == Json::Kind::object) return const_cast<Json*>(json.find(step));
+const Json* below(const Json& json, const std::string& step) {
+  if (json.kind == Json::Kind::object) return json.find(step);
   std::size_t index = 0;
   const auto [end, status] = std::from_chars(step.data(), step.data() + step.size(), index);
   if (json.kind != Json::Kind::list || status != std::errc{} || end != step.data() + step.size() ||
       index >= json.items.size())
     return nullptr;
   return &json.items[index];
+}
+Json* below(Json& json, const std::string& step) {
+  return const_cast<Json*>(below(std::as_const(json), step));
 }
 
 Json number_at(double value, int line) {
@@ -45,15 +49,19 @@ Json number_at(double value, int line) {
   return json;
 }
 
-void set(Json& document, const Steps& path, Json value) {
+// False if the file, as other properties have made it, has no such place.
+bool set(Json& document, const Steps& path, Json value) {
   Json* json = &document;
-  for (std::size_t k = 0; k + 1 < path.size(); ++k) json = below(*json, path[k]);
+  for (std::size_t k = 0; k + 1 < path.size() && json; ++k) json = below(*json, path[k]);
+  if (!json) return false;
   if (Json* found = below(*json, path.back())) {
     *found = std::move(value);
-  } else {
-    json->keys.push_back(path.back());
-    json->items.push_back(std::move(value));
+    return true;
   }
+  if (json->kind != Json::Kind::object) return false;
+  json->keys.push_back(path.back());
+  json->items.push_back(std::move(value));
+  return true;
 }
 
 // Spherical interpolation by the shorter way (glTF 2.0, appendix C.4); turns of less than 10⁻⁴ are straight.
@@ -75,7 +83,10 @@ std::string name_of(const Element& root, const Steps& path) {
             : name.empty()                                                     ? step
                                                                                : "." + step;
   if (path.size() == 3 && path[0] == "nodes") {
-    const std::string own = root.list("nodes")[std::stoul(path[1])].text("name", "");
+    const Json* node = below(root.json(), path[0]);
+    if (node) node = below(*node, path[1]);
+    const Json* named = node ? node->find("name") : nullptr;
+    const std::string own = named ? named->text : "";
     name = "nodes[" + path[1] + "]" + (own.empty() ? "" : " (" + own + ")") + ": " + path[2];
   }
   return name;
@@ -229,26 +240,28 @@ void Animation::set_keys(const Element& sampler, Track& track) {
 std::size_t Animation::component_count(const Element& channel, Track& track) const {
   const std::string& name = track.path.back();
   const bool of_node = track.path.size() == 3 && track.path[0] == "nodes";
+  const Json* parent = &root_.json();
+  for (std::size_t k = 0; k + 1 < track.path.size() && parent; ++k) parent = below(*parent, track.path[k]);
+  if (!parent || (parent->kind != Json::Kind::object && !below(*parent, name)))
+    channel.fail("points to " + name_of(root_, track.path) + ", which the file does not have",
+                 "write the property that is animated");
   track.is_rotation = of_node && name == "rotation";
   track.is_list = true;
   if (name == "weights") return track.components;  // as many as targets, which the primitive checks
   if (of_node && (name == "translation" || name == "scale")) return 3;
   if (track.is_rotation) return 4;
   // Any other: as it stands in the file, or what its values are.
-  Json* found = const_cast<Json*>(&root_.json());
-  for (std::size_t k = 0; k < track.path.size(); ++k) {
-    Json* next = below(*found, track.path[k]);
-    if (!next && k + 1 < track.path.size())
-      channel.fail("points to " + name_of(root_, track.path) + ", which the file does not have",
-                   "write the property that is animated");
-    if (!next) {
-      track.is_list = track.components > 1;
-      return track.components;
-    }
-    found = next;
+  const Json* found = below(*parent, name);
+  if (!found) {
+    track.is_list = track.components > 1;
+    return track.components;
   }
   track.is_list = found->kind == Json::Kind::list, track.is_flag = found->kind == Json::Kind::boolean;
-  if (!track.is_list && !track.is_flag && found->kind != Json::Kind::number)
+  const bool numbers = track.is_list
+                           ? std::all_of(found->items.begin(), found->items.end(),
+                                         [](const Json& item) { return item.kind == Json::Kind::number; })
+                           : track.is_flag || found->kind == Json::Kind::number;
+  if (!numbers || (track.is_list && found->items.empty()))
     channel.fail("points to " + name_of(root_, track.path) + ", which is no number", "animate numbers");
   return track.is_list ? found->items.size() : 1;
 }
@@ -266,7 +279,10 @@ Json Animation::at(const Json& document, double seconds) const {
       json = number_at(track.is_flag ? (values[0] != 0 ? 1.0 : 0.0) : values[0], track.line);
       if (track.is_flag) json.kind = Json::Kind::boolean;
     }
-    set(posed, track.path, std::move(json));
+    if (!set(posed, track.path, std::move(json)))
+      throw InputError({root_.file(), track.line},
+                       name_of(root_, track.path) + " is moved, and another channel replaces what it is in",
+                       "choose one clip with --clip");
   }
   return posed;
 }
