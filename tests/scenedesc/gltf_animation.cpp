@@ -33,7 +33,7 @@ GltfMaker animated(const std::vector<Channel>& channels, const std::string& clip
     animation["samplers"].push_back(
         {{"input", input}, {"output", output}, {"interpolation", c.interpolation}});
   }
-  m.root["animations"] = {animation};
+  m.root["animations"] = json::array({animation});  // compilers differ on {animation}
   return m;
 }
 ReadOptions moment(double seconds) {
