@@ -166,7 +166,13 @@ class Shot {
 AnimationResult animate(const Scene& scene, const AnimateSettings& settings, const std::string& folder,
                         const Sinks& sinks) {
   validate(settings.render);
-  if (settings.tensor) api::check(*settings.tensor);
+  if (settings.tensor) {
+    api::check(*settings.tensor, settings.render);
+    if (settings.render.traced.rest != RestOfPaths::skip)
+      sinks.warn(
+          "tensor clustering leaves out light that columns cannot carry (caustics, light through glass); "
+          "--rest skip says so");
+  }
   if (settings.endings.empty()) throw InputError("the frames have no format", "give --format exr,png");
   const Range frames = frames_of(scene.impl().desc.motion, settings);
   Shot shot(scene, settings, folder);

@@ -54,10 +54,19 @@ Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate&
 
 }  // namespace
 
-void check(const TensorSettings& t) {
+void check(const TensorSettings& t, const RenderSettings& settings) {
   const auto require = [](bool sound, const char* what, const char* remedy) {
     if (!sound) throw InputError(std::string("tensor clustering: ") + what, remedy);
   };
+  require(settings.time <= 0, "it keeps no time budget",
+          "leave out --time; --set columns=… decides its time");
+  require(settings.method.target_error <= 0, "it aims at no error",
+          "leave out --error; more columns have less");
+  require(settings.layers.empty(), "it makes no layers", "leave out --aov, or choose another method");
+  require(settings.traced.compensate == 0, "it gives back nothing of what clamping takes",
+          "leave out --compensate");
+  require(settings.traced.rest != RestOfPaths::trace, "it does not trace light that columns cannot carry",
+          "leave out --rest, or choose another method");
   require(t.chunk >= 1 && t.chunk <= 1000, "a chunk has no such number of frames", "give 1 to 1000");
   require(t.rows >= 1 && t.rows <= 10'000, "there is no such number of rows", "give 1 to 10000");
   require(t.columns >= 1 && t.columns <= 1'000'000, "there is no such number of columns",

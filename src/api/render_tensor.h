@@ -7,8 +7,9 @@
 
 namespace lumirank::api {
 
-// Throws InputError for numbers out of range.
-void check(const TensorSettings& settings);
+// Throws InputError for numbers out of range, and for what a render can be asked for and tensor clustering
+// does not do.
+void check(const TensorSettings& tensor, const RenderSettings& settings);
 
 // One picture and report for each scene, which are one scene at moments one after the other; none if it was
 // cancelled.

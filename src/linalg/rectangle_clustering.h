@@ -1,8 +1,8 @@
 // Clusters of light-frame pairs that are rectangles, a set of lights in a range of frames (Hašan et al. 2008,
 // section 4.3.2): again and again the costliest is split, in lights or in time, whichever leaves less cost.
 //
-// The cost of a cluster is Σ w_p w_q ‖x_p − x_q‖² over its ordered pairs, which is 2·((Σw)² − ‖Σ w x‖²):
-// running sums give the cost of both parts at every place of a split.
+// The cost of a cluster is Σ w_p w_q ‖x_p − x_q‖² over its ordered pairs, which is 2·(Σw · Σ w‖x‖² − ‖Σ w
+// x‖²): running sums give the cost of both parts at every place of a split.
 #pragma once
 
 #include <cstddef>

@@ -126,6 +126,34 @@ TEST(Animate, CancelledItKeepsWhatIsFinished) {
   EXPECT_FALSE(fs::exists(frame(out, 2)));
 }
 
+// What tensor clustering cannot do is refused, not left out in silence; what it leaves out by default is
+// said.
+TEST(Animate, TensorClusteringSaysWhatItDoesNot) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const auto with = [&](const auto& change) {
+    AnimateSettings settings = small_shot(0, 1);
+    settings.tensor = TensorSettings{};
+    change(settings);
+    return refused([&] { animate(scene, settings, folder / "none"); });
+  };
+  EXPECT_NE(with([](auto& s) { s.render.time = 1; }).find("no time budget"), std::string::npos);
+  EXPECT_NE(with([](auto& s) { s.render.layers = {"direct"}; }).find("no layers"), std::string::npos);
+  EXPECT_NE(with([](auto& s) { s.render.traced.rest = RestOfPaths::trace; }).find("cannot carry"),
+            std::string::npos);
+  EXPECT_NE(with([](auto& s) { s.tensor->bits = 17; }).find("16 or 32"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "none"));
+  AnimateSettings settings = small_shot(0, 1);
+  settings.tensor = TensorSettings{};
+  settings.tensor->columns = 20;
+  settings.render.traced.rest = RestOfPaths::automatic;
+  std::string said;
+  Sinks sinks;
+  sinks.warning = [&](const std::string& text) { said += text; };
+  EXPECT_EQ(animate(scene, settings, folder / "shot", sinks).rendered, 2);
+  EXPECT_NE(said.find("leaves out light"), std::string::npos);
+}
+
 TEST(Animate, RefusesOtherShotsAndMomentsThatAreNot) {
   const TemporaryFolder folder;
   const Scene scene = Scene::load(moving_scene(folder));
