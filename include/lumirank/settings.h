@@ -30,6 +30,9 @@ enum class LightPart { all, direct, indirect };
 // Virtual lights of indirect light: points; points that send on by the diffuse lobes of their surface alone
 // (2009, section 2); spheres (2009, section 4).
 enum class LightType { point, diffuse_point, sphere };
+// Where indirect virtual lights stand: where particles from the emitters land; on gather samples, which are
+// tied to the surfaces (2008, section 5); automatic: the first, for tensor clustering the second.
+enum class LightPlacement { automatic, particles, gather };
 enum class SphereIndicator { disc, cosine };  // what is taken for the lit surface close by; cosine: 2009
 enum class SphereStrategies { all, cone };    // sample cone and both BSDFs, or the cone alone
 enum class SphereSamples { overlap, cone };   // by the overlap of lobes and cone, or the cone alone: 2009
@@ -59,6 +62,7 @@ struct ViewSettings {
 struct VirtualLightSettings {
   std::optional<std::uint64_t> count = {};  // unset: 100,000, or what a time budget holds
   LightType type = LightType::point;
+  LightPlacement placement = LightPlacement::automatic;
   double clamp = 0.03;      // X of docs/conventions.md; 0: off
   double radius_scale = 0;  // spheres: radius over the distance to the 10th nearest; 0: automatic
   SphereIndicator sphere_indicator = SphereIndicator::disc;

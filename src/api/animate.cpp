@@ -10,6 +10,7 @@
 #include "api/render_tensor.h"
 #include "api/scene.h"
 #include "base/error.h"
+#include "base/hash_text.h"
 #include "image/atomic_file.h"
 
 namespace lumirank {
@@ -52,12 +53,11 @@ Range frames_of(const scenedesc::Motion& motion, const AnimateSettings& settings
   return range;
 }
 
-// Of the scene file's bytes (FNV-1a), so that a scene that was changed is another one.
+// Of the scene file's bytes, so that a scene that was changed is another one.
 std::string fingerprint(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (std::istreambuf_iterator<char> it(in), end; it != end; ++it)
-    hash = (hash ^ static_cast<unsigned char>(*it)) * 0x100000001b3u;
+  const std::string bytes(std::istreambuf_iterator<char>(in), {});
+  const std::uint64_t hash = hash_text(bytes);
   char text[24];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;

@@ -90,7 +90,9 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
         worlds.push_back(build_world(scene, worlds.empty() ? sinks : silent));
         views.push_back(pipeline::make_view(scene.impl().desc, settings.view));
       }
-      const pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
+      pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
+      if (recipe.lights.placement == LightPlacement::automatic)
+        recipe.lights.placement = LightPlacement::gather;
       try {
         const auto frames =
             pipeline::prepare_shot(worlds, views, recipe, settings.lights.count_or_default(), sinks);

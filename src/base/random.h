@@ -27,6 +27,7 @@ enum class Stage : std::uint32_t {
   spheres,
   traced_sharp,
   traced_near,
+  gather_samples,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

@@ -109,15 +109,15 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
 void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
                                double u_light, float connection) const {
   const Vec3f wo = -walk.ray.direction;
-  walk.from = lit_point(hit.point.position, closure, wo);
+  walk.from = world::lit_point(hit.point.position, closure, wo);
   const auto s = lights_.sample(walk.from, u_light, walk.random.next_2d());
   if (!(s.pdf > 0)) return;
   Rgb f = scatter::eval(closure, wo, s.direct.direction);
   if (connection > 0) f *= missing(connection, closure, wo, s.direct.direction);
   if (is_black(f)) return;
   const Rgb visible =
-      visible_fraction(world_, hit.point.position, hit.point.ng, s.direct.direction, s.direct.distance,
-                       mix64(walk.key + static_cast<std::uint64_t>(walk.segments)));
+      world::visible_fraction(world_, hit.point.position, hit.point.ng, s.direct.direction, s.direct.distance,
+                              mix64(walk.key + static_cast<std::uint64_t>(walk.segments)));
   if (is_black(visible)) return;
   const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
   walk.add(walk.throughput * f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf)));

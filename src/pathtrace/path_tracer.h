@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "base/rgb.h"
-#include "pathtrace/light_sampler.h"
 #include "pathtrace/sample_stream.h"
 #include "world/camera.h"
+#include "world/light_sampler.h"
 #include "world/world.h"
 
 namespace lumirank::pathtrace {
@@ -80,7 +80,7 @@ class PathTracer {
   bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
 
   const world::World& world_;
-  LightSampler lights_;
+  world::LightSampler lights_;
   PathSettings settings_;
 };
 

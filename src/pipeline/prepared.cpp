@@ -108,10 +108,11 @@ pathtrace::CarriedByColumns even_areas(transport::VirtualLights& lights, const w
 }  // namespace
 
 Columns trace_columns(const world::World& world, const Recipe& recipe, const transport::LightSurvey& survey,
-                      std::size_t count, const Sinks& sinks) {
+                      std::size_t count, const Sinks& sinks, const transport::GatherPlan* gather) {
   transport::LightSettings ls = light_settings(recipe);
   ls.count = count;
   ls.survey = &survey;
+  ls.gather = gather;
   auto lights = std::make_shared<transport::VirtualLights>(transport::trace_virtual_lights(world, ls, sinks));
   Columns columns;
   columns.asked = count;
@@ -173,7 +174,7 @@ bool same_rows(const Recipe& a, const Recipe& b) {
 bool same_columns(const Recipe& a, const Recipe& b) {
   return a.light_seed == b.light_seed && a.only == b.only && a.traced_below == b.traced_below &&
          a.compensated == b.compensated && a.lights.type == b.lights.type &&
-         a.lights.radius_scale == b.lights.radius_scale &&
+         a.lights.placement == b.lights.placement && a.lights.radius_scale == b.lights.radius_scale &&
          (!a.compensated || a.lights.clamp == b.lights.clamp);
 }
 

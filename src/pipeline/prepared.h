@@ -86,8 +86,9 @@ TracedRows trace_rows_and_light(const world::World& world, const View& view, con
 transport::Receivers aim_at(const world::World& world, const View& view, std::uint64_t seed,
                             const Sinks& sinks);
 SharedSurvey survey(const world::World& world, const Recipe& recipe, const transport::Receivers& aim);
+// `gather`: what moments share, for lights on gather samples (LightSettings::gather); may be nullptr.
 Columns trace_columns(const world::World& world, const Recipe& recipe, const transport::LightSurvey& survey,
-                      std::size_t count, const Sinks& sinks);
+                      std::size_t count, const Sinks& sinks, const transport::GatherPlan* gather = nullptr);
 std::vector<Rgb> trace_near(const world::World& world, const transport::Receivers& rows,
                             const Columns& columns, const Recipe& recipe, const Sinks& sinks);
 

@@ -82,6 +82,7 @@ transport::LightSettings light_settings(const Recipe& recipe) {
   ls.indirect = recipe.only != LightPart::direct;
   ls.diffuse_only = recipe.lights.type == LightType::diffuse_point;
   ls.traced_direct_below = recipe.traced_below;
+  ls.on_gather_samples = recipe.lights.placement == LightPlacement::gather;
   return ls;
 }
 

@@ -1,7 +1,10 @@
 #include "pipeline/shot.h"
 
+#include <set>
+
 #include "base/error.h"
 #include "matrix/renumbered_columns.h"
+#include "transport/lights/gather_lights.h"
 
 namespace lumirank::pipeline {
 
@@ -28,18 +31,49 @@ double ShotTensor::common_share() const {
   return number_.empty() ? 1.0 : static_cast<double>(common_) / static_cast<double>(number_.size());
 }
 
+namespace {
+
+// Of what the chunk's first, middle and last frames see; the middle one's is `guide`.
+struct ShotSurvey {
+  SharedSurvey guide;
+  transport::GatherPlan plan;
+};
+
+ShotSurvey survey_shot(const std::vector<SharedWorld>& worlds, const std::vector<View>& views,
+                       const Recipe& recipe, std::size_t count, const Sinks& sinks) {
+  const std::size_t middle = worlds.size() / 2;
+  std::set<std::size_t> asked{middle};
+  const bool gather = recipe.lights.placement == LightPlacement::gather;
+  if (gather) asked.insert({0, worlds.size() - 1});
+  std::vector<SharedSurvey> surveys;
+  std::vector<const world::World*> seen;
+  std::vector<const transport::LightSurvey*> told;
+  ShotSurvey shot;
+  for (const std::size_t k : asked) {
+    surveys.push_back(survey(*worlds[k], recipe, aim_at(*worlds[k], views[k], recipe.light_seed, sinks)));
+    seen.push_back(worlds[k].get()), told.push_back(surveys.back().get());
+    if (k == middle) shot.guide = surveys.back();
+  }
+  if (gather) {
+    transport::LightSettings ls = light_settings(recipe);
+    ls.count = count;
+    shot.plan = transport::plan_gather(seen, told, ls);
+  }
+  return shot;
+}
+
+}  // namespace
+
 std::vector<SharedPrepared> prepare_shot(const std::vector<SharedWorld>& worlds,
                                          const std::vector<View>& views, const Recipe& recipe,
                                          std::size_t count, const Sinks& sinks) {
   if (worlds.empty()) return {};
-  const std::size_t middle = worlds.size() / 2;
-  const SharedSurvey common =
-      survey(*worlds[middle], recipe, aim_at(*worlds[middle], views[middle], recipe.light_seed, sinks));
+  const ShotSurvey common = survey_shot(worlds, views, recipe, count, sinks);
   std::vector<SharedPrepared> frames;
   for (std::size_t k = 0; k < worlds.size(); ++k) {
     std::map<std::string, double> seconds;
     TracedRows made = trace_rows_and_light(*worlds[k], views[k], recipe, sinks, seconds);
-    Columns columns = trace_columns(*worlds[k], recipe, *common, count, sinks);
+    Columns columns = trace_columns(*worlds[k], recipe, *common.guide, count, sinks, &common.plan);
     made.traced.near = trace_near(*worlds[k], *made.rows, columns, recipe, sinks);
     frames.push_back(join(worlds[k], views[k], recipe, std::move(made.rows), std::move(columns),
                           std::move(made.traced), std::move(seconds)));

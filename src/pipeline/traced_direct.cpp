@@ -13,9 +13,9 @@ namespace {
 // random.
 struct Met {
   Rgb radiance{0};
-  float light_pdf = 0;  // with which pathtrace::LightSampler would have found it
+  float light_pdf = 0;  // with which world::LightSampler would have found it
 };
-Met emission_along(const world::World& world, const pathtrace::LightSampler& lights,
+Met emission_along(const world::World& world, const world::LightSampler& lights,
                    const emitters::LitPoint& from, Vec3f origin, Vec3f direction,
                    pathtrace::SampleStream& random) {
   constexpr int kMaxPasses = 64;
@@ -47,13 +47,13 @@ Met emission_along(const world::World& world, const pathtrace::LightSampler& lig
 }
 
 // Adds the samples begin … end − 1 to the sum of those before.
-Rgb add_direct_at(const world::World& world, const pathtrace::LightSampler& lights,
+Rgb add_direct_at(const world::World& world, const world::LightSampler& lights,
                   const transport::Receivers& receivers, std::size_t i, const TracedDirectSettings& settings,
                   int begin, int end, Rgb sum) {
   using scatter::Lobes;
   const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
-  const emitters::LitPoint at = pathtrace::lit_point(position, closure, wo);
+  const emitters::LitPoint at = world::lit_point(position, closure, wo);
   const std::uint64_t key = receivers.key(i);
   for (int k = begin; k < end; ++k) {
     // One of the stream's two sets: even numbers only.
@@ -66,7 +66,7 @@ Rgb add_direct_at(const world::World& world, const pathtrace::LightSampler& ligh
       if (!is_black(f)) {
         const float bsdf_pdf =
             s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::non_delta);
-        const Rgb visible = pathtrace::visible_fraction(
+        const Rgb visible = world::visible_fraction(
             world, position, ng, s.direct.direction, s.direct.distance,
             hash_ids(settings.seed, Stage::opacity, key, static_cast<std::uint64_t>(k)));
         sum += f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf));

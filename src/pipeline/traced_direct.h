@@ -8,8 +8,8 @@
 
 #include "base/rgb.h"
 #include "base/sinks.h"
-#include "pathtrace/light_sampler.h"
 #include "transport/rows/receivers.h"
+#include "world/light_sampler.h"
 #include "world/world.h"
 
 namespace lumirank::pipeline {
@@ -38,7 +38,7 @@ class DirectTracing {
   const world::World& world_;
   const transport::Receivers& receivers_;
   TracedDirectSettings settings_;
-  pathtrace::LightSampler lights_;
+  world::LightSampler lights_;
   std::vector<Rgb> sums_;
   int samples_ = 0;
 };

@@ -39,7 +39,7 @@ class Tracing {
     const std::uint64_t key = receivers_.key(i);
     const Stage stage = settings_.near ? Stage::traced_near : Stage::traced_sharp;
     pathtrace::PathTracer::Departure departure{
-        position, receivers_.ng[i],    pathtrace::lit_point(position, closure, wo),
+        position, receivers_.ng[i],    world::lit_point(position, closure, wo),
         {},       receivers_.depth[i], settings_.near ? &reach_ : nullptr};
     Rgb sum{0};
     double sum_y = 0, sum_y2 = 0;

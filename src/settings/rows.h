@@ -52,6 +52,10 @@ struct EnumNames<LightType> {
   static constexpr const char* names[] = {"point", "diffuse-point", "sphere"};
 };
 template <>
+struct EnumNames<LightPlacement> {
+  static constexpr const char* names[] = {"auto", "particles", "gather"};
+};
+template <>
 struct EnumNames<SphereIndicator> {
   static constexpr const char* names[] = {"disc", "cosine"};
 };

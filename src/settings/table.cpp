@@ -26,6 +26,11 @@ void add_light_rows(std::vector<Row>& t) {
       At<&S::lights, &VirtualLightSettings::count>{}, 1, 5e7));
   t.push_back(choice({"light-type", "", "point", "", "", "kind of indirect virtual light"},
                      At<&S::lights, &VirtualLightSettings::type>{}));
+  t.push_back(
+      choice({"light-placement", "", "auto", "", "",
+              "where indirect virtual lights stand: where particles land, or on gather samples tied to "
+              "the surfaces, the same lights in every frame; auto: gather for tensor clustering"},
+             At<&S::lights, &VirtualLightSettings::placement>{}));
   t.push_back(number({"radius-scale", "", "0", "0 … 1000", "",
                       "spherical lights: radius over the distance to the 10th nearest light; 0: by the "
                       "number of lights"},

@@ -1,9 +1,12 @@
 // A description → a world, in steps: what is placed, its materials and textures, its light, the ray scene.
 #include <cmath>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
+#include "base/hash_text.h"
 #include "world/impl.h"
 #include "world/lights.h"
 #include "world/material_builder.h"
@@ -147,6 +150,10 @@ class World::Builder {
     w_.placements.push_back({placement.to_world.is_identity(), w_.materials.is_hair(material_of_[i]),
                              geometry_.flip[i], placement.to_world,
                              placement.to_world.inverse().value_or(Transform{})});
+    const Placed& placed = geometry_.placed[i];
+    std::string name = placed.shape->id;
+    if (placed.instance) name += '\n' + placed.instance->id;
+    w_.placement_ids.push_back(hash_text(name + '\n' + std::to_string(named_[name]++)));
   }
 
   void add_area_emitter(std::size_t i) {
@@ -214,6 +221,7 @@ class World::Builder {
   TextureBuilder textures_;
   MaterialBuilder materials_;
   EmitterNames names_;
+  std::map<std::string, int> named_;  // placements by the ids of their shapes
   std::vector<Placed> placed_;
   Geometry geometry_;
   std::vector<int> material_of_;                  // of each of geometry_.placed

@@ -19,6 +19,7 @@ struct World::Impl {
   std::optional<geometry::RayScene> rays;
   scatter::MaterialSet materials;
   std::vector<PlacementData> placements;
+  std::vector<std::uint64_t> placement_ids;
   std::vector<emitters::Emitter> emitters;
   std::vector<scatter::ColorInput> radiance;  // of area emitters; unused for the others
   int environment = -1;

@@ -47,7 +47,7 @@ void place_instance(const sd::SceneDesc& desc, const sd::ShapeDesc& instance, Me
                        "groups cannot be nested: place the shapes themselves in the group");
     check_transform(child.to_world, child.where);
     out.push_back({store.use(child), instance.to_world * child.to_world,
-                   child.flip_normals != instance.flip_normals, &child, false});
+                   child.flip_normals != instance.flip_normals, &child, false, &instance});
   }
 }
 

@@ -18,7 +18,8 @@ struct Placed {
   Transform to_world;
   bool flip_normals = false;
   const scenedesc::ShapeDesc* shape = nullptr;
-  bool shines = false;  // its emitter counts
+  bool shines = false;                             // its emitter counts
+  const scenedesc::ShapeDesc* instance = nullptr;  // that places `shape`; none if it stands by itself
 };
 
 // One per shape and per member of an instance's group, in the order of the scene.

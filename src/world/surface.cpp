@@ -45,6 +45,23 @@ Vec3f outside_normal(const geometry::TriangleMesh& mesh, std::size_t triangle) {
   return dot(sum, n) < 0 ? -n : n;
 }
 
+double primitive_area(const World& world, std::uint32_t placement, std::uint32_t primitive) {
+  const geometry::Placement& placed = world.rays().placements()[placement];
+  const geometry::TriangleMesh& mesh = world.rays().meshes()[placed.mesh];
+  const Transform& to_world = placed.to_world;
+  if (!mesh.fibers.empty()) {
+    const geometry::Fibers::Point* ends = &mesh.fibers.points[mesh.fibers.segments[primitive]];
+    const double axis = length(to_world.vector(ends[1].position - ends[0].position));
+    return axis * std::cbrt(std::abs(static_cast<double>(to_world.determinant3()))) *
+           static_cast<double>(ends[0].radius + ends[1].radius);
+  }
+  const Corners c = corners(mesh, primitive);
+  const Vec3f a = mesh.positions[c.i[0]];
+  const Vec3f e1 = to_world.vector(mesh.positions[c.i[1]] - a),
+              e2 = to_world.vector(mesh.positions[c.i[2]] - a);
+  return 0.5 * static_cast<double>(length(cross(e1, e2)));
+}
+
 scatter::SurfaceUv interpolate_uv(const geometry::TriangleMesh& mesh, std::uint32_t triangle, Vec2f b) {
   scatter::SurfaceUv at;
   at.uv = b;

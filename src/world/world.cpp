@@ -17,6 +17,7 @@ const scatter::MaterialSet& World::materials() const { return impl_->materials; 
 const std::vector<emitters::Emitter>& World::emitters() const { return impl_->emitters; }
 int World::environment() const { return impl_->environment; }
 const Bounds3f& World::bounds() const { return impl_->bounds; }
+const std::vector<std::uint64_t>& World::placement_ids() const { return impl_->placement_ids; }
 const Units& World::units() const { return impl_->units; }
 const WorldInfo& World::info() const { return impl_->info; }
 

@@ -53,6 +53,9 @@ class World {
   // merged or warned about).
   int environment() const;
   const Bounds3f& bounds() const;
+  // By placement: the same number for the same shape (by its id, and among those of one id by their order)
+  // when the scene is built at another moment.
+  const std::vector<std::uint64_t>& placement_ids() const;
   const Units& units() const;
   const WorldInfo& info() const;
 

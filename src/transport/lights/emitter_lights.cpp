@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "base/hash_text.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/sequence.h"
@@ -147,6 +148,22 @@ class HalvedNumbers {
   Sequence2 sequences_[2];
 };
 
+void samples_of(const world::World& world, int emitter, std::uint64_t seed, std::uint64_t key, std::size_t n,
+                LightBatch& batch) {
+  const HalvedNumbers numbers(seed, key, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const SampleNumbers u{std::min(static_cast<float>(numbers.stratified(i)), 0x1.fffffep-1f),
+                          numbers.point(i), numbers.light_id(i)};
+    SampleMaker(world, emitter, u, 1 / static_cast<double>(n), n == 1 ? kNoHalf : PlaceInHalf(i, n).feature())
+        .make(batch);
+  }
+}
+
+// As many in one half as in the other.
+std::size_t samples_for(double wanted) {
+  return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(0.5 * wanted)));
+}
+
 void every_emitter(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
                    std::size_t count, LightBatch& batch) {
   double sampled = 0;
@@ -160,19 +177,8 @@ void every_emitter(const world::World& world, const EmitterChoice& choice, std::
   const double rest = count > fixed ? static_cast<double>(count - fixed) : 0.0;
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const int emitter = choice.emitter(k);
-    std::size_t n = counts[k];
-    // As many in one half as in the other.
-    if (n == 0)
-      n = 2 * std::max<std::size_t>(
-                  1, static_cast<std::size_t>(std::llround(0.5 * rest * choice.probability(k) / sampled)));
-    const HalvedNumbers numbers(seed, static_cast<std::uint64_t>(emitter), n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const SampleNumbers u{std::min(static_cast<float>(numbers.stratified(i)), 0x1.fffffep-1f),
-                            numbers.point(i), numbers.light_id(i)};
-      SampleMaker(world, emitter, u, 1 / static_cast<double>(n),
-                  n == 1 ? kNoHalf : PlaceInHalf(i, n).feature())
-          .make(batch);
-    }
+    const std::size_t n = counts[k] > 0 ? counts[k] : samples_for(rest * choice.probability(k) / sampled);
+    samples_of(world, emitter, seed, static_cast<std::uint64_t>(emitter), n, batch);
   }
 }
 
@@ -211,6 +217,52 @@ LightBatch emitter_lights(const world::World& world, const EmitterChoice& choice
     every_emitter(world, choice, seed, count, batch);
   } else {
     some_emitters(world, choice, seed, count, batch);
+  }
+  return batch;
+}
+
+EmitterCounts count_emitter_lights(std::span<const world::World* const> worlds, std::size_t count) {
+  struct Seen {
+    std::size_t fixed = 0;
+    double probability = 0;
+  };
+  std::map<std::string, Seen> seen;
+  for (const world::World* world : worlds) {
+    const EmitterChoice choice(*world);
+    for (std::size_t k = 0; k < choice.size(); ++k) {
+      const emitters::Emitter& e = world->emitters()[static_cast<std::size_t>(choice.emitter(k))];
+      Seen& s = seen[e.name];
+      s.fixed = fixed_count(e);
+      s.probability += choice.probability(k);
+    }
+  }
+  std::size_t fixed = 0;
+  double sampled = 0;
+  for (const auto& [name, s] : seen) {
+    fixed += s.fixed;
+    if (s.fixed == 0) sampled += s.probability;
+  }
+  const double rest = count > fixed ? static_cast<double>(count - fixed) : 0.0;
+  EmitterCounts counts;
+  for (const auto& [name, s] : seen)
+    counts.of[name] = s.fixed > 0 ? s.fixed : samples_for(rest * s.probability / sampled);
+  return counts;
+}
+
+LightBatch emitter_lights(const world::World& world, const EmitterCounts& counts, std::uint64_t seed) {
+  LightBatch batch;
+  if (counts.of.empty()) return batch;
+  std::size_t fewest = 0;
+  for (const auto& [name, n] : counts.of)
+    if (n > kDiscSamples) fewest = fewest == 0 ? n : std::min(fewest, n);
+  const EmitterChoice choice(world);
+  for (std::size_t k = 0; k < choice.size(); ++k) {
+    const int emitter = choice.emitter(k);
+    const emitters::Emitter& e = world.emitters()[static_cast<std::size_t>(emitter)];
+    const auto found = counts.of.find(e.name);
+    std::size_t n = fixed_count(e);
+    if (n == 0) n = found != counts.of.end() ? found->second : std::max<std::size_t>(kDiscSamples, fewest);
+    samples_of(world, emitter, seed, hash_text(e.name), n, batch);
   }
   return batch;
 }

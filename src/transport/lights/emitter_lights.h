@@ -3,6 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <span>
+#include <string>
 
 #include "transport/lights/emitter_choice.h"
 #include "transport/lights/light_record.h"
@@ -22,5 +25,16 @@ DirectNeed direct_need(const world::World& world, const EmitterChoice& choice);
 // stratified choice of them by power stands for all; otherwise every one gets its own, the larger ones more.
 LightBatch emitter_lights(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
                           std::size_t count);
+
+// How many lights each emitter gets, by its name: fixed for all moments of a scene, so that their lights are
+// the same lights.
+struct EmitterCounts {
+  std::map<std::string, std::size_t> of;
+};
+// For emitters of these worlds, by their power in the mean.
+EmitterCounts count_emitter_lights(std::span<const world::World* const> worlds, std::size_t count);
+// Ids and random numbers belong to the emitters' names. An emitter that the counts lack, because it was dark
+// or absent whenever they were made, gets as many as the least of its kind.
+LightBatch emitter_lights(const world::World& world, const EmitterCounts& counts, std::uint64_t seed);
 
 }  // namespace lumirank::transport

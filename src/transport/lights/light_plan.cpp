@@ -87,7 +87,7 @@ Pilot run_pilot(const world::World& world, const EmitterChoice& choice, const Pa
   return pilot;
 }
 
-std::size_t emitter_sample_count(std::size_t count, const DirectNeed& need, double share, LightParts parts) {
+std::size_t emitter_samples_of(std::size_t count, const DirectNeed& need, double share, LightParts parts) {
   if (!parts.direct) return 0;
   if (!parts.indirect) return need.sampled ? count : std::min(count, need.min_count);
   const auto target = static_cast<double>(count), min_count = static_cast<double>(need.min_count);
@@ -158,6 +158,10 @@ std::optional<LightImportance::Range> bounded_uses(const Pilot& pilot, std::vect
 
 }  // namespace
 
+std::size_t emitter_sample_count(std::size_t count, const LightSurvey& survey) {
+  return emitter_samples_of(count, survey.need, survey.emitter_share, survey.parts);
+}
+
 RoulettePlan plan_roulette(std::vector<double> uses, std::size_t pilot_paths, double wanted) {
   std::sort(uses.begin(), uses.end());
   const auto n = uses.size();
@@ -223,8 +227,7 @@ LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice
 LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
                       const LightSurvey& survey) {
   LightPlan plan;
-  plan.emitter_samples =
-      emitter_sample_count(settings.count, survey.need, survey.emitter_share, survey.parts);
+  plan.emitter_samples = emitter_sample_count(settings.count, survey);
   if (!survey.parts.indirect) return plan;
   const double wanted =
       std::max(1.0, static_cast<double>(settings.count) - static_cast<double>(plan.emitter_samples));

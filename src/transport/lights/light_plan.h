@@ -33,6 +33,9 @@ struct LightSurvey {
 LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice,
                           const LightSettings& settings);
 
+// Of so many lights, those that emitters get for their direct light.
+std::size_t emitter_sample_count(std::size_t count, const LightSurvey& survey);
+
 struct LightPlan {
   std::size_t emitter_samples = 0;
   std::size_t paths = 0;  // of particles

@@ -20,6 +20,9 @@ struct LightRecord {
   std::uint16_t emitter = 0, depth = 0;
   LightKind kind = LightKind::surface;
   std::uint8_t half = 0;
+  // Of particles, for who asks where they landed: not laid out.
+  std::uint32_t placement = 0;  // of the surface
+  bool behind = false;          // the light came to its inside
 };
 
 // What a surface light reflects, roughly: for choices, not for values.

@@ -108,6 +108,8 @@ void ParticleTracer::step(const Branch& branch, Visit& visit) const {
     light.power = branch.flux * incident_correction(closure, incoming);
     light.emitter = static_cast<std::uint16_t>(visit.emitter);
     light.id = branch.id;
+    light.placement = hit->hit.instance;
+    light.behind = dot(hit->point.ng, incoming) < 0;
     light.depth = static_cast<std::uint16_t>(branch.depth);
     if (visit.tally) visit.tally->scattered_flux += mean(branch.flux * scatter::albedo(shining, incoming));
     copies = leave(light, shining, visit);

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "transport/lights/emitter_lights.h"
+#include "transport/lights/gather_lights.h"
 #include "transport/lights/light_areas.h"
 #include "transport/lights/light_plan.h"
 #include "transport/lights/particle.h"
@@ -31,6 +32,29 @@ void trace_particles(const world::World& world, const EmitterChoice& choice, con
   if (sinks.cancelled()) throw Cancelled();
 }
 
+// On samples that may be those of other moments as well.
+VirtualLights light_gather_samples(const world::World& world, const LightSurvey& survey,
+                                   const LightSettings& settings, const Sinks& sinks) {
+  GatherPlan own;
+  if (!settings.gather) {
+    const world::World* const worlds[] = {&world};
+    const LightSurvey* const surveys[] = {&survey};
+    own = plan_gather(worlds, surveys, settings);
+  }
+  const GatherPlan& plan = settings.gather ? *settings.gather : own;
+  std::vector<LightBatch> batches;
+  batches.push_back(emitter_lights(world, plan.emitters, settings.seed));
+  const std::size_t direct_count = batches[0].lights.size();
+  if (survey.parts.indirect)
+    for (LightBatch& batch : gather_lights(world, plan, survey, settings))
+      batches.push_back(std::move(batch));
+  if (sinks.cancelled()) throw Cancelled();
+  VirtualLights lights = lay_out(batches);
+  lights.paths = plan.photons;
+  lights.direct_count = direct_count;
+  return lights;
+}
+
 }  // namespace
 
 std::shared_ptr<const LightSurvey> survey_lights(const world::World& world, const LightSettings& settings) {
@@ -47,6 +71,7 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
   const auto made =
       settings.survey ? nullptr : std::make_unique<LightSurvey>(survey_lights(world, choice, settings));
   const LightSurvey& survey = settings.survey ? *settings.survey : *made;
+  if (settings.on_gather_samples) return light_gather_samples(world, survey, settings, sinks);
   const LightPlan plan = plan_lights(world, choice, settings, survey);
   std::vector<LightBatch> batches(1 + (plan.paths + kPathsPerPiece - 1) / kPathsPerPiece);
   batches[0] = emitter_lights(world, choice, settings.seed, plan.emitter_samples);

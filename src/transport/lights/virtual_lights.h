@@ -16,6 +16,7 @@
 
 namespace lumirank::transport {
 
+struct GatherPlan;
 struct Receivers;
 struct LightSurvey;
 
@@ -58,6 +59,10 @@ struct LightSettings {
   // If given, that of the same settings but for the count (light_plan.h); else it is made in the call. Read
   // during the call only.
   const LightSurvey* survey = nullptr;
+  // Indirect light from gather samples instead of particles (gather_lights.h); `gather`, if given, is what
+  // several moments of the scene share, else it is made in the call. Read during the call only.
+  bool on_gather_samples = false;
+  const GatherPlan* gather = nullptr;
 };
 
 // Sorted by kind (in the order of LightKind), lambertian surface lights before others, then along a Morton

@@ -1,5 +1,5 @@
 // Light sampling: densities agree with the samples, and no light is lost by the choice among thousands.
-#include "pathtrace/light_sampler.h"
+#include "world/light_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -11,24 +11,24 @@
 #include "scenedesc/readers.h"
 #include "support/statistics.h"
 
-namespace lumirank::pathtrace {
+namespace lumirank::world {
 namespace {
 
 using emitters::LitPoint;
 using test::mean_of;
 using test::student_quantile;
 
-world::World build(const scenedesc::SceneDesc& desc) {
+World build(const scenedesc::SceneDesc& desc) {
   std::vector<scenedesc::Warning> warnings;
-  return world::World::build(desc, {}, warnings);
+  return World::build(desc, {}, warnings);
 }
 
-world::World example(const std::string& name) {
+World example(const std::string& name) {
   return build(scenedesc::read_mitsuba(std::string(LUMIRANK_EXAMPLES) + "/" + name + ".xml"));
 }
 
 // Every kind of emitter, the near ones around a floor.
-world::World every_emitter() {
+World every_emitter() {
   return build(scenedesc::parse_mitsuba(R"(<scene version="3.0.0">
     <sensor type="perspective"/>
     <shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform></shape>
@@ -49,7 +49,7 @@ world::World every_emitter() {
                                         "every_emitter.xml"));
 }
 
-LitPoint random_point(const world::World& world, Rng& rng) {
+LitPoint random_point(const World& world, Rng& rng) {
   const Vec3f size = world.bounds().diagonal();
   const float x = rng.next_float(), y = rng.next_float(), z = rng.next_float();
   const Vec3f position = world.bounds().lo + Vec3f{size.x * x, size.y * y, size.z * z};
@@ -59,7 +59,7 @@ LitPoint random_point(const world::World& world, Rng& rng) {
 
 TEST(LightSampler, AHitHasTheDensityOfItsSample) {
   for (const char* name : {"lamps", "interior", ""}) {
-    const world::World world = *name ? example(name) : every_emitter();
+    const World world = *name ? example(name) : every_emitter();
     const LightSampler lights(world);
     int hits = 0, skies = 0;
     for (std::uint64_t i = 0; i < 4000; ++i) {
@@ -88,7 +88,7 @@ TEST(LightSampler, AHitHasTheDensityOfItsSample) {
 }
 
 // Light through a horizontal or vertical surface at a point, as one sample finds it.
-double received(const world::World& world, const LitPoint& at, const emitters::DirectSample& s, double pdf) {
+double received(const World& world, const LitPoint& at, const emitters::DirectSample& s, double pdf) {
   const float cosine = dot(at.normal, s.direction);
   if (!(pdf > 0) || !(cosine > 0)) return 0;
   const Rgb visible = visible_fraction(world, at.position, at.normal, s.direction, s.distance, 0);
@@ -98,7 +98,7 @@ double received(const world::World& world, const LitPoint& at, const emitters::D
 // The sum over all emitters, each sampled on its own `each` times, against the sampler's choice: equal means
 // at a confidence of 99.9 % for all points together. One emitter left out, or one probability wrong, is a
 // bias here.
-void expect_no_light_lost(const world::World& world, int each, int samples, const char* what) {
+void expect_no_light_lost(const World& world, int each, int samples, const char* what) {
   const LightSampler lights(world);
   constexpr std::uint64_t kPoints = 8, kSeeds = 24;
   for (std::uint64_t p = 0; p < kPoints; ++p) {
@@ -163,7 +163,7 @@ TEST(LightSampler, LightMattersOnTheSideOfTheEyeOrOnBothIfASurfaceTransmits) {
 
 TEST(LightSampler, NearAndFarLightsBothGetAQuarter) {
   // Whatever the powers, which for a sky are measured over the disc of the whole scene.
-  const world::World world = every_emitter();
+  const World world = every_emitter();
   const LightSampler lights(world);
   const LitPoint floor{{0, 0, 0}, {0, 1, 0}, false};
   int far = 0;
@@ -178,4 +178,4 @@ TEST(LightSampler, NearAndFarLightsBothGetAQuarter) {
 }
 
 }  // namespace
-}  // namespace lumirank::pathtrace
+}  // namespace lumirank::world

@@ -1,4 +1,4 @@
-#include "pathtrace/light_sampler.h"
+#include "world/light_sampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "base/rgb.h"
 #include "emitters/area.h"
 
-namespace lumirank::pathtrace {
+namespace lumirank::world {
 namespace {
 
 // The least part of all samples that near and far lights get where both shine: the power of an environment
@@ -66,7 +66,7 @@ emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Ve
   return {position, dot(n, wo) < 0 ? -n : n, both_sides};
 }
 
-LightSampler::LightSampler(const world::World& world) : world_(world) {
+LightSampler::LightSampler(const World& world) : world_(world) {
   const auto& all = world.emitters();
   std::vector<LightBound> bounds;
   std::vector<float> far_weights;
@@ -136,7 +136,7 @@ LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u
   return s;
 }
 
-float LightSampler::pdf_hit(const emitters::LitPoint& at, const world::SurfaceHit& hit, Vec3f direction,
+float LightSampler::pdf_hit(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction,
                             float distance) const {
   if (hit.emitter < 0) return 0;
   const auto e = static_cast<std::size_t>(hit.emitter);
@@ -157,9 +157,9 @@ float LightSampler::pdf_background(const emitters::LitPoint& at, Vec3f direction
   return (1 - near_share(at)) * far_choice_.pmf(k) * environment.pdf(direction);
 }
 
-Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f direction, float distance,
+Rgb visible_fraction(const World& world, Vec3f from, Vec3f ng, Vec3f direction, float distance,
                      std::uint64_t key) {
-  const Vec3f origin = world::World::offset_origin(from, ng, direction);
+  const Vec3f origin = World::offset_origin(from, ng, direction);
   geometry::Ray ray{origin, direction, 0, kInfinity};
   if (std::isfinite(distance)) {
     // Aimed anew from the moved origin, which may be farther off the surface than the open end is long; the
@@ -171,4 +171,4 @@ Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f dire
   return world.rays().has_attenuating() ? world.rays().transmittance(ray) : Rgb{1};
 }
 
-}  // namespace lumirank::pathtrace
+}  // namespace lumirank::world

@@ -10,7 +10,7 @@
 #include "scatter/closure.h"
 #include "world/world.h"
 
-namespace lumirank::pathtrace {
+namespace lumirank::world {
 
 // What light sampling needs to know of a surface that scatters by `closure` towards wo: the side from which
 // light matters, or both.
@@ -20,7 +20,7 @@ emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Ve
 // by its irradiance. Neither group gets less than a quarter where both shine.
 class LightSampler {
  public:
-  explicit LightSampler(const world::World& world);
+  explicit LightSampler(const World& world);
 
   // One sample of the light arriving at a point; `pdf` includes the choice of the light (a probability for
   // delta emitters). pdf 0: nothing found.
@@ -32,15 +32,14 @@ class LightSampler {
   Sample sample(const emitters::LitPoint& at, double u_light, Vec2f u) const;
 
   // Solid-angle density of sample() for a surface hit at `distance` along unit `direction` from `at`.
-  float pdf_hit(const emitters::LitPoint& at, const world::SurfaceHit& hit, Vec3f direction,
-                float distance) const;
+  float pdf_hit(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction, float distance) const;
   // The same for a ray that leaves the scene.
   float pdf_background(const emitters::LitPoint& at, Vec3f direction) const;
 
  private:
   float near_share(const emitters::LitPoint& at) const;
 
-  const world::World& world_;
+  const World& world_;
   struct Leaf {
     int emitter;
     std::uint32_t triangle;  // of area emitters
@@ -55,7 +54,7 @@ class LightSampler {
 
 // Light through whatever lets it pass straight: the fraction that arrives over the open segment from `from`
 // (a surface point with geometric normal `ng`) towards `direction` for `distance` (may be infinite).
-Rgb visible_fraction(const world::World& world, Vec3f from, Vec3f ng, Vec3f direction, float distance,
+Rgb visible_fraction(const World& world, Vec3f from, Vec3f ng, Vec3f direction, float distance,
                      std::uint64_t key);
 
-}  // namespace lumirank::pathtrace
+}  // namespace lumirank::world
