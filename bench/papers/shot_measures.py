@@ -2,6 +2,7 @@
 import math
 import pathlib
 import subprocess
+import tempfile
 
 from experiment_page import read_pfm, to_display, write_png
 
@@ -97,15 +98,14 @@ def slice_of(get_line, count, width, exposure, times):
 
 def video(path, rows, count, exposure, ffmpeg, rate=24):
     """The shots of `rows` side by side."""
-    frames = path.with_suffix("")
-    frames.mkdir(parents=True, exist_ok=True)
-    for k in range(count):
-        width, height, _ = rows[0][k]
-        pictures = [to_display(r[k][2], exposure) for r in rows]
-        pixels = b"".join(p[3 * width * y:3 * width * (y + 1)] for y in range(height) for p in pictures)
-        write_png(frames / f"{k:04d}.png", width * len(rows), height, pixels)
-    subprocess.run([ffmpeg, "-y", "-loglevel", "error", "-framerate", str(rate), "-i", str(frames / "%04d.png"), "-vf", "scale=iw*2:ih*2:flags=neighbor,pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                    "-c:v", "libx264", "-crf", "14", "-pix_fmt", "yuv420p", str(path)], check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for k in range(count):
+            width, height, _ = rows[0][k]
+            pictures = [to_display(r[k][2], exposure) for r in rows]
+            pixels = b"".join(p[3 * width * y:3 * width * (y + 1)] for y in range(height) for p in pictures)
+            write_png(pathlib.Path(folder) / f"{k:04d}.png", width * len(rows), height, pixels)
+        subprocess.run([ffmpeg, "-y", "-loglevel", "error", "-framerate", str(rate), "-i", f"{folder}/%04d.png", "-vf", "scale=iw*2:ih*2:flags=neighbor,pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                        "-c:v", "libx264", "-crf", "14", "-pix_fmt", "yuv420p", str(path)], check=True)
 
 
 def clustering_picture(chunk, max_height=400):
