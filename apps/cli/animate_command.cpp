@@ -78,7 +78,7 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
     else if (key == "rows")
       tensor.rows = read_count(option, value, 1, 10'000);
     else if (key == "columns")
-      tensor.columns = read_count(option, value, 1, 1'000'000);
+      tensor.columns = read_count(option, value, 0, 1'000'000);
     else if (key == "initial-clusters")
       tensor.initial_clusters = read_count(option, value, 1, 1'000'000);
     else if (key == "time-weight")

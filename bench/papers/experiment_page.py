@@ -240,7 +240,7 @@ def bars(title, x_label, y_label, heights, curves, width=600, height=340):
 
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:1180px;margin:2em auto;padding:0 1em;color:#222;background:#fff}
 table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;border-bottom:1px solid #ddd;text-align:right}td:first-child,th:first-child{text-align:left}
-figure{display:inline-block;margin:.3em;vertical-align:top}figure img{display:block;image-rendering:auto;max-width:100%}figcaption{font-size:13px;max-width:380px}
+figure{display:inline-block;margin:.3em;vertical-align:top}figure img,figure video{display:block;image-rendering:auto;max-width:100%}figcaption{font-size:13px;max-width:380px}
 .bar{display:flex;flex-wrap:wrap;gap:.5em;align-items:center;font-size:12px;margin:.2em 0}.bar i{flex:1;min-width:3em;height:.9em;border:1px solid #888}
 svg text{font:12px system-ui,sans-serif;fill:#333}svg .t{font-weight:600}svg .g{stroke:#e4e4e4}svg{max-width:100%;margin:.4em}
 @media(prefers-color-scheme:dark){body{background:#181818;color:#ddd}td,th{border-color:#444}svg text{fill:#ccc}svg .g{stroke:#333}}"""
@@ -296,6 +296,10 @@ class Page:
     def figure(self, name, width, caption, below="", shown=None):
         shown = shown or max(256, min(width, 400))
         self.body.append(f'<figure style="max-width:{shown}px"><img src="images/{name}.png" width="{shown}" alt="{html.escape(caption)}">{below}<figcaption>{html.escape(caption)}</figcaption></figure>')
+
+    def video(self, file, caption):
+        """`file`: its name in images/."""
+        self.body.append(f'<figure><video src="images/{file}" controls loop muted></video><figcaption>{html.escape(caption)}</figcaption></figure>')
 
     def svg(self, drawing):
         self.body.append(drawing)

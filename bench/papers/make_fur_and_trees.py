@@ -185,6 +185,25 @@ def fiber(rng, part, root, normal):
     return points
 
 
+def hair_lines(rng, hairs):
+    """Lines of a file of curves: so many fibers all over the animal."""
+    area = [part.area() * (0.8 if part.hair > 0.1 else 1.5) for part in ANIMAL]
+    lines, made = [], 0
+    while made < hairs:
+        part = rng.choices(ANIMAL, area)[0]
+        root, normal = part.draw(rng)
+        bald = root[1] < 0.01 or any(other is not part and other.inside(root) for other in ANIMAL)
+        bald = bald or any(dot(sub(root, e), sub(root, e)) < 0.085 ** 2 for e in EYES) or dot(sub(root, NOSE), sub(root, NOSE)) < 0.06 ** 2
+        if bald:
+            continue
+        points = fiber(rng, part, root, normal)
+        if any(p[1] < 0.002 for p, _ in points[2:]):  # not through the floor
+            points = [((p[0], max(p[1], 0.004), p[2]), r) for p, r in points]
+        lines += [f"{p[0]:.5f} {p[1]:.5f} {p[2]:.5f} {r:.5f}" for p, r in points] + [""]
+        made += 1
+    return lines
+
+
 def fur(args):
     rng = random.Random(11)
     scene = Scene("A furry animal.", ((1.75, 1.35, 3.35), (0, 0.83, 0.12)), 36, (640, 640))
@@ -198,24 +217,9 @@ def fur(args):
     for eye in EYES:
         dark.sphere(eye, 0.062, 32)
     pink.sphere(NOSE, 0.04, 24)
-
-    area = [part.area() * (0.8 if part.hair > 0.1 else 1.5) for part in ANIMAL]
-    lines, made = [], 0
-    while made < args.hairs:
-        part = rng.choices(ANIMAL, area)[0]
-        root, normal = part.draw(rng)
-        bald = root[1] < 0.01 or any(other is not part and other.inside(root) for other in ANIMAL)
-        bald = bald or any(dot(sub(root, e), sub(root, e)) < 0.085 ** 2 for e in EYES) or dot(sub(root, NOSE), sub(root, NOSE)) < 0.06 ** 2
-        if bald:
-            continue
-        points = fiber(rng, part, root, normal)
-        if any(p[1] < 0.002 for p, _ in points[2:]):  # not through the floor
-            points = [((p[0], max(p[1], 0.004), p[2]), r) for p, r in points]
-        lines += [f"{p[0]:.5f} {p[1]:.5f} {p[2]:.5f} {r:.5f}" for p, r in points] + [""]
-        made += 1
     folder = args.out / "fur"
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "fur.txt").write_text("\n".join(lines) + "\n")
+    (folder / "fur.txt").write_text("\n".join(hair_lines(rng, args.hairs)) + "\n")
     if args.mitsuba_hair:
         bsdf = '<bsdf type="hair">' + number("eumelanin", 0.35) + number("pheomelanin", 0.3) + "</bsdf>"
     else:

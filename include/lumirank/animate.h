@@ -15,7 +15,7 @@ namespace lumirank {
 struct TensorSettings {
   int chunk = 40;              // frames that are clustered together, counted from the first one of the motion
   int rows = 100;              // of each frame, read whole
-  int columns = 200;           // for each frame, in the mean
+  int columns = 200;           // for each frame, in the mean; 0: all, the sum that clusterings approach
   int initial_clusters = 100;  // of lights, before they are split in lights or in time
   double time_weight = 1;      // a split in time is taken if it leaves less cost by this factor; 0: none
   // Light of other frames is not carried to what is farther from all that they show than so many distances

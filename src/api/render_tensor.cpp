@@ -25,6 +25,23 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
   return s;
 }
 
+// Every column of every frame, on the same lights: what clusterings are measured against.
+methods::TensorEstimate all_columns(const std::vector<pipeline::SharedPrepared>& frames, const Sinks& sinks) {
+  const Timer timer;
+  methods::TensorEstimate estimate;
+  for (const pipeline::SharedPrepared& frame : frames) {
+    const matrix::LightingMatrix& whole = *frame->matrix;
+    std::vector<matrix::ScaledColumn> columns(whole.columns());
+    for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
+    estimate.sums.emplace_back(whole.rows(), Rgb(0));
+    estimate.spent += whole.accumulate(columns, estimate.sums.back(), sinks);
+    estimate.clusters += columns.size(), estimate.active.push_back(columns.size());
+  }
+  estimate.interrupted = sinks.cancelled();
+  estimate.trace.numbers["seconds.columns"] = timer.seconds();
+  return estimate;
+}
+
 Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate& estimate, std::size_t k,
                  std::size_t frames, const RenderSettings& settings) {
   Report report;
@@ -69,8 +86,8 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
           "leave out --rest, or choose another method");
   require(t.chunk >= 1 && t.chunk <= 1000, "a chunk has no such number of frames", "give 1 to 1000");
   require(t.rows >= 1 && t.rows <= 10'000, "there is no such number of rows", "give 1 to 10000");
-  require(t.columns >= 1 && t.columns <= 1'000'000, "there is no such number of columns",
-          "give 1 to 1000000");
+  require(t.columns >= 0 && t.columns <= 1'000'000, "there is no such number of columns",
+          "give 1 to 1000000, or 0 for all columns");
   require(t.initial_clusters >= 1, "there are no initial clusters", "give 1 or more");
   require(t.time_weight >= 0, "the weight of time is negative", "give 0 or more");
   require(t.max_distance >= 0, "the greatest distance of a mapping is negative", "give 0 or more");
@@ -100,7 +117,9 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
         methods::RunOptions options;
         options.seed = settings.seed;
         options.sinks = sinks;
-        const methods::TensorEstimate estimate = methods::estimate_tensor(shot, inner(tensor), options);
+        const methods::TensorEstimate estimate = tensor.columns == 0
+                                                     ? all_columns(frames, sinks)
+                                                     : methods::estimate_tensor(shot, inner(tensor), options);
         if (estimate.interrupted) return;
         for (std::size_t k = 0; k < frames.size(); ++k) {
           const pipeline::Prepared& frame = *frames[k];

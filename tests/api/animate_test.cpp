@@ -1,11 +1,14 @@
 // Shots: frames, what is kept, what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <vector>
 
 #include "base/error.h"
 #include "lumirank/animate.h"
@@ -152,6 +155,29 @@ TEST(Animate, TensorClusteringSaysWhatItDoesNot) {
   sinks.warning = [&](const std::string& text) { said += text; };
   EXPECT_EQ(animate(scene, settings, folder / "shot", sinks).rendered, 2);
   EXPECT_NE(said.find("leaves out light"), std::string::npos);
+}
+
+// All columns of a chunk of one frame are those that the frame has by itself, added up in another order.
+TEST(Animate, TensorClusteringOfNoColumnsSumsThemAll) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  AnimateSettings settings = small_shot(1, 2);
+  animate(scene, settings, folder / "alone");
+  settings.tensor = TensorSettings{.chunk = 1, .columns = 0};
+  animate(scene, settings, folder / "summed");
+  const auto values = [&](const char* shot, int k) {
+    const std::string bytes = bytes_of(frame(folder / shot, k));
+    std::vector<float> out(std::size_t{16} * 12 * 3);
+    std::memcpy(out.data(), bytes.data() + bytes.size() - out.size() * sizeof(float),
+                out.size() * sizeof(float));
+    return out;
+  };
+  for (const int k : {1, 2}) {
+    const auto want = values("alone", k), have = values("summed", k);
+    const float brightest = *std::max_element(want.begin(), want.end());
+    EXPECT_GT(brightest, 0);
+    for (std::size_t n = 0; n < want.size(); ++n) EXPECT_NEAR(have[n], want[n], 1e-5f * brightest) << n;
+  }
 }
 
 TEST(Animate, RefusesOtherShotsAndMomentsThatAreNot) {
