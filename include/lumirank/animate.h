@@ -21,6 +21,9 @@ struct TensorSettings {
   // Light of other frames is not carried to what is farther from all that they show than so many distances
   // between neighboring samples: it was hidden there, and is shaded afresh. 0: no bound, as in the paper.
   double max_distance = 10;
+  // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
+  // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.
+  double max_change = 0.05;
   int bits = 16;  // of the rows' entries in memory: 16 or 32
 };
 

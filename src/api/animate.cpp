@@ -144,6 +144,7 @@ class Shot {
             {"initial_clusters", t.initial_clusters},
             {"time_weight", t.time_weight},
             {"max_distance", t.max_distance},
+            {"max_change", t.max_change},
             {"bits", t.bits}};
   }
   void write(int frame, const Picture& picture, const Report& report) const {

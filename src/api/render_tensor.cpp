@@ -1,5 +1,7 @@
 #include "api/render_tensor.h"
 
+#include <cstdio>
+
 #include "api/build_world.h"
 #include "api/scene.h"
 #include "base/error.h"
@@ -19,7 +21,7 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
   methods::TensorClusteringSettings s;
   s.rows = static_cast<std::size_t>(t.rows), s.columns = static_cast<std::size_t>(t.columns);
   s.initial_clusters = static_cast<std::size_t>(t.initial_clusters);
-  s.time_weight = t.time_weight, s.max_distance = t.max_distance;
+  s.time_weight = t.time_weight, s.max_distance = t.max_distance, s.max_change = t.max_change;
   s.precision =
       t.bits == 32 ? linalg::ReducedTensor::Precision::bits32 : linalg::ReducedTensor::Precision::bits16;
   return s;
@@ -40,6 +42,16 @@ methods::TensorEstimate all_columns(const std::vector<pipeline::SharedPrepared>&
   estimate.interrupted = sinks.cancelled();
   estimate.trace.numbers["seconds.columns"] = timer.seconds();
   return estimate;
+}
+
+void warn_of_error(double target, const methods::TensorEstimate& estimate, const Sinks& sinks) {
+  if (!(target > 0) || estimate.predicted_error <= target) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "--error %g is not reached with as many columns as there may be: rows that no cluster knows "
+                "have an error of %.3g",
+                target, estimate.predicted_error);
+  sinks.warn(text);
 }
 
 Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate& estimate, std::size_t k,
@@ -65,6 +77,7 @@ Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate&
   report.cost = cost;
   report.numbers["clusters"] = static_cast<double>(estimate.clusters) / part;
   report.numbers["clusters.active"] = static_cast<double>(estimate.active[k]);
+  if (estimate.predicted_error >= 0) report.numbers["error.predicted"] = estimate.predicted_error;
   report.memory.peak = pipeline::peak_memory_bytes();
   return report;
 }
@@ -77,8 +90,6 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   };
   require(settings.time <= 0, "it keeps no time budget",
           "leave out --time; --set columns=… decides its time");
-  require(settings.method.target_error <= 0, "it aims at no error",
-          "leave out --error; more columns have less");
   require(settings.layers.empty(), "it makes no layers", "leave out --aov, or choose another method");
   require(settings.traced.compensate == 0, "it gives back nothing of what clamping takes",
           "leave out --compensate");
@@ -90,6 +101,7 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
           "give 1 to 1000000, or 0 for all columns");
   require(t.initial_clusters >= 1, "there are no initial clusters", "give 1 or more");
   require(t.time_weight >= 0, "the weight of time is negative", "give 0 or more");
+  require(t.max_change >= 0, "the greatest change of light is negative", "give 0 or more");
   require(t.max_distance >= 0, "the greatest distance of a mapping is negative", "give 0 or more");
   require(t.bits == 16 || t.bits == 32, "entries have 16 or 32 bits", "give one of them");
 }
@@ -108,6 +120,7 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
         views.push_back(pipeline::make_view(scene.impl().desc, settings.view));
       }
       pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
+      recipe.row_albedo = true;
       if (recipe.lights.placement == LightPlacement::automatic)
         recipe.lights.placement = LightPlacement::gather;
       try {
@@ -117,10 +130,12 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
         methods::RunOptions options;
         options.seed = settings.seed;
         options.sinks = sinks;
-        const methods::TensorEstimate estimate = tensor.columns == 0
-                                                     ? all_columns(frames, sinks)
-                                                     : methods::estimate_tensor(shot, inner(tensor), options);
+        methods::TensorClusteringSettings how = inner(tensor);
+        how.target_error = settings.method.target_error;
+        const methods::TensorEstimate estimate =
+            tensor.columns == 0 ? all_columns(frames, sinks) : methods::estimate_tensor(shot, how, options);
         if (estimate.interrupted) return;
+        warn_of_error(how.target_error, estimate, sinks);
         for (std::size_t k = 0; k < frames.size(); ++k) {
           const pipeline::Prepared& frame = *frames[k];
           RenderResult result;

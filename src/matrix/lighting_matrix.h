@@ -34,7 +34,7 @@ struct RowFeatures {
   // Who a row is, whatever its index: unique, and the same in every matrix that has it. Random choices that
   // are keyed by it survive another order, and other rows beside it.
   std::span<const std::uint64_t> id{};
-  std::span<const Rgb> albedo{};  // diffuse reflectance, in [0, 1]
+  std::span<const Rgb> albedo{};  // reflectance towards the eye, in [0, 1]
 };
 
 // Plain numbers about columns. Arrays of length columns(); may be empty if unknown.

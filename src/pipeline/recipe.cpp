@@ -92,6 +92,7 @@ transport::SceneMatrixSettings matrix_settings(const Recipe& recipe) {
   ms.seed = recipe.light_seed;
   ms.clamp = static_cast<float>(recipe.lights.clamp);
   ms.compensated = recipe.compensated;
+  ms.row_albedo = recipe.row_albedo;
   ms.spheres.indicator = recipe.lights.sphere_indicator == SphereIndicator::cosine ? Rules::Indicator::cosine
                                                                                    : Rules::Indicator::disc;
   ms.spheres.strategies = recipe.lights.sphere_strategies == SphereStrategies::cone ? Rules::Strategies::cone

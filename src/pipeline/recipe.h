@@ -39,6 +39,7 @@ struct Recipe {
   int local_paths = 0;
   bool first_hits = false;        // what the eye's first hits know is kept, for layers
   bool group_by_emitter = false;  // clusters may not cross emitters, for layers by light
+  bool row_albedo = false;        // rows know their albedo, for methods that carry light between frames
   bool compensated = false;       // what clamping takes is given back by tracing
 
   friend bool operator==(const Recipe&, const Recipe&) = default;

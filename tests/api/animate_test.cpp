@@ -162,6 +162,7 @@ TEST(Animate, TensorClusteringOfNoColumnsSumsThemAll) {
   const TemporaryFolder folder;
   const Scene scene = Scene::load(moving_scene(folder));
   AnimateSettings settings = small_shot(1, 2);
+  settings.render.lights.placement = LightPlacement::gather;  // as clusterings have it
   animate(scene, settings, folder / "alone");
   settings.tensor = TensorSettings{.chunk = 1, .columns = 0};
   animate(scene, settings, folder / "summed");

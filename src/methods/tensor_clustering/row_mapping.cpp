@@ -17,8 +17,8 @@ constexpr std::size_t kMappingDimensions = 9;
 constexpr std::size_t kSpacingNeighbors = 4;
 constexpr float kLeastSpacing = 1e-6f;  // of the scene's diagonal
 constexpr float kTiniest = 1e-30f;
-constexpr float kDirectionScale =
-    0.125f;  // of the scene's diagonal: what a unit of normal or reflectance counts
+// Of the scene's diagonal: what a unit of normal and of reflectance counts.
+constexpr float kNormalScale = 0.125f, kAlbedoScale = 1.0f / 64;
 
 // What nanoflann wants to know of the points.
 struct MappingPoints {
@@ -26,15 +26,14 @@ struct MappingPoints {
 
   MappingPoints(const matrix::LightingMatrix& m, float scale) : points(m.rows()) {
     const matrix::RowFeatures f = m.row_features();
-    const float unit = kDirectionScale * scale;
     for (std::size_t i = 0; i < points.size(); ++i) {
       auto& p = points[i];
       p.fill(0);
       for (int c = 0; c < 3; ++c) {
         const auto at = static_cast<std::size_t>(c);
         p[at] = f.position[i][c];
-        if (!f.normal.empty()) p[3 + at] = unit * f.normal[i][c];
-        if (!f.albedo.empty()) p[6 + at] = unit * f.albedo[i][c];
+        if (!f.normal.empty()) p[3 + at] = kNormalScale * scale * f.normal[i][c];
+        if (!f.albedo.empty()) p[6 + at] = kAlbedoScale * scale * f.albedo[i][c];
       }
     }
   }

@@ -3,8 +3,11 @@
 // be used in another.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
+
+#include "base/rgb.h"
 
 #include "matrix/lighting_matrix.h"
 
@@ -22,11 +25,21 @@ struct RowMapping {
   static RowMapping identity(std::size_t rows);
 };
 
-// Distances are of 9-vectors: place, normal times an eighth of `scale`, reflectance times an eighth of
-// `scale` (ours; the paper states no weights); `scale` is the diagonal of the scene. Features that are
-// unknown count for nothing; where no place is known, rows map to their own number, which needs as many in
-// both frames.
+// Distances are of 9-vectors: place, normal times an eighth of `scale`, diffuse reflectance times a 64th of
+// `scale`; `scale` is the diagonal of the scene. (Weights are ours, the paper states none. Reflectance counts
+// for less, since light is divided by it: relight() below.) Features that are unknown count for nothing;
+// where no place is known, rows map to their own number, which needs as many in both frames.
 RowMapping nearest_rows(const matrix::LightingMatrix& of, const matrix::LightingMatrix& to, float scale);
+
+// What light at a row of one diffuse reflectance would be at a row of another, so that textures stay sharp
+// (ours): exact for lambertian surfaces under the same light.
+inline Rgb relight(const Rgb& light, const Rgb& from, const Rgb& to) {
+  constexpr float kBlack = 0.004f, kMaxRatio = 8;
+  Rgb out = light;
+  for (int c = 0; c < 3; ++c)
+    if (from[c] > kBlack) out[c] *= std::min(kMaxRatio, to[c] / from[c]);
+  return out;
+}
 
 // The diagonal of the box of all places of a frame's rows; 0 where they are unknown.
 float diagonal_of_rows(const matrix::LightingMatrix& matrix);

@@ -9,7 +9,10 @@
 #include "base/timer.h"
 #include "linalg/clustering.h"
 #include "linalg/column_sketch.h"
+#include "methods/tensor_clustering/changed_rows.h"
+#include "methods/tensor_clustering/cluster_columns.h"
 #include "methods/tensor_clustering/row_mapping.h"
+#include "methods/tensor_clustering/test_rows.h"
 
 namespace lumirank::methods {
 namespace {
@@ -47,27 +50,38 @@ std::vector<Index> rows_of_bins(const matrix::LightingMatrix& m, std::size_t cou
   return chosen;
 }
 
+// With a target error: rows of each frame that are kept from the clusterings, and how columns grow until it
+// is reached. Rows grow where twice the columns leave more than this part of the error.
+constexpr std::size_t kTestRows = 25;
+constexpr std::size_t kFirstColumns = 25;
+constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
+// What is too dark to be seen may change: this part of a frame's mean light.
+constexpr float kUnseen = 0.05f;
+
 class TensorRun {
  public:
   TensorRun(const matrix::LightingTensor& tensor, const TensorClusteringSettings& settings,
             const RunOptions& options)
-      : tensor_(tensor), settings_(settings), options_(options) {}
+      : tensor_(tensor), settings_(settings), options_(options), test_(tensor) {}
 
   TensorEstimate run() {
-    const Timer timer;
     estimate_.sums.resize(tensor_.frames());
     estimate_.active.assign(tensor_.frames(), 0);
     if (tensor_.frames() == 0) return std::move(estimate_);
-    if (!explore()) return interrupted();
-    estimate_.trace.numbers["seconds.rows"] = timer.seconds();
-    const double begin = timer.seconds();
-    cluster();
-    estimate_.trace.numbers["seconds.clustering"] = timer.seconds() - begin;
-    if (options_.sinks.cancelled()) return interrupted();
-    if (!reconstruct()) return interrupted();
-    estimate_.trace.numbers["rows.afresh"] = carried_rows_ > 0 ? fresh_rows_ / carried_rows_ : 0.0;
-    estimate_.trace.numbers["seconds.columns"] =
-        timer.seconds() - begin - estimate_.trace.numbers["seconds.clustering"];
+    if (!timed("mappings", [&] { return make_mappings(); })) return interrupted();
+    const bool found = settings_.target_error > 0 ? find_clusters() : make_clusters();
+    if (!found) return interrupted();
+    for (const ClusterColumn& c : clusters_)
+      for (std::uint32_t k = c.of->begin; k < c.of->end; ++k) ++estimate_.active[k];
+    estimate_.clusters = clusters_.size();
+    estimate_.cost = clustering_->cost();
+    if (!timed("columns", [&] { return compute_columns(); })) return interrupted();
+    if (!timed("changes", [&] { return shade_changes(); })) return interrupted();
+    auto& numbers = estimate_.trace.numbers;
+    double all = 0;
+    for (const std::size_t rows : rows_) all += static_cast<double>(rows);
+    numbers["rows.afresh"] = carried_rows_ > 0 ? fresh_rows_ / carried_rows_ : 0.0;
+    numbers["rows.changed"] = all > 0 ? changed_rows_ / all : 0.0;
     return std::move(estimate_);
   }
 
@@ -76,14 +90,69 @@ class TensorRun {
     estimate_.interrupted = true;
     return std::move(estimate_);
   }
+  template <typename Stage>
+  bool timed(const char* name, const Stage& stage) {
+    const Timer timer;
+    const bool whole = stage();
+    estimate_.trace.numbers[std::string("seconds.") + name] += timer.seconds();
+    return whole && !options_.sinks.cancelled();
+  }
+
+  // ------------------------------------------------------------------------------------------- clusters
+
+  bool make_clusters() {
+    if (!timed("rows", [&] { return explore(settings_.rows); })) return false;
+    return timed("clustering", [&] {
+      start_clusters();
+      split_to(settings_.columns);
+      return true;
+    });
+  }
+
+  // As few columns as the test rows say that the error needs.
+  bool find_clusters() {
+    if (!timed("rows", [&] { return read_test_rows(); })) return false;
+    double columns = static_cast<double>(kFirstColumns), before = kInfinity;
+    for (std::size_t rows = settings_.rows;;) {
+      if (!timed("rows", [&] { return explore(rows); })) return false;
+      timed("clustering", [&] {
+        start_clusters();
+        return true;
+      });
+      bool more_rows = false;
+      while (!more_rows) {
+        const double limit = static_cast<double>(std::min(settings_.max_columns, tensor_.columns()));
+        columns = std::min(columns, limit);
+        timed("clustering", [&] {
+          split_to(static_cast<std::size_t>(columns));
+          estimate_.predicted_error = test_.error(clusters_, mappings_, estimate_.spent);
+          return true;
+        });
+        if (options_.sinks.cancelled()) return false;
+        if (estimate_.predicted_error <= settings_.target_error || columns >= limit) return true;
+        more_rows = estimate_.predicted_error > kTooFewRows * before && 2 * rows <= settings_.max_rows;
+        before = more_rows ? kInfinity : estimate_.predicted_error;
+        if (!more_rows) columns *= kColumnGrowth;
+      }
+      rows *= 2;
+    }
+  }
+
+  bool read_test_rows() {
+    for (std::size_t k = 0; k < tensor_.frames(); ++k) {
+      if (options_.sinks.cancelled()) return false;
+      test_.read(k, rows_of_bins(*tensor_.frame(k), kTestRows), estimate_.spent);
+    }
+    return true;
+  }
 
   // The reduced tensor, and a sketch of the lights over all frames for the initial clusters.
-  bool explore() {
+  bool explore(std::size_t wanted) {
     const std::size_t frames = tensor_.frames(), columns = tensor_.columns();
     std::vector<std::vector<Index>> rows(frames);
     std::size_t max_rows = 0;
     for (std::size_t k = 0; k < frames; ++k) {
-      rows[k] = rows_of_bins(*tensor_.frame(k), settings_.rows);
+      rows[k] = rows_of_bins(*tensor_.frame(k), wanted);
       max_rows = std::max(max_rows, rows[k].size());
     }
     reduced_ = std::make_unique<linalg::ReducedTensor>(
@@ -110,186 +179,207 @@ class TensorRun {
     return true;
   }
 
-  void cluster() {
+  void start_clusters() {
     const linalg::Points points = sketch_->points();
     const std::vector<double> norms = linalg::own_norms(points);
     std::vector<std::uint32_t> lit;
     for (std::size_t j = 0; j < norms.size(); ++j)
       if (!sketch_->is_zero(j)) lit.push_back(static_cast<std::uint32_t>(j));
-    const std::size_t wanted = settings_.columns * tensor_.frames();
+    const std::size_t most = settings_.target_error > 0 ? kFirstColumns : settings_.columns;
     linalg::Partition start;
     if (!lit.empty()) {
-      const auto initial = linalg::cluster(points, norms, lit, {},
-                                           {linalg::ClusteringAlgorithm::sampling,
-                                            std::min(settings_.initial_clusters, wanted), options_.seed});
+      const auto initial =
+          linalg::cluster(points, norms, lit, {},
+                          {linalg::ClusteringAlgorithm::sampling,
+                           std::min(settings_.initial_clusters, most * tensor_.frames()), options_.seed});
       start = initial.partition();
     }
     clustering_ =
         std::make_unique<RectangleClustering>(*reduced_, start, options_.seed, settings_.time_weight);
-    clustering_->split_to(wanted);
-    estimate_.clusters = clustering_->rectangles().size();
-    estimate_.cost = clustering_->cost();
-    for (const auto& r : clustering_->rectangles())
-      for (std::uint32_t k = r.begin; k < r.end; ++k) ++estimate_.active[k];
   }
 
-  struct Representative {
-    Index column = 0;
-    std::uint32_t frame = 0;
-    const RectangleClustering::Rectangle* of = nullptr;
-    std::vector<Rgb> scale;  // in each of the rectangle's frames
-  };
+  void split_to(std::size_t columns) {
+    clustering_->split_to(columns * tensor_.frames());
+    const auto& rectangles = clustering_->rectangles();
+    clusters_.assign(rectangles.size(), {});
+    parallel_for(rectangles.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) clusters_[c] = column_of(*reduced_, rectangles[c]);
+    });
+  }
 
-  // Of the largest norm (section 4.5), and what it is multiplied with in every frame, per channel.
-  Representative representative_of(const RectangleClustering::Rectangle& r) const {
-    Representative best;
-    best.of = &r;
-    float largest = -1;
-    for (std::uint32_t k = r.begin; k < r.end; ++k)
-      for (const std::uint32_t j : r.lights)
-        if (reduced_->weight(j, k) > largest)
-          largest = reduced_->weight(j, k), best.column = j, best.frame = k;
-    best.scale.assign(r.end - r.begin, Rgb(0));
-    for (std::uint32_t k = r.begin; k < r.end; ++k) {
-      double all = 0, channels[3] = {};
-      for (const std::uint32_t j : r.lights) {
-        all += static_cast<double>(reduced_->weight(j, k));
-        for (std::size_t c = 0; c < 3; ++c) channels[c] += static_cast<double>(reduced_->channel(j, k, c));
+  // -------------------------------------------------------------------------------------------- columns
+
+  // Both ways between neighboring frames.
+  bool make_mappings() {
+    std::shared_ptr<const matrix::LightingMatrix> before;
+    float scale = 0;
+    for (std::size_t k = 0; k < tensor_.frames(); ++k) {
+      if (options_.sinks.cancelled()) return false;
+      const auto matrix = tensor_.frame(k);
+      rows_.push_back(matrix->rows());
+      if (k == 0) scale = diagonal_of_rows(*matrix);
+      if (before) {
+        mappings_.to_later.push_back(nearest_rows(*matrix, *before, scale));
+        mappings_.to_earlier.push_back(nearest_rows(*before, *matrix, scale));
       }
-      if (!(largest > 0)) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float own = reduced_->channel(best.column, best.frame, c);
-        // A channel that the representative hardly has cannot be scaled to the cluster's.
-        best.scale[k - r.begin][static_cast<int>(c)] = own > kNoChannel * largest
-                                                           ? static_cast<float>(channels[c]) / own
-                                                           : static_cast<float>(all) / largest;
-      }
+      before = matrix;
     }
-    return best;
+    return true;
   }
 
-  bool reconstruct() {
+  bool compute_columns() {
     const std::size_t frames = tensor_.frames();
-    std::vector<std::vector<Representative>> by_frame(frames);
-    for (const auto& r : clustering_->rectangles()) {
-      Representative found = representative_of(r);
-      by_frame[found.frame].push_back(std::move(found));
+    std::vector<std::vector<const ClusterColumn*>> of_frame(frames);
+    for (const ClusterColumn& c : clusters_) of_frame[c.frame].push_back(&c);
+    own_.resize(frames), carried_.resize(frames);
+    for (std::size_t k = 0; k < frames; ++k) {
+      own_[k].assign(rows_[k], Rgb(0));
+      carried_[k].assign(rows_[k], Rgb(0));
     }
-    make_mappings();
-    for (std::size_t k = 0; k < frames; ++k) estimate_.sums[k].assign(rows_[k], Rgb(0));
     for (std::size_t k = 0; k < frames; ++k) {
       if (options_.sinks.cancelled()) return false;
-      add_columns_of(k, by_frame[k]);
+      add_columns_of(k, of_frame[k]);
       options_.sinks.report("columns", static_cast<double>(k + 1) / static_cast<double>(frames));
     }
     return true;
   }
 
-  // Both ways between neighboring frames.
-  void make_mappings() {
-    const std::size_t frames = tensor_.frames();
-    rows_.resize(frames);
-    std::shared_ptr<const matrix::LightingMatrix> before;
-    float scale = 0;
-    for (std::size_t k = 0; k < frames; ++k) {
-      const auto matrix = tensor_.frame(k);
-      rows_[k] = matrix->rows();
-      if (k == 0) scale = diagonal_of_rows(*matrix);
-      if (before) {
-        to_later_.push_back(nearest_rows(*matrix, *before, scale));
-        to_earlier_.push_back(nearest_rows(*before, *matrix, scale));
-      }
-      before = matrix;
-    }
-  }
-
-  // What the representatives of frame k add to all frames: to its own at once; to others their sums, carried
-  // there.
-  void add_columns_of(std::size_t k, const std::vector<Representative>& representatives) {
-    if (representatives.empty()) return;
+  // What the columns of frame k add to all frames: to its own at once; to others their sums, carried there.
+  void add_columns_of(std::size_t k, const std::vector<const ClusterColumn*>& clusters) {
+    if (clusters.empty()) return;
     const auto matrix = tensor_.frame(k);
     std::uint32_t first = static_cast<std::uint32_t>(k), last = first;
-    for (const Representative& r : representatives)
-      first = std::min(first, r.of->begin), last = std::max(last, r.of->end - 1);
+    for (const ClusterColumn* c : clusters)
+      first = std::min(first, c->of->begin), last = std::max(last, c->of->end - 1);
     std::vector<std::vector<Rgb>> to(last - first + 1);
     std::vector<Rgb> column(matrix->rows());
-    for (const Representative& r : representatives) {
-      estimate_.spent += matrix->column(r.column, column);
-      for (std::uint32_t f = r.of->begin; f < r.of->end; ++f) {
-        std::vector<Rgb>& sums = to[f - first];
+    for (const ClusterColumn* c : clusters) {
+      estimate_.spent += matrix->column(c->column, column);
+      for (std::uint32_t f = c->of->begin; f < c->of->end; ++f) {
+        std::vector<Rgb>& sums = f == k ? own_[k] : to[f - first];
         if (sums.empty()) sums.assign(matrix->rows(), Rgb(0));
-        const Rgb scale = r.scale[f - r.of->begin];
+        const Rgb scale = c->scale[f - c->of->begin];
         parallel_for(sums.size(), 16384, [&](std::size_t b, std::size_t e) {
           for (std::size_t i = b; i < e; ++i) sums[i] += scale * column[i];
         });
       }
     }
-    const auto carry = [&](std::uint32_t f, const RowMapping& mapping) {
-      const std::vector<Rgb>& from = to[f - first];
-      if (from.empty()) return;
-      std::vector<Index> hidden;
-      for (std::size_t i = 0; i < mapping.from.size(); ++i)
-        if (settings_.max_distance > 0 && static_cast<double>(mapping.distance[i]) > settings_.max_distance)
-          hidden.push_back(static_cast<Index>(i));
-        else
-          estimate_.sums[f][i] += from[mapping.from[i]];
-      shade_afresh(f, hidden, representatives);
-      if (f != k) carried_rows_ += static_cast<double>(mapping.from.size());
-    };
     RowMapping mapping = RowMapping::identity(matrix->rows());
-    carry(static_cast<std::uint32_t>(k), mapping);
     for (std::uint32_t f = static_cast<std::uint32_t>(k) + 1; f <= last; ++f) {
-      mapping = mapping.then(to_later_[f - 1]);
-      carry(f, mapping);
+      mapping = mapping.then(mappings_.to_later[f - 1]);
+      carry(*matrix, to[f - first], f, mapping, clusters);
     }
     mapping = RowMapping::identity(matrix->rows());
     for (std::uint32_t f = static_cast<std::uint32_t>(k); f-- > first;) {
-      mapping = mapping.then(to_earlier_[f]);
-      carry(f, mapping);
+      mapping = mapping.then(mappings_.to_earlier[f]);
+      carry(*matrix, to[f - first], f, mapping, clusters);
     }
   }
 
-  // Rows of frame f that cannot be told by another frame: the clusters of `representatives` that act there,
-  // each by its brightest light in that frame.
-  void shade_afresh(std::uint32_t f, std::span<const Index> rows,
-                    const std::vector<Representative>& representatives) {
-    if (rows.empty()) return;
+  void carry(const matrix::LightingMatrix& source, const std::vector<Rgb>& sums, std::uint32_t f,
+             const RowMapping& mapping, const std::vector<const ClusterColumn*>& clusters) {
+    if (sums.empty()) return;
+    const auto target = tensor_.frame(f);
+    const auto here = source.row_features().albedo, there = target->row_features().albedo;
+    const bool relit = !here.empty() && !there.empty();
+    std::vector<Index> hidden;
+    for (std::size_t i = 0; i < mapping.from.size(); ++i) {
+      const Index at = mapping.from[i];
+      if (settings_.max_distance > 0 && static_cast<double>(mapping.distance[i]) > settings_.max_distance)
+        hidden.push_back(static_cast<Index>(i));
+      else
+        carried_[f][i] += relit ? relight(sums[at], here[at], there[i]) : sums[at];
+    }
+    std::vector<const ClusterColumn*> acting;
+    for (const ClusterColumn* c : clusters)
+      if (f >= c->of->begin && f < c->of->end) acting.push_back(c);
+    const std::vector<Rgb> found = in_own_frame(*target, f, hidden, acting);
+    for (std::size_t a = 0; a < hidden.size(); ++a) carried_[f][hidden[a]] += found[a];
+    carried_rows_ += static_cast<double>(mapping.from.size());
+    fresh_rows_ += static_cast<double>(hidden.size());
+  }
+
+  // -------------------------------------------------------------------------------------------- changes
+
+  // Sums over clusters, as frame f has them itself, at some of its rows.
+  std::vector<Rgb> in_own_frame(const matrix::LightingMatrix& matrix, std::uint32_t f,
+                                std::span<const Index> rows,
+                                const std::vector<const ClusterColumn*>& clusters) {
+    std::vector<Rgb> sums(rows.size(), Rgb(0));
+    if (rows.empty()) return sums;
     std::vector<Index> columns;
     std::vector<Rgb> scales;
-    for (const Representative& r : representatives) {
-      if (f < r.of->begin || f >= r.of->end) continue;
-      RectangleClustering::Rectangle now{r.of->lights, f, f + 1, 0};
-      const Representative here = representative_of(now);
-      if (is_black(here.scale[0])) continue;
-      columns.push_back(here.column), scales.push_back(here.scale[0]);
+    for (const ClusterColumn* c : clusters) {
+      const matrix::ScaledColumn own = column_in_frame(*reduced_, *c, f);
+      if (is_black(own.scale)) continue;
+      columns.push_back(own.column), scales.push_back(own.scale);
     }
-    const auto matrix = tensor_.frame(f);
     constexpr std::size_t kRowsAtOnce = 256;
     std::vector<Rgb> values;
     for (std::size_t begin = 0; begin < rows.size(); begin += kRowsAtOnce) {
       const auto some = rows.subspan(begin, std::min(kRowsAtOnce, rows.size() - begin));
       values.resize(some.size() * columns.size());
-      estimate_.spent += matrix->block(some, columns, values, matrix::Part::value);
+      estimate_.spent += matrix.block(some, columns, values, matrix::Part::value);
       for (std::size_t a = 0; a < some.size(); ++a)
         for (std::size_t b = 0; b < columns.size(); ++b)
-          estimate_.sums[f][some[a]] += scales[b] * values[a * columns.size() + b];
+          sums[begin + a] += scales[b] * values[a * columns.size() + b];
     }
-    fresh_rows_ += static_cast<double>(rows.size());
+    return sums;
   }
 
-  static constexpr float kNoChannel = 1e-3f;  // of a column's norm
+  bool shade_changes() {
+    for (std::uint32_t f = 0; f < tensor_.frames(); ++f) {
+      if (options_.sinks.cancelled()) return false;
+      if (settings_.max_change > 0) shade_changes(f);
+      estimate_.sums[f] = std::move(own_[f]);
+      for (std::size_t i = 0; i < carried_[f].size(); ++i) estimate_.sums[f][i] += carried_[f][i];
+      carried_[f] = {};
+      options_.sinks.report("changes", static_cast<double>(f + 1) / static_cast<double>(tensor_.frames()));
+    }
+    return true;
+  }
+
+  void shade_changes(std::uint32_t f) {
+    std::vector<const ClusterColumn*> acting;
+    for (const ClusterColumn& c : clusters_)
+      if (c.frame != f && f >= c.of->begin && f < c.of->end) acting.push_back(&c);
+    if (acting.empty()) return;
+    const auto matrix = tensor_.frame(f);
+    double all = 0;
+    for (std::size_t i = 0; i < rows_[f]; ++i)
+      all += static_cast<double>(max_component(own_[f][i] + carried_[f][i]));
+    const float unseen =
+        kUnseen * static_cast<float>(all / static_cast<double>(std::max<std::size_t>(1, rows_[f])));
+    const auto changed = [&](std::span<const Index> rows) {
+      const std::vector<Rgb> found = in_own_frame(*matrix, f, rows, acting);
+      std::vector<bool> said(rows.size());
+      for (std::size_t a = 0; a < rows.size(); ++a) {
+        Rgb& carried = carried_[f][rows[a]];
+        float difference = 0;
+        for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(found[a][c] - carried[c]));
+        const float light = max_component(own_[f][rows[a]] + found[a]);
+        said[a] = difference > static_cast<float>(settings_.max_change) * (light + unseen);
+        carried = found[a];
+      }
+      return said;
+    };
+    changed_rows_ +=
+        static_cast<double>(ask_for_changes(matrix->row_features().pixel, rows_[f], changed).size());
+  }
 
   const matrix::LightingTensor& tensor_;
   const TensorClusteringSettings& settings_;
   const RunOptions& options_;
   TensorEstimate estimate_;
+  TestRows test_;
   std::unique_ptr<linalg::ReducedTensor> reduced_;
   std::unique_ptr<linalg::ColumnSketch> sketch_;
   std::unique_ptr<RectangleClustering> clustering_;
-  std::vector<std::size_t> rows_;  // of each frame
-  double fresh_rows_ = 0, carried_rows_ = 0;
-  // Rows of frame k + 1 to those of frame k, and the other way.
-  std::vector<RowMapping> to_later_, to_earlier_;
+  std::vector<ClusterColumn> clusters_;
+  FrameMappings mappings_;
+  std::vector<std::size_t> rows_;                // of each frame
+  std::vector<std::vector<Rgb>> own_, carried_;  // sums: of columns computed in the frame, and in others
+  double fresh_rows_ = 0, carried_rows_ = 0, changed_rows_ = 0;
 };
 
 }  // namespace

@@ -3,15 +3,15 @@
 //
 // 1. Some rows of every frame are read whole: the reduced tensor.
 // 2. Light-frame pairs are clustered into rectangles of lights × frames: at first in lights alone, then by
-// splitting
-//    the costliest in lights or in time (linalg/rectangle_clustering.h).
+//    splitting the costliest in lights or in time (linalg/rectangle_clustering.h).
 // 3. In each the pair of the largest norm is the representative. Its column is computed in its frame, scaled
-// per
-//    channel to the summed norms of the cluster's lights in every frame of the rectangle, and carried there
-//    by mappings of rows.
+//    per channel to the summed norms of the cluster's lights in every frame of the rectangle, and carried
+//    there by mappings of rows (cluster_columns.h, row_mapping.h).
 //
 // Ours: columns of one frame that are carried to the same other frame are added up before they are carried,
-// since that is linear, so each pair of frames is mapped once.
+// since that is linear, so each pair of frames is mapped once. Light is divided by the diffuse reflectance on
+// the way. What must not be carried is shaded afresh: rows that were hidden, and rows whose light has changed
+// (changed_rows.h). Rows that no clustering knows tell the error (test_rows.h).
 #pragma once
 
 #include <cstddef>
@@ -31,9 +31,15 @@ struct TensorClusteringSettings {
   std::size_t projection = 50;         // dimensions of the initial clustering; 0: none
   double time_weight = 1;              // see RectangleClustering
   // Rows whose mapping is longer than so many distances of neighboring rows show something that was hidden:
-  // they are shaded afresh, by each cluster's brightest light of their own frame. Ours; 0: mappings carry
-  // everything.
+  // they are shaded afresh, by each cluster as its own frame has it. Ours; 0: mappings carry everything.
   double max_distance = 10;
+  // By how large a part of a row's light that which is carried may differ from what is found in its own
+  // frame; else the row and those around it are shaded afresh. Ours; 0: mappings carry everything.
+  double max_change = 0.05;
+  // Relative error of the rows that no clustering knows, over all frames: the number of columns (up to
+  // `max_columns` for each frame) and of rows (up to `max_rows`) is found for it. 0: as given.
+  double target_error = 0;
+  std::size_t max_columns = 2000, max_rows = 400;
   linalg::ReducedTensor::Precision precision = linalg::ReducedTensor::Precision::bits16;
 };
 
@@ -41,6 +47,7 @@ struct TensorEstimate {
   std::vector<std::vector<Rgb>> sums;  // of every frame, one per row of it
   std::size_t clusters = 0;
   std::vector<std::size_t> active;  // clusters that contribute to each frame: the effective number
+  double predicted_error = -1;      // with a target error: that of the test rows; below 0: not known
   double cost = 0;                  // of the clustering
   matrix::Cost spent;
   Trace trace;

@@ -105,6 +105,15 @@ SceneMatrix::Impl::Impl(const world::World& world_, const Receivers& receivers_,
     row_pixel[i] = receivers.film[receivers.sample[i]];
     row_weight[i] = mean(receivers.weight[i]);
   }
+  if (settings.row_albedo) {
+    row_albedo.resize(receivers.size());
+    parallel_for(receivers.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        row_albedo[i] = receivers.closure[i] == Receivers::kLambertian
+                            ? receivers.albedo[i]
+                            : scatter::albedo(receivers.closure_at(i), receivers.wo[i]);
+    });
+  }
   peaks = light_peaks(lights);
   const float radius = world.bounds().radius();
   column_power.resize(lights.size());
@@ -216,8 +225,8 @@ Cost SceneMatrix::accumulate(std::span<const matrix::ScaledColumn> scaled, std::
 }
 
 matrix::RowFeatures SceneMatrix::row_features() const {
-  return {impl_->row_pixel, impl_->receivers.position, impl_->receivers.normal, impl_->row_weight,
-          impl_->receivers.id};
+  return {impl_->row_pixel,  impl_->receivers.position, impl_->receivers.normal,
+          impl_->row_weight, impl_->receivers.id,       impl_->row_albedo};
 }
 
 matrix::ColumnFeatures SceneMatrix::column_features() const {

@@ -26,6 +26,7 @@ struct SceneMatrix::Impl {
   PairContext context;
   std::vector<Vec2f> row_pixel;
   std::vector<float> row_weight, column_power;
+  std::vector<Rgb> row_albedo;  // if asked for
   std::vector<std::uint16_t> column_group;
   std::vector<std::uint8_t> column_indirect;
   std::vector<Rgb> column_emitted;

@@ -19,6 +19,8 @@ struct SceneMatrixSettings {
   // (pipeline/traced_direct.h). Above 1: all lobes of all receivers.
   float traced_direct_below = 0;
   SphereRules spheres;  // where lights are spherical
+  // Rows know their directional albedo (RowFeatures::albedo), which costs some time where they are glossy.
+  bool row_albedo = false;
 };
 
 }  // namespace lumirank::transport
