@@ -23,7 +23,7 @@ struct TensorSettings {
   double max_distance = 10;
   // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
   // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.
-  double max_change = 0.05;
+  double max_change = 0.1;
   int bits = 16;  // of the rows' entries in memory: 16 or 32
 };
 

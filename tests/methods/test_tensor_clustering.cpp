@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/random.h"
 #include "matrix/dense_matrix.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
@@ -254,6 +255,46 @@ TEST(TensorClustering, FindsTheColumnsForAnError) {
     before = e.clusters;
   }
   EXPECT_LT(before, 400u * 10);
+}
+
+// The nearest is found whatever the first guess: against all pairs.
+TEST(RowMapping, FindsTheNearestOfAll) {
+  const std::size_t rows = 300;
+  const auto cloud = [&](std::uint64_t seed) {
+    Rng rng(seed, Stage::test);
+    const auto number = [&] { return static_cast<float>(rng.next_double()); };
+    DenseMatrix m(rows, 1, std::vector<Rgb>(rows, Rgb(1)));
+    for (std::size_t i = 0; i < rows; ++i) {
+      m.row_position.push_back({number(), number(), number()});
+      m.row_normal.push_back({number(), number(), number()});
+      m.row_albedo.push_back({number(), number(), number()});
+    }
+    return m;
+  };
+  const DenseMatrix a = cloud(1), b = cloud(2);
+  const RowMapping m = nearest_rows(b, a, 2);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const auto squared = [&](std::size_t k) {
+      const float n = 2.0f / 8, r = 2.0f / 64;
+      float sum = length_squared(b.row_position[i] - a.row_position[k]) +
+                  n * n * length_squared(b.row_normal[i] - a.row_normal[k]);
+      for (int c = 0; c < 3; ++c)
+        sum += r * r * (b.row_albedo[i][c] - a.row_albedo[k][c]) * (b.row_albedo[i][c] - a.row_albedo[k][c]);
+      return sum;
+    };
+    for (std::size_t k = 0; k < rows; ++k) EXPECT_GE(squared(k), squared(m.from[i]) * 0.9999f);
+  }
+}
+
+// A frame in which the camera sees nothing, between others: what comes after it is shaded afresh.
+TEST(TensorClustering, AFrameMayShowNothing) {
+  const auto seen = std::make_shared<const DenseMatrix>(matrix::low_rank_matrix({30, 20, 2}, 8));
+  const auto nothing = std::make_shared<const DenseMatrix>(0, 20, std::vector<Rgb>());
+  const DenseTensor tensor({seen, nothing, seen});
+  const TensorEstimate e = estimate_tensor(tensor, settings_of(20), {});
+  EXPECT_TRUE(e.sums[1].empty());
+  EXPECT_LT(relative_difference(e.sums[0], tensor.exact(0)), 1e-4);
+  EXPECT_LT(relative_difference(e.sums[2], tensor.exact(2)), 1e-4);
 }
 
 // Two surfaces at one place are told apart by their normals and colors.

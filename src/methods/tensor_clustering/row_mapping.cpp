@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nanoflann.hpp>
 #include <numeric>
 
@@ -14,18 +15,29 @@ namespace lumirank::methods {
 namespace {
 
 constexpr std::size_t kMappingDimensions = 9;
-constexpr std::size_t kSpacingNeighbors = 4;
+// Rows before and after one, by number, of which the nearest tells how far apart rows are.
+constexpr std::size_t kSpacingNeighbors = 8;
+constexpr std::size_t kRowsInTurn = 1024;
 constexpr float kLeastSpacing = 1e-6f;  // of the scene's diagonal
 constexpr float kTiniest = 1e-30f;
 // Of the scene's diagonal: what a unit of normal and of reflectance counts.
 constexpr float kNormalScale = 0.125f, kAlbedoScale = 1.0f / 64;
 
+using MappingPoint = std::array<float, kMappingDimensions>;
+
+float squared_distance(const MappingPoint& a, const MappingPoint& b) {
+  float sum = 0;
+  for (std::size_t d = 0; d < kMappingDimensions; ++d) sum += (a[d] - b[d]) * (a[d] - b[d]);
+  return sum;
+}
+
+}  // namespace
+
 // What nanoflann wants to know of the points.
 struct MappingPoints {
-  std::vector<std::array<float, kMappingDimensions>> points;
+  std::vector<MappingPoint> points;
 
-  MappingPoints(const matrix::LightingMatrix& m, float scale) : points(m.rows()) {
-    const matrix::RowFeatures f = m.row_features();
+  MappingPoints(const matrix::RowFeatures& f, float scale) : points(f.position.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       auto& p = points[i];
       p.fill(0);
@@ -48,6 +60,22 @@ struct MappingPoints {
 using MappingTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, MappingPoints>,
                                                         MappingPoints, kMappingDimensions, std::uint32_t>;
 
+namespace {
+
+// For nanoflann: the nearest point so far, where a good guess may be the first.
+struct NearestRow {
+  std::uint32_t row = 0;
+  float squared = std::numeric_limits<float>::infinity();
+
+  std::size_t size() const { return 1; }
+  bool full() const { return true; }
+  float worstDist() const { return squared; }
+  bool addPoint(float distance, std::uint32_t index) {
+    if (distance < squared || (distance == squared && index < row)) squared = distance, row = index;
+    return true;
+  }
+};
+
 }  // namespace
 
 RowMapping RowMapping::identity(std::size_t rows) {
@@ -63,37 +91,73 @@ RowMapping RowMapping::then(const RowMapping& next) const {
   both.from.resize(next.from.size());
   both.distance.resize(next.from.size());
   for (std::size_t i = 0; i < next.from.size(); ++i) {
+    if (next.from[i] >= from.size()) {  // nothing is seen in between
+      both.distance[i] = std::numeric_limits<float>::infinity();
+      continue;
+    }
     both.from[i] = from[next.from[i]];
     both.distance[i] = std::max(next.distance[i], distance[next.from[i]]);
   }
   return both;
 }
 
-RowMapping nearest_rows(const matrix::LightingMatrix& of, const matrix::LightingMatrix& to, float scale) {
-  if (of.row_features().position.empty() || to.row_features().position.empty()) {
-    if (of.rows() != to.rows()) throw InternalError("frames without places of rows differ in their number");
-    return RowMapping::identity(of.rows());
+struct FrameRows::Impl {
+  std::size_t rows = 0;
+  float scale = 0;
+  MappingPoints points;
+  MappingTree tree;
+
+  Impl(const matrix::LightingMatrix& matrix, float scale_)
+      : rows(matrix.rows()),
+        scale(scale_),
+        points(matrix.row_features(), scale_),
+        tree(kMappingDimensions, points, {16}) {}
+
+  // To the nearest of its neighbors by number that does not coincide with it (receivers of one film sample
+  // can).
+  float spacing(std::size_t i) const {
+    const float least = std::max(kLeastSpacing * scale, kTiniest);
+    float nearest = std::numeric_limits<float>::infinity();
+    const std::size_t end = std::min(points.points.size(), i + kSpacingNeighbors + 1);
+    for (std::size_t k = i - std::min(i, kSpacingNeighbors); k < end; ++k)
+      if (const float d = squared_distance(points.points[i], points.points[k]); d > least * least)
+        nearest = std::min(nearest, d);
+    return std::isfinite(nearest) ? std::max(least, std::sqrt(nearest)) : least;
   }
-  const MappingPoints from(to, scale), wanted(of, scale);
-  if (from.points.empty()) return {};
-  const MappingTree tree(kMappingDimensions, from, {16}), own(kMappingDimensions, wanted, {16});
+};
+
+FrameRows::FrameRows(const matrix::LightingMatrix& matrix, float scale)
+    : impl_(std::make_unique<const Impl>(matrix, scale)) {}
+FrameRows::~FrameRows() = default;
+
+RowMapping FrameRows::nearest(const FrameRows& to) const {
+  const auto &wanted = impl_->points.points, &from = to.impl_->points.points;
+  if (impl_->rows == 0 || to.impl_->rows == 0) {
+    RowMapping nothing;
+    nothing.from.assign(impl_->rows, 0);
+    nothing.distance.assign(impl_->rows, std::numeric_limits<float>::infinity());
+    return nothing;
+  }
+  if (wanted.empty() || from.empty()) {
+    if (impl_->rows != to.impl_->rows)
+      throw InternalError("frames without places of rows differ in their number");
+    return RowMapping::identity(impl_->rows);
+  }
   RowMapping m;
-  m.from.resize(wanted.points.size());
-  m.distance.resize(wanted.points.size());
-  const float least = kLeastSpacing * scale;
-  parallel_for(wanted.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  m.from.resize(wanted.size());
+  m.distance.resize(wanted.size());
+  parallel_for(wanted.size(), kRowsInTurn, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::uint32_t nearest = 0;
-      float squared = 0;
-      tree.knnSearch(wanted.points[i].data(), 1, &nearest, &squared);
-      m.from[i] = nearest;
-      // Receivers of one film sample can coincide, so the nearest of some that does not.
-      std::uint32_t others[kSpacingNeighbors];
-      float squares[kSpacingNeighbors] = {};
-      const std::size_t found = own.knnSearch(wanted.points[i].data(), kSpacingNeighbors, others, squares);
-      float spacing = 0;
-      for (std::size_t k = 0; k < found && !(spacing > least); ++k) spacing = std::sqrt(squares[k]);
-      m.distance[i] = squared > 0 ? std::sqrt(squared) / std::max(spacing, std::max(least, kTiniest)) : 0.0f;
+      NearestRow best;
+      const auto guess = [&](std::size_t k) {
+        if (k < from.size())
+          best.addPoint(squared_distance(wanted[i], from[k]), static_cast<std::uint32_t>(k));
+      };
+      guess(i);
+      if (i > begin) guess(m.from[i - 1]), guess(m.from[i - 1] + std::size_t{1});
+      if (best.squared > 0) to.impl_->tree.findNeighbors(best, wanted[i].data(), nanoflann::SearchParams());
+      m.from[i] = best.row;
+      m.distance[i] = best.squared > 0 ? std::sqrt(best.squared) / impl_->spacing(i) : 0.0f;
     }
   });
   return m;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace lumirank::methods {
 
 struct RowMapping {
   std::vector<matrix::Index> from;  // of every row of the later frame, say, its row in the earlier one
-  // To it, over the distance from the row to its nearest neighbor in its own frame: 0 where the same point is
-  // seen, about 1 where the view moved, large where something was hidden before.
+  // To it, over the distance from the row to the nearest of those that are its neighbors by number in its own
+  // frame: 0 where the same point is seen, about 1 where the view moved, large where something was hidden
+  // before, infinite where nothing was seen at all.
   std::vector<float> distance;
 
   // Through both: rows of c to rows of a, where this maps b to a and `next` maps c to b. The greater distance
@@ -25,11 +27,28 @@ struct RowMapping {
   static RowMapping identity(std::size_t rows);
 };
 
-// Distances are of 9-vectors: place, normal times an eighth of `scale`, diffuse reflectance times a 64th of
-// `scale`; `scale` is the diagonal of the scene. (Weights are ours, the paper states none. Reflectance counts
-// for less, since light is divided by it: relight() below.) Features that are unknown count for nothing;
-// where no place is known, rows map to their own number, which needs as many in both frames.
-RowMapping nearest_rows(const matrix::LightingMatrix& of, const matrix::LightingMatrix& to, float scale);
+// The rows of one frame, to be looked for and to look from. Distances are of 9-vectors: place, normal times
+// an eighth of `scale`, reflectance times a 64th of `scale`; `scale` is the diagonal of the scene. (Weights
+// are ours, the paper states none. Reflectance counts for less, since light is divided by it: relight()
+// below.) Features that are unknown count for nothing; where no place is known, rows map to their own number,
+// which needs as many in both frames.
+class FrameRows {
+ public:
+  FrameRows(const matrix::LightingMatrix& matrix, float scale);
+  ~FrameRows();
+
+  // For each row of this frame the nearest of `to`, exactly. Fast where rows that are neighbors by number are
+  // neighbors in space, and rows of one number in both frames are near each other.
+  RowMapping nearest(const FrameRows& to) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+inline RowMapping nearest_rows(const matrix::LightingMatrix& of, const matrix::LightingMatrix& to,
+                               float scale) {
+  return FrameRows(of, scale).nearest(FrameRows(to, scale));
+}
 
 // What light at a row of one diffuse reflectance would be at a row of another, so that textures stay sharp
 // (ours): exact for lambertian surfaces under the same light.

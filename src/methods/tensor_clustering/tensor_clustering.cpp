@@ -58,6 +58,8 @@ constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
 // What is too dark to be seen may change: this part of a frame's mean light.
 constexpr float kUnseen = 0.05f;
 
+constexpr std::size_t kEntriesAtOnce = 1 << 22;
+
 class TensorRun {
  public:
   TensorRun(const matrix::LightingTensor& tensor, const TensorClusteringSettings& settings,
@@ -211,18 +213,19 @@ class TensorRun {
 
   // Both ways between neighboring frames.
   bool make_mappings() {
-    std::shared_ptr<const matrix::LightingMatrix> before;
+    std::unique_ptr<const FrameRows> before;
     float scale = 0;
     for (std::size_t k = 0; k < tensor_.frames(); ++k) {
       if (options_.sinks.cancelled()) return false;
       const auto matrix = tensor_.frame(k);
       rows_.push_back(matrix->rows());
       if (k == 0) scale = diagonal_of_rows(*matrix);
+      auto now = std::make_unique<const FrameRows>(*matrix, scale);
       if (before) {
-        mappings_.to_later.push_back(nearest_rows(*matrix, *before, scale));
-        mappings_.to_earlier.push_back(nearest_rows(*before, *matrix, scale));
+        mappings_.to_later.push_back(now->nearest(*before));
+        mappings_.to_earlier.push_back(before->nearest(*now));
       }
-      before = matrix;
+      before = std::move(now);
     }
     return true;
   }
@@ -285,7 +288,9 @@ class TensorRun {
     std::vector<Index> hidden;
     for (std::size_t i = 0; i < mapping.from.size(); ++i) {
       const Index at = mapping.from[i];
-      if (settings_.max_distance > 0 && static_cast<double>(mapping.distance[i]) > settings_.max_distance)
+      const float distance = mapping.distance[i];
+      if (!std::isfinite(distance) ||
+          (settings_.max_distance > 0 && static_cast<double>(distance) > settings_.max_distance))
         hidden.push_back(static_cast<Index>(i));
       else
         carried_[f][i] += relit ? relight(sums[at], here[at], there[i]) : sums[at];
@@ -314,10 +319,12 @@ class TensorRun {
       if (is_black(own.scale)) continue;
       columns.push_back(own.column), scales.push_back(own.scale);
     }
-    constexpr std::size_t kRowsAtOnce = 256;
+    // More rows than columns, if there are: neighbors then share a light's rays.
+    const std::size_t at_once =
+        std::max(columns.size(), kEntriesAtOnce / std::max<std::size_t>(1, columns.size()));
     std::vector<Rgb> values;
-    for (std::size_t begin = 0; begin < rows.size(); begin += kRowsAtOnce) {
-      const auto some = rows.subspan(begin, std::min(kRowsAtOnce, rows.size() - begin));
+    for (std::size_t begin = 0; begin < rows.size(); begin += at_once) {
+      const auto some = rows.subspan(begin, std::min(at_once, rows.size() - begin));
       values.resize(some.size() * columns.size());
       estimate_.spent += matrix.block(some, columns, values, matrix::Part::value);
       for (std::size_t a = 0; a < some.size(); ++a)

@@ -35,7 +35,7 @@ struct TensorClusteringSettings {
   double max_distance = 10;
   // By how large a part of a row's light that which is carried may differ from what is found in its own
   // frame; else the row and those around it are shaded afresh. Ours; 0: mappings carry everything.
-  double max_change = 0.05;
+  double max_change = 0.1;
   // Relative error of the rows that no clustering knows, over all frames: the number of columns (up to
   // `max_columns` for each frame) and of rows (up to `max_rows`) is found for it. 0: as given.
   double target_error = 0;

@@ -43,6 +43,7 @@ double TestRows::error(std::span<const ClusterColumn> clusters, const FrameMappi
     for (std::uint32_t f = first; f <= last; ++f) {
       // Where the test rows of frame f are in frame k.
       std::vector<Index> at = frames_[f].rows;
+      if (matrix->rows() == 0) break;
       for (std::uint32_t step = f; step > k; --step)
         for (Index& i : at) i = mappings.to_later[step - 1].from[i];
       for (std::uint32_t step = f; step < k; ++step)
