@@ -34,11 +34,11 @@ MORE = [
 ]
 
 
-def digest(program, command, scene, options):
+def digest(program, command, scene, options, also):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "picture.exr"
         own = SIZE if command == "reference" else SIZE + ["--lights", "2000"] + (
-            [] if "--spp" in options else ["--spp", "2"])
+            [] if "--spp" in options else ["--spp", "2"]) + also
         line = [program, command, str(SCENES[scene]), "-o", str(out), *own, *options]
         done = subprocess.run(line, capture_output=True, text=True)
         if done.returncode != 0:
@@ -53,11 +53,13 @@ def main():
     parser.add_argument("--against")
     parser.add_argument("--only", help="rows whose name holds this")
     parser.add_argument("--markdown", action="store_true")
+    parser.add_argument("--also", default="", help="options for every render, for a default that was changed: "
+                        "--also='--film-samples 0' makes the pictures from before film samples")
     args = parser.parse_args()
     methods = [m["name"] for m in json.loads(
         subprocess.run([args.program, "methods", "--json"], capture_output=True, text=True, check=True).stdout)]
     rows = [(m, "render", ["--method", m]) for m in methods] + MORE
-    table = {name: {scene: digest(args.program, command, scene, options) for scene in SCENES}
+    table = {name: {scene: digest(args.program, command, scene, options, args.also.split()) for scene in SCENES}
              for name, command, options in rows if not args.only or args.only in name}
     before = json.loads(pathlib.Path(args.against).read_text()) if args.against else {}
     differing = [(n, s) for n, row in table.items() for s, h in row.items()

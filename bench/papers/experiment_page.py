@@ -123,7 +123,7 @@ class Runs:
     def run(self, name, command, scene, arguments):
         """Returns (picture, report); the report has "wall", seconds of the whole process."""
         if command == "render":
-            arguments = ["--rest", "skip", *arguments]  # experiments are about columns
+            arguments = ["--rest", "skip", "--film-samples", "0", *arguments]  # experiments are about columns, and sums of rows
         base = self.folder / "parts" / name
         record = base.with_name(base.name + ".run.json")
         asked = [command, str(pathlib.Path(scene).name), pathlib.Path(scene).parent.name, *map(str, arguments)]

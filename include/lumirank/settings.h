@@ -51,11 +51,18 @@ struct ViewSettings {
   int width = 0, height = 0;     // pixels; 0: as the scene says
   std::array<int, 4> crop = {};  // x, y, width, height in pixels; width 0: none
   std::optional<int> spp = {};   // receivers per pixel; unset: 4, or what a time budget holds
-  int max_depth = 0;             // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
+  // Film samples per pixel: eye rays with emission and textures of their own, which take their light from the
+  // receivers near them. 0: receivers are the film samples. Unset: 16, or none where there are as many
+  // receivers, or what a time budget holds.
+  std::optional<int> film_samples = {};
+  int max_depth = 0;  // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
   LightPart only = LightPart::all;
 
-  static constexpr int kDefaultSpp = 4;
+  static constexpr int kDefaultSpp = 4, kDefaultFilmSamples = 16;
   int spp_or_default() const { return spp.value_or(kDefaultSpp); }
+  int film_samples_or_default() const {
+    return film_samples.value_or(spp_or_default() < kDefaultFilmSamples ? kDefaultFilmSamples : 0);
+  }
 };
 
 // The columns of the matrix.

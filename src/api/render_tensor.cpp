@@ -139,11 +139,13 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
         for (std::size_t k = 0; k < frames.size(); ++k) {
           const pipeline::Prepared& frame = *frames[k];
           RenderResult result;
-          result.picture = pipeline::to_picture(
-              pipeline::develop(frame.view, frame.receivers(),
-                                pipeline::sample_values(frame.receivers(), frame.traced, estimate.sums[k],
-                                                        pipeline::wanted_parts(settings.view.only))));
+          pipeline::FilmFits fits;
+          result.picture =
+              pipeline::to_picture(pipeline::develop(pipeline::film_input(frame), estimate.sums[k],
+                                                     pipeline::wanted_parts(settings.view.only), &fits));
           result.report = report_of(frame, estimate, k, frames.size(), settings);
+          pipeline::add_film_numbers(result.report.numbers, recipe,
+                                     pipeline::seen_rows(frame.receivers(), frame.traced), fits);
           result.report.numbers["lights.in_all_frames"] = shot.common_share();
           results.push_back(std::move(result));
         }

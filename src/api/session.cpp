@@ -90,6 +90,9 @@ Estimate estimate_sums(const Prepared& prepared, const MethodSettings& method,
   RenderSettings settings = impl.settings;
   settings.method = method;
   const methods::MethodInfo& info = pipeline::chosen_method(settings);
+  if (info.contract.sums_of_pixels && impl.prepared->recipe.film_samples > 0)
+    throw InputError("the sums of " + info.name + " are right for whole pixels, not for surfaces in them",
+                     "prepare() with this method, or with film_samples 0");
   methods::RunOptions run;
   run.seed = method.seed ? method.seed : settings.seed;
   run.target_error = method.target_error;
@@ -138,9 +141,7 @@ Picture develop(const Prepared& prepared, const Estimate& estimate, const std::v
   Picture picture;
   with_threads(impl.settings.threads, [&] {
     picture = pipeline::to_picture(
-        pipeline::develop(p.view, p.receivers(),
-                          pipeline::sample_values(p.receivers(), p.traced, estimate.sums,
-                                                  pipeline::wanted_parts(p.recipe.only))));
+        pipeline::develop(pipeline::film_input(p), estimate.sums, pipeline::wanted_parts(p.recipe.only)));
     if (!pipeline::add_layers(picture, p, p.traced, to_inner(estimate), layers, sinks)) throw Cancelled();
   });
   return picture;

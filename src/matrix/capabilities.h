@@ -61,6 +61,8 @@ std::string describe(Capabilities capabilities);
 struct MethodContract {
   Capabilities needs;        // whatever its settings; other features are used where there are any
   bool combination = false;  // one combination of columns for all rows, which splits the picture by light
+  // Sums are right for all rows of a pixel together, not for each of them: they cannot be divided anew.
+  bool sums_of_pixels = false;
 };
 // Of a method that asks for entries alone and gives such a combination.
 inline constexpr MethodContract kCombination{{}, true};

@@ -1,12 +1,15 @@
 // From row sums to pictures.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "image/image.h"
 #include "lumirank/lumirank.h"
 #include "pipeline/prepared.h"
+#include "transport/rows/receiver_finder.h"
 
 namespace lumirank::pipeline {
 
@@ -16,9 +19,35 @@ struct FilmParts {
 };
 // What `only` leaves of the picture.
 FilmParts wanted_parts(LightPart only);
-// One value per film sample.
+
+// What a picture is made of beside row sums. Must outlive the call.
+struct FilmInput {
+  const world::World& world;
+  const View& view;
+  const Recipe& recipe;
+  const transport::Receivers& rows;  // of the matrix
+  const TracedLight& traced;
+};
+FilmInput film_input(const Prepared& prepared);
+
+// How many surfaces of film samples took their light from where (transport::FilmFit).
+struct FilmFits {
+  std::array<std::uint64_t, transport::kFilmFits> count{};
+  double share(transport::FilmFit fit) const;
+  FilmFits operator+(const FilmFits& other) const;
+};
+
+// With film samples of their own (Recipe::film_samples) these are traced again by every call, tile by tile.
+image::Image develop(const FilmInput& film, std::span<const Rgb> sums, FilmParts parts,
+                     FilmFits* fits = nullptr);
+// The mean of what `value` makes of the eye's first hits.
+image::Image develop_first_hits(const FilmInput& film,
+                                const std::function<Rgb(const transport::FirstHit&)>& value);
+
+// One value per film sample of the receivers.
 std::vector<Rgb> sample_values(const transport::Receivers& rows, const TracedLight& traced,
                                std::span<const Rgb> sums, FilmParts parts);
+// The picture of these samples alone, whatever the recipe.
 image::Image develop(const View& view, const transport::Receivers& rows, std::span<const Rgb> values);
 // InputError if a value is infinite or not a number (sound_pixels.h).
 Picture to_picture(const image::Image& image);

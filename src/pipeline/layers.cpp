@@ -25,7 +25,11 @@ class LayerMaker {
  public:
   LayerMaker(Picture& picture, const Prepared& prepared, const TracedLight& traced,
              const methods::Estimate& estimate, const Sinks& sinks)
-      : picture_(picture), prepared_(prepared), traced_(traced), estimate_(estimate), sinks_(sinks) {}
+      : picture_(picture),
+        prepared_(prepared),
+        film_{*prepared.world, prepared.view, prepared.recipe, prepared.receivers(), traced},
+        estimate_(estimate),
+        sinks_(sinks) {}
 
   void add(const std::string& layer) {
     if (layer == "direct")
@@ -39,8 +43,7 @@ class LayerMaker {
   }
 
  private:
-  void plane(const std::string& name, std::span<const Rgb> values) {
-    const image::Image image = develop(prepared_.view, rows_, values);
+  void plane(const std::string& name, const image::Image& image) {
     picture_.planes.push_back({name, to_picture(image).planes[0].rgb});
   }
 
@@ -52,7 +55,7 @@ class LayerMaker {
       if (keep(c.column)) columns.push_back(c);
     std::vector<Rgb> sums(rows_.size());
     prepared_.matrix->accumulate(columns, sums, sinks_);
-    plane(name, sample_values(rows_, traced_, sums, parts));
+    plane(name, develop(film_, sums, parts));
   }
 
   void add_bounces(const std::string& name, bool direct, FilmParts parts) {
@@ -70,41 +73,39 @@ class LayerMaker {
     }
   }
 
-  template <typename T, typename F>
-  void plane_of(const std::string& name, const std::vector<T>& values, F&& to_rgb) {
-    std::vector<Rgb> rgb;
-    rgb.reserve(values.size());
-    for (const T& v : values) rgb.push_back(to_rgb(v));
-    plane(name, rgb);
+  template <typename Value>
+  void plane_of(const std::string& name, Value&& value) {
+    plane(name, develop_first_hits(film_, value));
   }
 
   void add_first_hits(const std::string& layer) {
+    using transport::FirstHit;
     const world::Units& units = prepared_.world->units();
     const auto vector_of = [](Vec3f v) { return Rgb(v.x, v.y, v.z); };
-    if (layer == "emission") plane(layer, rows_.emission);
-    if (layer == "albedo") plane(layer, rows_.first_albedo);
-    if (layer == "normal") plane_of(layer, rows_.first_normal, vector_of);
+    if (layer == "emission")
+      plane(layer, develop(film_, {}, {.matrix = false, .traced_direct = false, .traced_indirect = false}));
+    if (layer == "albedo") plane_of(layer, [](const FirstHit& f) { return f.albedo; });
+    if (layer == "normal") plane_of(layer, [&](const FirstHit& f) { return vector_of(f.normal); });
     if (layer == "depth")
-      plane_of(layer, rows_.first_distance,
-               [&](float d) { return Rgb(std::isfinite(d) ? units.length_in_file(d) : 0.0f); });
-    if (layer == "position") {
-      std::vector<Vec3f> places(rows_.samples());
-      for (std::size_t k = 0; k < places.size(); ++k)
-        if (std::isfinite(rows_.first_distance[k]))
-          places[k] = static_cast<Vec3f>(units.place_in_file(rows_.first_position[k]));
-      plane_of(layer, places, vector_of);
-    }
+      plane_of(layer, [&](const FirstHit& f) {
+        return Rgb(std::isfinite(f.distance) ? units.length_in_file(f.distance) : 0.0f);
+      });
+    if (layer == "position")
+      plane_of(layer, [&](const FirstHit& f) {
+        return std::isfinite(f.distance) ? vector_of(static_cast<Vec3f>(units.place_in_file(f.position)))
+                                         : Rgb(0);
+      });
     if (layer == "samples") {
       std::vector<Rgb> count(rows_.samples());
       for (std::size_t i = 0; i < rows_.size(); ++i) count[rows_.sample[i]] += Rgb(1);
-      plane(layer, count);
+      plane(layer, develop(prepared_.view, rows_, count));
     }
   }
 
   Picture& picture_;
   const Prepared& prepared_;
   const transport::Receivers& rows_ = prepared_.receivers();
-  const TracedLight& traced_;
+  FilmInput film_;
   const methods::Estimate& estimate_;
   const Sinks& sinks_;
 };

@@ -54,6 +54,10 @@ SharedRows matrix_rows(const SharedRows& rows, const Recipe& recipe) {
       transport::broad_receivers(transport::Receivers(*rows), recipe.sharp_below));
 }
 
+const transport::Receivers& seen_rows(const transport::Receivers& rows, const TracedLight& traced) {
+  return traced.rows ? *traced.rows : rows;
+}
+
 TracedRows trace_rows_and_light(const world::World& world, const View& view, const Recipe& recipe,
                                 const Sinks& sinks, std::map<std::string, double>& seconds) {
   TracedRows made;
@@ -63,11 +67,12 @@ TracedRows trace_rows_and_light(const world::World& world, const View& view, con
   timer = {};
   if (const auto tracing = start_direct(world, *all, recipe)) {
     if (!tracing->add(TracedDirectSettings{}.samples, sinks)) throw Cancelled();
-    made.traced.direct = per_sample(*all, tracing->radiance());
+    made.traced.direct = tracing->radiance();
     made.traced.direct_samples = tracing->samples();
   }
   if (recipe.traced_below > 0) seconds["traced_direct"] = timer.seconds();
   timer = {};
+  made.traced.rows = all;
   made.traced.sharp = trace_sharp_lobes(world, *all, recipe, sinks);
   made.rows = matrix_rows(all, recipe);
   if (made.rows != all) seconds["traced_indirect"] = timer.seconds();
@@ -167,8 +172,9 @@ bool same_view(const View& a, const View& b) {
 
 // Rows and the light that is traced at them.
 bool same_rows(const Recipe& a, const Recipe& b) {
-  return a.seed == b.seed && a.spp == b.spp && a.only == b.only && a.traced_below == b.traced_below &&
-         a.sharp_below == b.sharp_below && a.local_paths == b.local_paths && a.first_hits == b.first_hits;
+  return a.seed == b.seed && a.spp == b.spp && a.film_samples == b.film_samples && a.only == b.only &&
+         a.traced_below == b.traced_below && a.sharp_below == b.sharp_below &&
+         a.local_paths == b.local_paths && a.first_hits == b.first_hits;
 }
 
 bool same_columns(const Recipe& a, const Recipe& b) {

@@ -30,13 +30,17 @@ struct Columns {
   pathtrace::CarriedByColumns carried;  // where the rest is to be traced; bound 0: it is not
 };
 
-// Light that is traced instead of going through the matrix, one value per film sample; empty where none is.
+// Light towards the eye that is traced instead of going through the matrix, one value per receiver; empty
+// where none is.
 struct TracedLight {
+  SharedRows rows;  // as the eye finds them, for the first two; nullptr: those of the matrix
   std::vector<Rgb> direct;
   int direct_samples = 0;  // per receiver
   std::vector<Rgb> sharp;  // indirect, in lobes that have left the rows
-  std::vector<Rgb> near;   // indirect, from close by
+  std::vector<Rgb> near;   // indirect, from close by; at rows of the matrix
 };
+// The rows as the eye finds them, for given rows of the matrix.
+const transport::Receivers& seen_rows(const transport::Receivers& rows, const TracedLight& traced);
 
 // Owns what it is made of, never changes, and may be shared between threads and calls.
 struct Prepared {

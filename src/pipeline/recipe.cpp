@@ -43,6 +43,9 @@ Recipe make_recipe(const RenderSettings& settings, const View& view) {
   Recipe recipe;
   recipe.seed = recipe.light_seed = settings.seed;
   recipe.spp = settings.view.spp_or_default();
+  // Sums that are right for a pixel's receivers together say nothing of one surface of it.
+  if (!chosen_method(settings).contract.sums_of_pixels)
+    recipe.film_samples = settings.view.film_samples_or_default();
   recipe.max_depth = view.max_depth;
   recipe.only = settings.view.only;
   recipe.lights = settings.lights;
@@ -64,9 +67,10 @@ transport::ReceiverSettings receiver_settings(const Recipe& recipe, const View& 
   rs.seed = recipe.seed;
   rs.spp = recipe.spp;
   rs.max_depth = recipe.max_depth;
-  // The window, and around it what its filter reaches.
+  rs.film_samples = recipe.film_samples;
+  // The window, and around it what its filter reaches; film samples there need a pixel more.
   const auto& film = view.sensor.film;
-  const int reach = world::make_filter(film.filter).reach();
+  const int reach = world::make_filter(film.filter).reach() + (recipe.film_samples > 0 ? 1 : 0);
   rs.crop_x = std::max(0, view.crop_x - reach), rs.crop_y = std::max(0, view.crop_y - reach);
   rs.crop_width = std::min(film.width, view.crop_x + view.width + reach) - rs.crop_x;
   rs.crop_height = std::min(film.height, view.crop_y + view.height + reach) - rs.crop_y;

@@ -28,7 +28,8 @@ struct Recipe {
   std::uint64_t seed = 1;        // of rows, and of what is traced for them
   std::uint64_t light_seed = 1;  // of columns
   int spp = 4;
-  int max_depth = -1;  // of the view: -1: unlimited
+  int film_samples = 0;  // per pixel, apart from receivers; 0: these are the film samples
+  int max_depth = -1;    // of the view: -1: unlimited
   LightPart only = LightPart::all;
   VirtualLightSettings lights;  // their number is given where they are made
   // Direct light of lobes with a roughness below this is traced (traced_direct.h); 0: none, 2: of all lobes.

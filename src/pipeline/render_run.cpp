@@ -104,6 +104,8 @@ class RenderRun {
     wishes.budget = asked_.time;
     wishes.spp = recipe_.spp;
     wishes.spp_given = asked_.view.spp.has_value();
+    wishes.film_samples = recipe_.film_samples;
+    wishes.film_samples_given = asked_.view.film_samples || recipe_.film_samples == 0;
     wishes.lights = lights_;
     wishes.lights_given = asked_.lights.count || lights_ != asked_.lights.count_or_default();
     wishes.rest_paths = rest_->plan().paths;
@@ -124,11 +126,12 @@ class RenderRun {
     costs.passed = clock_();
     plan_ = plan_time(wishes, costs);
     if (!plan_.shortage.empty()) sinks_.warn(plan_.shortage);
-    sinks_.say(
-        "plan: " + std::to_string(plan_.spp) + " receivers per pixel, " + std::to_string(plan_.lights) +
-        " virtual lights; " + run_number("%.2g s for traced direct light, ", plan_.direct_seconds) +
-        run_number("%.2g s", plan_.rest_seconds) + " at first for the light that columns cannot carry; " +
-        run_number("%.3g columns", plan_.columns) + " of the pilot's fit the rest");
+    sinks_.say("plan: " + std::to_string(plan_.spp) + " receivers and " + std::to_string(plan_.film_samples) +
+               " film samples per pixel, " + std::to_string(plan_.lights) + " virtual lights; " +
+               run_number("%.2g s for traced direct light, ", plan_.direct_seconds) +
+               run_number("%.2g s", plan_.rest_seconds) +
+               " at first for the light that columns cannot carry; " +
+               run_number("%.3g columns", plan_.columns) + " of the pilot's fit the rest");
   }
 
   void plan() {
@@ -139,6 +142,9 @@ class RenderRun {
     recipe_.spp = static_cast<int>(planned("receivers_per_pixel", wishes.spp_given,
                                            static_cast<std::size_t>(wishes.spp),
                                            static_cast<std::size_t>(plan_.spp), 4096));
+    recipe_.film_samples = static_cast<int>(planned("film_samples", wishes.film_samples_given,
+                                                    static_cast<std::size_t>(wishes.film_samples),
+                                                    static_cast<std::size_t>(plan_.film_samples), 4096));
     lights_ = static_cast<std::size_t>(
         planned("lights_asked", wishes.lights_given, wishes.lights, plan_.lights, 50000000));
     const auto divisor = static_cast<int>(
@@ -167,7 +173,7 @@ class RenderRun {
   // ------------------------------------------------------------ rows, columns, matrix
 
   void keep_direct() {
-    traced_.direct = per_sample(*direct_rows_, direct_->radiance());
+    traced_.direct = direct_->radiance();
     traced_.direct_samples = direct_->samples();
   }
 
@@ -194,6 +200,7 @@ class RenderRun {
     }
     if (recipe_.traced_below > 0) seconds_["traced_direct"] = timer.seconds();
     timer = {};
+    traced_.rows = direct_rows_;
     traced_.sharp = trace_sharp_lobes(world, *direct_rows_, recipe_, sinks_);
     rows_ = matrix_rows(direct_rows_, recipe_);
     if (rows_ != direct_rows_) seconds_["traced_indirect"] = timer.seconds();
@@ -228,8 +235,11 @@ class RenderRun {
     return enlarged(picture, task_.view.width, task_.view.height);
   }
 
-  image::Image image_of(std::span<const Rgb> sums) const {
-    image::Image image = develop(view_, *rows_, sample_values(*rows_, traced_, sums, parts_));
+  // A preview shows receivers alone, which takes no time.
+  image::Image image_of(std::span<const Rgb> sums, bool preview) {
+    const FilmInput film{*task_.world, view_, recipe_, *rows_, traced_};
+    image::Image image = preview ? develop(view_, *rows_, sample_values(*rows_, traced_, sums, parts_))
+                                 : develop(film, sums, parts_, &fits_);
     // Emission is in the matrix's picture already; the rest of the paths holds none of its own.
     rest_->add_to(image);
     return image;
@@ -244,7 +254,7 @@ class RenderRun {
     run.sinks = sinks_;
     if (previews_)
       run.on_estimate = [&](std::span<const Rgb> sums) {
-        if (throttle_.due()) throttle_.show(as_asked(image_of(sums)));
+        if (throttle_.due()) throttle_.show(as_asked(image_of(sums, true)));
       };
     Timer timer;
     const matrix::MeteredMatrix metered(*prepared_->matrix);
@@ -336,7 +346,7 @@ class RenderRun {
     // Without a budget the rest is traced last: interrupted, what the matrix gave is kept.
     if (!timed() && !result_.interrupted) result_.interrupted = !rest_->trace_all(view_, sinks_);
     if (rest_->seconds() > 0) seconds_["rest"] = rest_->seconds();
-    image::Image image = image_of(estimate_.sums);
+    image::Image image = image_of(estimate_.sums, false);
     compensate(image);
     result_.picture = as_asked(image);
     layers();
@@ -352,6 +362,7 @@ class RenderRun {
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
     numbers["rest.paths"] = rest_->paths();
     numbers["receivers_per_pixel"] = recipe_.spp;
+    add_film_numbers(numbers, recipe_, *traced_.rows, fits_);
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
@@ -378,6 +389,7 @@ class RenderRun {
   SharedSurvey survey_;  // of the pilot, until it is used
   SharedRows rows_;
   TracedLight traced_;
+  FilmFits fits_;
   SharedRows direct_rows_;                 // and the light traced at them,
   std::unique_ptr<DirectTracing> direct_;  // while more samples can be added
   double direct_pace_ = 0;

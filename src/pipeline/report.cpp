@@ -66,6 +66,18 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
+void add_film_numbers(std::map<std::string, double>& numbers, const Recipe& recipe,
+                      const transport::Receivers& seen, const FilmFits& fits) {
+  using transport::FilmFit;
+  numbers["film.samples"] = recipe.film_samples;
+  if (recipe.film_samples == 0) return;
+  numbers["film.receivers_added"] = static_cast<double>(seen.added);
+  numbers["film.from_own_pixel"] = fits.share(FilmFit::own_pixel);
+  numbers["film.from_neighbors"] = fits.share(FilmFit::neighbors);
+  numbers["film.from_same_sort"] = fits.share(FilmFit::own_pixel_sort) + fits.share(FilmFit::neighbors_sort);
+  numbers["film.from_any"] = fits.share(FilmFit::any) + fits.share(FilmFit::none);
+}
+
 Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
                    const methods::MethodInfo& method, const methods::Estimate& estimate,
                    const matrix::Cost& spent, const methods::TimedChoices::Lists& choices) {

@@ -3,6 +3,7 @@
 
 #include "lumirank/report.h"
 #include "methods/common/timed_choices.h"
+#include "pipeline/develop.h"
 #include "pipeline/prepared.h"
 
 namespace lumirank::pipeline {
@@ -15,5 +16,10 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
 
 // Resident-set peak of this process, in bytes (0 where the system does not say).
 std::size_t peak_memory_bytes();
+
+// Film samples apart from receivers: how many, what receivers they made necessary, where they have their
+// light from. Nothing without them.
+void add_film_numbers(std::map<std::string, double>& numbers, const Recipe& recipe,
+                      const transport::Receivers& seen, const FilmFits& fits);
 
 }  // namespace lumirank::pipeline

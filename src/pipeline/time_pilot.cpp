@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
 #include "film/filter.h"
 #include "pipeline/develop.h"
+#include "transport/rows/film_samples.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -14,6 +16,9 @@ namespace {
 // So many lights and columns are tried: together about a tenth of a second on ordinary scenes. Two numbers
 // of lights, because some of their time is the same for any number.
 constexpr std::size_t kFewLights = 1024, kPilotLights = 8192, kPilotColumns = 16;
+// Whose film samples are traced; and what finding receivers adds to tracing them.
+constexpr std::size_t kFilmPixels = 1024;
+constexpr double kFindingReceivers = 1.5;
 
 double direct_seconds(const world::World& world, const transport::Receivers& rows, const Recipe& recipe,
                       const Sinks& sinks) {
@@ -34,6 +39,27 @@ double column_seconds(const transport::SceneMatrix& matrix, const Sinks& sinks) 
   const Timer timer;
   matrix.accumulate(few, sums, sinks);
   return timer.seconds() / static_cast<double>(kPilotColumns);
+}
+
+// Of one film sample: those of some pixels, whose rays are as alike as in the picture.
+double seconds_of_film_sample(const world::World& world, const View& view, const Recipe& recipe) {
+  if (recipe.film_samples == 0) return 0;
+  const world::Camera camera(view.sensor, world.units());
+  const transport::ReceiverSettings settings = receiver_settings(recipe, view);
+  const auto random_of = [](Rng& rng, int count) {
+    return static_cast<int>(rng.next_below(static_cast<std::uint64_t>(count)));
+  };
+  const Timer timer;
+  parallel_for(kFilmPixels, kFilmPixels / 16, [&](std::size_t begin, std::size_t end) {
+    transport::FilmEye eye(world, camera, settings);
+    for (std::size_t p = begin; p < end; ++p) {
+      Rng rng(1, Stage::pilot, p);
+      const int x = settings.crop_x + random_of(rng, settings.crop_width);
+      eye.begin({x, settings.crop_y + random_of(rng, settings.crop_height)});
+      for (int k = 0; k < recipe.film_samples; ++k) eye.trace(k, nullptr);
+    }
+  });
+  return kFindingReceivers * timer.seconds() / (static_cast<double>(kFilmPixels) * recipe.film_samples);
 }
 
 }  // namespace
@@ -65,6 +91,7 @@ TimePilot measure_costs(const SharedWorld& world, const View& view, const Recipe
                          sample_values(*rows, {}, std::vector<Rgb>(rows->size()), {}), {0, 0}));
   costs.develop = film_timer.seconds();
   for (double* seconds : {&costs.receiver, &costs.direct, &costs.column, &costs.develop}) *seconds /= samples;
+  costs.film_sample = seconds_of_film_sample(*world, view, recipe);
   if (sinks.cancelled()) throw Cancelled();
   return pilot;
 }

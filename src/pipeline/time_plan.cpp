@@ -14,6 +14,9 @@ namespace {
 // a fifth too, and it gets what is left over at the end besides.
 constexpr double kReceiverShare = 0.2, kLightShare = 0.2, kDirectShare = 0.2, kRestShare = 0.2,
                  kFilmShare = 0.15, kMethodShare = 0.4;
+// Film samples are traced twice, to see which lack receivers and for the picture, and once more for each
+// layer. They get no more than this part. As few as there are receivers make no better edges than these do.
+constexpr double kFilmSamplesShare = 0.2;
 // Fewer receivers per pixel are better than sums over fewer columns than this (a third of what slice-cuts has
 // without a budget; with less, whole shadows are missing and slices show) ...
 constexpr double kMinColumns = 150;
@@ -98,6 +101,15 @@ TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {
   };
   if (!wishes.spp_given)
     while (plan.spp >= wishes.spp && plan.spp < kMaxReceivers && more_fit(plan.spp + 1)) ++plan.spp;
+  plan.film_samples = wishes.film_samples;
+  const auto film_sample_seconds = [&](int times) {
+    return costs.pixels * plan.film_samples * costs.film_sample * times;
+  };
+  if (!wishes.film_samples_given) {
+    while (plan.film_samples > plan.spp && film_sample_seconds(2 + wishes.layers) > kFilmSamplesShare * left)
+      plan.film_samples /= 2;
+    if (plan.film_samples <= plan.spp) plan.film_samples = 0;
+  }
   plan.lights = wishes.lights;
   if (!wishes.lights_given && static_cast<double>(wishes.lights) * costs.light > kLightShare * left) {
     const double fitting = kLightShare * left / costs.light;
@@ -107,9 +119,10 @@ TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {
   // Their passes end earlier where they have as many samples as were wished for.
   plan.direct_seconds = costs.direct > 0 ? kDirectShare * left : 0;
   plan.rest_seconds = wishes.rest_paths > 0 ? kRestShare * left : 0;
-  plan.film_seconds = samples * costs.develop * (1 + wishes.layers);
-  const double others = samples * costs.receiver + static_cast<double>(plan.lights) * costs.light +
-                        plan.direct_seconds + plan.rest_seconds + plan.film_seconds;
+  plan.film_seconds = samples * costs.develop * (1 + wishes.layers) + film_sample_seconds(1 + wishes.layers);
+  const double others = samples * costs.receiver + film_sample_seconds(1) +
+                        static_cast<double>(plan.lights) * costs.light + plan.direct_seconds +
+                        plan.rest_seconds + plan.film_seconds;
   const double column = costs.column * samples;
   plan.columns = column > 0 ? std::max(0.0, left - others) / column : std::numeric_limits<double>::infinity();
   return plan;

@@ -119,7 +119,7 @@ std::vector<Rgb> trace_indirect(const world::World& world, const transport::Rece
     const float paths = static_cast<float>(settings.paths) * (kEven + (1 - kEven) * share);
     radiance[i] = tracing.at(i, std::max(1, static_cast<int>(std::lround(paths))), false).mean;
   });
-  return per_sample(receivers, radiance);
+  return radiance;
 }
 
 }  // namespace lumirank::pipeline

@@ -26,8 +26,8 @@ struct TracedIndirectSettings {
 // Σ of values[i], one per receiver, by film sample, with the weights of the receivers' specular chains.
 std::vector<Rgb> per_sample(const transport::Receivers& receivers, const std::vector<Rgb>& values);
 
-// pathtrace::Radiance by film sample, with the weights of the receivers' specular chains. The paths are those
-// of columns (docs/conventions.md): no specular vertex right after the receiver.
+// pathtrace::Radiance towards the eye, one per receiver. The paths are those of columns
+// (docs/conventions.md): no specular vertex right after the receiver.
 std::vector<Rgb> trace_indirect(const world::World& world, const transport::Receivers& receivers,
                                 const TracedIndirectSettings& settings, const Sinks& sinks = {});
 

@@ -58,7 +58,9 @@ std::uint32_t ClosurePool::append(const ClosurePool& other) {
   for (std::uint32_t k = 0; k < recipe_of.size(); ++k) recipe_of[k] = recipes_.intern(other.recipes_[k]);
   for (std::uint32_t k = 0; k < palette_of.size(); ++k) palette_of[k] = palettes_.intern(other.palettes_[k]);
   const auto first = static_cast<std::uint32_t>(entries_.size());
-  entries_.reserve(entries_.size() + other.entries_.size());
+  // Twice the room at once: pools are put together from thousands.
+  if (const std::size_t needed = entries_.size() + other.entries_.size(); needed > entries_.capacity())
+    entries_.reserve(std::max(needed, 2 * entries_.capacity()));
   for (const Entry& e : other.entries_) {
     const std::uint32_t opposite = e.recipe_and_side & 1;
     entries_.push_back({recipe_of[e.recipe_and_side >> 1] << 1 | opposite, palette_of[e.palette], e.tangent});

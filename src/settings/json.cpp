@@ -38,7 +38,11 @@ RenderSettings render_settings_from_json(const std::string& text) {
   }
   // A report names every setting, asked for or not.
   if (settings.lights.count == VirtualLightSettings::kDefaultCount) settings.lights.count.reset();
-  if (settings.view.spp == ViewSettings::kDefaultSpp) settings.view.spp.reset();
+  ViewSettings& view = settings.view;
+  ViewSettings unset = view;
+  unset.film_samples.reset();
+  if (view.film_samples == unset.film_samples_or_default()) view.film_samples.reset();
+  if (view.spp == ViewSettings::kDefaultSpp) view.spp.reset();
   return settings;
 }
 

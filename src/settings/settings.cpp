@@ -73,8 +73,13 @@ void validate(const RenderSettings& settings) {
     if (settings.view.only == LightPart::direct)
       refuse("is for indirect light", "leave out 'only', or 'compensate'");
   }
-  if (settings.method.name != "auto")
-    methods::find_method(settings.method.name).make(settings.method.parameters);
+  if (settings.method.name != "auto") {
+    const methods::MethodInfo& method = methods::find_method(settings.method.name);
+    method.make(settings.method.parameters);
+    if (method.contract.sums_of_pixels && settings.view.film_samples.value_or(0) > 0)
+      throw InputError("the sums of " + method.name + " are right for whole pixels, not for surfaces in them",
+                       "leave out 'film-samples'");
+  }
 }
 
 }  // namespace lumirank

@@ -43,6 +43,16 @@ Row crop_row() {
           }};
 }
 
+// What it is where it is not given depends on `spp`.
+Row film_samples_row() {
+  Row row = number({"film-samples", "", "16", "0 … 4096", "film samples per pixel",
+                    "eye rays for edges and textures, which take their light from the receivers near them; "
+                    "0, and by default from --spp 16 on: the receivers alone"},
+                   At<&RenderSettings::view, &ViewSettings::film_samples>{}, 0, 4096);
+  row.get = [](const RenderSettings& s) { return std::to_string(s.view.film_samples_or_default()); };
+  return row;
+}
+
 bool known_aov(const std::string& name) {
   if (name.starts_with("light:") && name.size() > 6) return true;
   static const std::vector<std::string> names = {"direct", "indirect", "emission", "illuminance", "albedo",
@@ -83,8 +93,10 @@ Row aov_row() {
 void add_view_rows(std::vector<Row>& t) {
   using S = RenderSettings;
   t.push_back(size_row());
-  t.push_back(number({"spp", "", "4", "1 … 4096", "receivers per pixel", "film samples per pixel (4 = 2×2)"},
+  t.push_back(number({"spp", "", "4", "1 … 4096", "receivers per pixel",
+                      "places per pixel at which light is gathered (4 = 2×2)"},
                      At<&S::view, &ViewSettings::spp>{}, 1, 4096));
+  t.push_back(film_samples_row());
   t.push_back(number({"max-depth", "", "0", "-1 … 1000000", "bounces",
                       "longest path, 1: emission only, 2: direct light; 0: as the scene says; -1: unlimited"},
                      At<&S::view, &ViewSettings::max_depth>{}, -1, 1e6));

@@ -106,6 +106,7 @@ class Study {
   void prepare(std::size_t lights, int spp, std::uint64_t light_seed) {
     Recipe recipe = make_recipe(settings_.base, view_);
     recipe.spp = spp;
+    recipe.film_samples = 0;  // what is compared are sums of rows, all of them the film's
     recipe.light_seed = light_seed;
     prepared_ = pipeline::prepare(world_, view_, recipe, lights, prepared_, sinks_);
   }

@@ -20,9 +20,8 @@ constexpr std::size_t kMinReceivers = 64;
 
 image::Image picture_of(const pipeline::View& view, const pipeline::Prepared& prepared,
                         const ViewSettings& as, std::span<const Rgb> sums) {
-  return pipeline::develop(
-      view, prepared.receivers(),
-      pipeline::sample_values(prepared.receivers(), prepared.traced, sums, pipeline::wanted_parts(as.only)));
+  return pipeline::develop({*prepared.world, view, prepared.recipe, prepared.receivers(), prepared.traced},
+                           sums, pipeline::wanted_parts(as.only));
 }
 
 StudyReference::StudyReference(const CompareSettings& settings, const pipeline::View& view)

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
 #include "base/error.h"
+#include "image/image_io.h"
 #include "lumirank/animate.h"
 #include "support/scene_file.h"
 
@@ -179,6 +181,29 @@ TEST(Animate, TensorClusteringOfNoColumnsSumsThemAll) {
     EXPECT_GT(brightest, 0);
     for (std::size_t n = 0; n < want.size(); ++n) EXPECT_NEAR(have[n], want[n], 1e-5f * brightest) << n;
   }
+}
+
+// Film samples take their light from the tensor's rows: those of the frame, as many as `film_samples` says.
+TEST(Animate, TensorClusteringHasFilmSamples) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const auto mean = [&](int film_samples) {
+    AnimateSettings settings = small_shot(0, 1);
+    settings.render.view.film_samples = film_samples;
+    settings.tensor = TensorSettings{};
+    const std::string out = folder / ("shot" + std::to_string(film_samples));
+    EXPECT_EQ(animate(scene, settings, out).rendered, 2);
+    const auto report = nlohmann::json::parse(bytes_of(out + "/frame_0001.json"));
+    EXPECT_EQ(report["film.samples"], film_samples);
+    EXPECT_EQ(report.contains("film.from_own_pixel"), film_samples > 0);
+    const auto pixels = image::read_image(frame(out, 1)).color.pixels;
+    double sum = 0;
+    for (const Rgb& p : pixels) sum += p.g;
+    return sum / static_cast<double>(pixels.size());
+  };
+  const double receivers = mean(0);
+  EXPECT_GT(receivers, 0);
+  EXPECT_NEAR(mean(16) / receivers, 1, 0.03);
 }
 
 TEST(Animate, RefusesOtherShotsAndMomentsThatAreNot) {

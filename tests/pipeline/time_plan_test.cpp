@@ -14,7 +14,7 @@ TimeCosts ordinary_costs() {
   TimeCosts c;
   c.passed = 0.4;
   c.pixels = 640 * 360;
-  c.receiver = 5e-7;
+  c.receiver = c.film_sample = 5e-7;
   c.direct = 0;
   c.column = 2e-8;
   c.develop = 1e-7;
@@ -28,8 +28,8 @@ TimeWishes budget_of(double seconds) {
 }
 double planned_seconds(const TimePlan& p, const TimeCosts& c) {
   const double samples = c.pixels * p.spp;
-  return c.passed + samples * c.receiver + static_cast<double>(p.lights) * c.light + p.direct_seconds +
-         p.rest_seconds + p.film_seconds;
+  return c.passed + samples * c.receiver + c.pixels * p.film_samples * c.film_sample +
+         static_cast<double>(p.lights) * c.light + p.direct_seconds + p.rest_seconds + p.film_seconds;
 }
 
 TEST(TimePlan, AHugeBudgetLowersNothing) {
@@ -57,6 +57,27 @@ TEST(TimePlan, AbundantTimeGoesToReceivers) {
   EXPECT_EQ(plan_time(budget_of(1e6), c).spp, 4) << "memory is not for the taking";
 }
 
+TEST(TimePlan, FilmSamplesAreGivenUpWhereTheyCostTooMuch) {
+  TimeCosts c = ordinary_costs();
+  c.pixels = 50000, c.passed = 0;
+  const auto planned = [&](double seconds, bool given = false) {
+    TimeWishes w = budget_of(seconds);
+    w.film_samples = 16, w.film_samples_given = given;
+    return plan_time(w, c).film_samples;
+  };
+  // 0.025 s for one of each pixel, twice: 16 of them are a fifth of 4 s.
+  c.film_sample = 5e-7;
+  EXPECT_EQ(planned(5), 16);
+  EXPECT_EQ(planned(3), 8);
+  EXPECT_EQ(planned(1.5), 4) << "for three receivers";
+  EXPECT_EQ(planned(0.2), 0);
+  EXPECT_EQ(planned(1.5, true), 16) << "asked for by hand";
+  // Where time abounds there are more receivers than film samples.
+  c.column = 1e-8;
+  EXPECT_EQ(planned(1000), 0);
+  EXPECT_EQ(planned(1000, true), 16);
+}
+
 TEST(TimePlan, EveryBudgetLeavesTheMethodItsPart) {
   for (const double seconds : {1.0, 3.0, 8.0, 20.0})
     for (const double direct : {0.0, 1e-7, 1e-6})
@@ -66,6 +87,7 @@ TEST(TimePlan, EveryBudgetLeavesTheMethodItsPart) {
           c.direct = direct, c.light = light;
           TimeWishes w = budget_of(seconds);
           w.rest_paths = rest;
+          w.film_samples = 16;
           const TimePlan p = plan_time(w, c);
           const double left = kTimeAim * seconds - c.passed;
           // The fewest lights are had whatever they cost.

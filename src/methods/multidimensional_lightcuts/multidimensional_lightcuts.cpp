@@ -193,7 +193,7 @@ MethodInfo multidimensional_lightcuts_info() {
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
        "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
        "error-bound or max-pairs",
-       {{matrix::Ability::bounds}}},
+       {.needs = {matrix::Ability::bounds}, .sums_of_pixels = true}},
       kMultidimensionalFields);
 }
 

@@ -1,6 +1,8 @@
 #include "transport/rows/eye_chain.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "transport/rows/receivers.h"
 
@@ -27,11 +29,25 @@ bool roulette(Rgb& weight, int vertices, Rng& rng) {
   return true;
 }
 
+// Which of the six faces of a cube around the origin `n` points at.
+int face(Vec3f n) {
+  const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  const int axis = x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
+  return 2 * axis + (n[axis] < 0 ? 1 : 0);
+}
+
 }  // namespace
+
+void sort_by_shading(std::vector<EyeVertex>::iterator begin, std::vector<EyeVertex>::iterator end) {
+  const auto key = [](const EyeVertex& v) {
+    return std::array<int, 3>{v.closure == Receivers::kLambertian ? 0 : 1, v.depth, face(v.normal)};
+  };
+  std::stable_sort(begin, end, [&](const EyeVertex& a, const EyeVertex& b) { return key(a) < key(b); });
+}
 
 void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure, const Segment& s,
                             std::uint32_t sample, std::vector<EyeVertex>& out,
-                            scatter::ClosurePool& pool) const {
+                            scatter::ClosurePool* pool) const {
   EyeVertex v;
   v.position = hit.point.position;
   v.wo = -s.ray.direction;
@@ -42,11 +58,17 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
   v.id = s.id;
   v.sample = sample;
   v.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
+  v.surface = static_cast<std::uint32_t>(mix64(s.chain ^ static_cast<std::uint64_t>(hit.material)) >> 32);
+  v.distance = s.length + hit.hit.t;
   v.closure = Receivers::kLambertian;
   if (closure.is_lambertian()) {
     v.albedo = closure.diffuse_color();
+  } else if (pool) {
+    v.closure = pool->add(closure, v.normal);
   } else {
-    v.closure = pool.add(closure, v.normal);
+    const Closure seen = scatter::broad_part(closure, 0);
+    v.albedo = scatter::albedo(seen, v.wo);
+    v.roughness = seen.roughness();
   }
   out.push_back(v);
 }
@@ -89,16 +111,28 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
     if (!roulette(weight, s.vertices + 1, rng)) continue;
     const int depth = s.depth + (next[k].kind == LobeKind::delta_pass ? 0 : 1);
     const Vec3f origin = world::World::offset_origin(hit.point.position, hit.point.ng, next[k].wi);
-    pending_.push_back(
-        {{origin, next[k].wi}, weight, depth, splits, s.vertices + 1, mix64(s.id + 1 + numbers[k])});
+    // What is seen straight through something is the place that is seen past it.
+    std::uint64_t chain = s.chain;
+    if (next[k].kind != LobeKind::delta_pass)
+      chain = mix64(
+          chain + (static_cast<std::uint64_t>(hit.material) << 8 | static_cast<std::uint64_t>(next[k].kind)) +
+          1);
+    pending_.push_back({{origin, next[k].wi},
+                        weight,
+                        depth,
+                        splits,
+                        s.vertices + 1,
+                        mix64(s.id + 1 + numbers[k]),
+                        chain,
+                        s.length + hit.hit.t});
   }
 }
 
 Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
-                     std::vector<EyeVertex>& out, scatter::ClosurePool& pool, FirstHit* first) {
+                     std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first) {
   Rgb emission{0};
   pending_.clear();
-  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0, id});
+  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0, id, 0, 0});
   for (bool from_eye = true; !pending_.empty(); from_eye = false) {
     const Segment s = pending_.back();
     pending_.pop_back();

@@ -17,8 +17,17 @@ struct EyeVertex {
   Rgb weight, albedo;
   std::uint64_t id = 0;
   std::uint32_t sample = 0, closure = 0;
+  // What sort of place it is: a hash of its material and of the specular vertices (their materials and what
+  // happened there) on the way from the eye.
+  std::uint32_t surface = 0;
+  float distance = 0;   // from the eye along the chain
+  float roughness = 1;  // of its closure without delta lobes
   std::uint16_t depth = 0;
 };
+
+// Receivers that are shaded alike stand together: same sort of material, directly seen or mirrored, and
+// facing the same way.
+void sort_by_shading(std::vector<EyeVertex>::iterator begin, std::vector<EyeVertex>::iterator end);
 
 struct FirstHit {
   Rgb albedo;
@@ -39,9 +48,10 @@ class EyeChain {
 
   // Appends the receivers of `sample` to `out`, their closures to `pool`; returns the emission that is seen.
   // `id`: of the sample, by which and by their chains receivers have theirs. `first`: what the AOVs want to
-  // know, or nullptr (the albedo of glossy surfaces is not cheap).
+  // know, or nullptr (the albedo of glossy surfaces is not cheap). Without a pool closures are not kept;
+  // instead every vertex gets its directional albedo and roughness.
   Rgb follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
-             std::vector<EyeVertex>& out, scatter::ClosurePool& pool, FirstHit* first);
+             std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first);
 
  private:
   struct Segment {
@@ -51,9 +61,11 @@ class EyeChain {
     int splits;    // vertices so far at which more than one continuation was followed
     int vertices;  // surfaces met so far, straight passes included
     std::uint64_t id;
+    std::uint64_t chain;  // hash of the specular vertices, straight passes excluded
+    float length;         // of the segments before
   };
   void add_receiver(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
-                    std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool& pool) const;
+                    std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool* pool) const;
   void continue_from(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
                      Rng& rng);
 

@@ -1,6 +1,7 @@
 #include "transport/rows/film_order.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -25,6 +26,11 @@ int grid_side(int n) {
 }
 
 float inside(float u) { return std::min(u, 0x1.fffffep-1f); }
+
+float within(int pixel, float u) {
+  const auto p = static_cast<float>(pixel);
+  return std::min(p + u, std::nextafter(p + 1, 0.0f));
+}
 
 }  // namespace
 
@@ -54,6 +60,8 @@ std::vector<Vec2i> FilmOrder::pixels(const Tile& tile) const {
   }
   return result;
 }
+
+Vec2f on_pixel(Vec2i pixel, Vec2f place) { return {within(pixel.x, place.x), within(pixel.y, place.y)}; }
 
 PixelPattern::PixelPattern(int spp, std::uint64_t key) : spp_(spp), across_(grid_side(spp)) {
   lens_order_ = permutation(spp, mix64(key ^ 1));

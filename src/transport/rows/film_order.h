@@ -25,6 +25,10 @@ struct FilmOrder {
   std::vector<Vec2i> pixels(const Tile& tile) const;
 };
 
+// Of a place in a pixel's unit square on the whole film: pixel + place, below pixel + 1 whatever the
+// rounding.
+Vec2f on_pixel(Vec2i pixel, Vec2f place);
+
 // Where the samples of one pixel lie on the film and on the lens. Both are stratified (√spp × √spp if spp is
 // a square, a × b with b ≤ 2a if it is such a product, else one sample in each of spp columns and spp rows),
 // and a permutation keyed by the pixel pairs film strata with lens strata.

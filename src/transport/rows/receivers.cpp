@@ -1,7 +1,6 @@
 #include "transport/rows/receivers.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -10,6 +9,7 @@
 #include "base/random.h"
 #include "transport/rows/eye_chain.h"
 #include "transport/rows/film_order.h"
+#include "transport/rows/film_receivers.h"
 
 namespace lumirank::transport {
 namespace {
@@ -43,28 +43,6 @@ struct Piece {
 // Of the k-th sample of a pixel of the whole film.
 std::uint64_t sample_id(int x, int y, std::uint64_t k) {
   return hash_ids(static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x), Stage::receivers, k);
-}
-
-// pixel + u, kept below pixel + 1 whatever the rounding.
-float within(int pixel, float u) {
-  const auto p = static_cast<float>(pixel);
-  return std::min(p + u, std::nextafter(p + 1, 0.0f));
-}
-
-// Which of the six faces of a cube around the origin `n` points at.
-int face(Vec3f n) {
-  const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
-  const int axis = x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
-  return 2 * axis + (n[axis] < 0 ? 1 : 0);
-}
-
-// Within a tile, receivers that are shaded alike stand together: same sort of material, directly seen or
-// mirrored, and facing the same way.
-void sort_tile(std::vector<EyeVertex>::iterator begin, std::vector<EyeVertex>::iterator end) {
-  const auto key = [](const EyeVertex& v) {
-    return std::array<int, 3>{v.closure == Receivers::kLambertian ? 0 : 1, v.depth, face(v.normal)};
-  };
-  std::stable_sort(begin, end, [&](const EyeVertex& a, const EyeVertex& b) { return key(a) < key(b); });
 }
 
 class ReceiverTracer {
@@ -116,7 +94,7 @@ class ReceiverTracer {
       std::size_t sample = order_.tiles[t].first_pixel * spp();
       for (const Vec2i pixel : order_.pixels(order_.tiles[t]))
         trace_pixel(pixel, sample, chain, piece), sample += spp();
-      sort_tile(piece.vertices.begin() + first_of_tile, piece.vertices.end());
+      sort_by_shading(piece.vertices.begin() + first_of_tile, piece.vertices.end());
     }
     piece.vertices.shrink_to_fit();
   }
@@ -131,12 +109,12 @@ class ReceiverTracer {
       Rng rng(settings_.seed, Stage::receivers, id, static_cast<std::uint64_t>(k));
       const Vec2f film_jitter = rng.next_2d();
       const auto place = pattern.place(k, film_jitter, rng.next_2d());
-      const Vec2f on_film{within(x, place.film.x), within(y, place.film.y)};
+      const Vec2f on_film = on_pixel({x, y}, place.film);
       result_.film[sample] = on_film;
       FirstHit first;
       result_.emission[sample] =
           chain.follow(camera_.ray(on_film, place.lens), sample_id(x, y, static_cast<std::uint64_t>(k)),
-                       static_cast<std::uint32_t>(sample), rng, piece.vertices, piece.pool,
+                       static_cast<std::uint32_t>(sample), rng, piece.vertices, &piece.pool,
                        settings_.first_hits ? &first : nullptr);
       if (!settings_.first_hits) continue;
       result_.first_albedo[sample] = first.albedo;
@@ -160,20 +138,12 @@ class ReceiverTracer {
     if (count >= 0xffffffffull)
       throw InputError("the film has " + std::to_string(count) + " receivers; at most 2^32 - 1 are possible",
                        "lower the samples per pixel or the size of the film");
-    result_.position.resize(count), result_.normal.resize(count), result_.ng.resize(count),
-        result_.wo.resize(count);
-    result_.weight.resize(count), result_.albedo.resize(count);
-    result_.id.resize(count), result_.sample.resize(count), result_.closure.resize(count),
-        result_.depth.resize(count);
+    result_.resize(count, settings_.film_samples > 0);
     parallel_for(pieces_.size(), 1, [&](std::size_t p, std::size_t) {
       std::size_t i = first[p];
-      for (const EyeVertex& v : pieces_[p].vertices) {
-        result_.position[i] = v.position, result_.normal[i] = v.normal, result_.ng[i] = v.ng,
-        result_.wo[i] = v.wo;
-        result_.weight[i] = v.weight, result_.albedo[i] = v.albedo;
-        result_.id[i] = v.id, result_.sample[i] = v.sample, result_.depth[i] = v.depth;
-        result_.closure[i] = v.closure == Receivers::kLambertian ? v.closure : first_closure[p] + v.closure;
-        ++i;
+      for (EyeVertex& v : pieces_[p].vertices) {
+        if (v.closure != Receivers::kLambertian) v.closure += first_closure[p];
+        result_.set(i++, v);
       }
       pieces_[p] = Piece();
     });
@@ -194,7 +164,33 @@ Receivers trace_receivers(const world::World& world, const world::Camera& camera
                           const ReceiverSettings& settings, const Sinks& sinks) {
   if (settings.spp < 1)
     throw InputError("samples per pixel: " + std::to_string(settings.spp) + " is too few", "give at least 1");
-  return ReceiverTracer(world, camera, settings).run(sinks);
+  Receivers receivers = ReceiverTracer(world, camera, settings).run(sinks);
+  if (settings.film_samples == 0) return receivers;
+  const Crop crop = crop_of(camera, settings);
+  return with_film_receivers(world, camera, settings, {crop.x, crop.y}, std::move(receivers), sinks);
+}
+
+void Receivers::resize(std::size_t count, bool with_surface) {
+  position.resize(count), normal.resize(count), ng.resize(count), wo.resize(count);
+  weight.resize(count), albedo.resize(count);
+  id.resize(count), sample.resize(count), closure.resize(count), depth.resize(count);
+  surface.resize(with_surface ? count : 0);
+}
+
+EyeVertex Receivers::get(std::size_t i) const {
+  EyeVertex v;
+  v.position = position[i], v.normal = normal[i], v.ng = ng[i], v.wo = wo[i];
+  v.weight = weight[i], v.albedo = albedo[i];
+  v.id = id[i], v.sample = sample[i], v.closure = closure[i], v.depth = depth[i];
+  if (!surface.empty()) v.surface = surface[i];
+  return v;
+}
+
+void Receivers::set(std::size_t i, const EyeVertex& v) {
+  position[i] = v.position, normal[i] = v.normal, ng[i] = v.ng, wo[i] = v.wo;
+  weight[i] = v.weight, albedo[i] = v.albedo;
+  id[i] = v.id, sample[i] = v.sample, closure[i] = v.closure, depth[i] = v.depth;
+  if (!surface.empty()) surface[i] = v.surface;
 }
 
 scatter::Closure Receivers::closure_at(std::size_t i) const {
@@ -207,19 +203,19 @@ std::uint32_t Receivers::key(std::size_t i) const { return static_cast<std::uint
 std::size_t Receivers::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(position) + bytes(normal) + bytes(ng) + bytes(wo) + bytes(weight) + bytes(id) + bytes(sample) +
-         bytes(depth) + bytes(closure) + bytes(albedo) + closures.memory_bytes() + bytes(film) +
-         bytes(emission) + bytes(first_albedo) + bytes(first_normal) + bytes(first_position) +
+         bytes(depth) + bytes(closure) + bytes(albedo) + bytes(surface) + closures.memory_bytes() +
+         bytes(film) + bytes(emission) + bytes(first_albedo) + bytes(first_normal) + bytes(first_position) +
          bytes(first_distance);
 }
 
 Receivers white_receivers(const Receivers& seen) {
   Receivers out;
-  out.film = seen.film;
-  out.emission.assign(seen.samples(), Rgb(0));
+  out.film.assign(seen.film.begin(), seen.film.begin() + static_cast<std::ptrdiff_t>(seen.grid_samples()));
+  out.emission.assign(out.samples(), Rgb(0));
   out.width = seen.width, out.height = seen.height;
   const auto pixels = static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height);
-  const std::size_t spp = pixels > 0 ? seen.samples() / pixels : 1;
-  for (std::size_t k = 0; k < seen.samples(); ++k) {
+  const std::size_t spp = pixels > 0 ? out.samples() / pixels : 1;
+  for (std::size_t k = 0; k < out.samples(); ++k) {
     if (!std::isfinite(seen.first_distance[k])) continue;
     out.id.push_back(sample_id(static_cast<int>(seen.film[k].x), static_cast<int>(seen.film[k].y), k % spp));
     out.position.push_back(seen.first_position[k]);
@@ -255,8 +251,10 @@ Receivers broad_receivers(Receivers all, float limit) {
     out.weight.push_back(all.weight[i]), out.albedo.push_back(albedo);
     out.id.push_back(all.id[i]), out.sample.push_back(all.sample[i]), out.depth.push_back(all.depth[i]);
     out.closure.push_back(closure);
+    if (!all.surface.empty()) out.surface.push_back(all.surface[i]);
   }
   out.closures.shrink();
+  out.added = all.added;
   out.film = std::move(all.film), out.emission = std::move(all.emission);
   out.first_albedo = std::move(all.first_albedo);
   out.first_normal = std::move(all.first_normal), out.first_ng = std::move(all.first_ng);

@@ -23,7 +23,12 @@ struct ReceiverSettings {
   bool first_hits = true;  // keep the first_… arrays, for AOVs: 40 B and some µs per sample
   // Specular vertices at which both reflection and refraction are followed; at later ones, one is drawn.
   int max_splits = 3;
+  // Film samples per pixel that take their light from receivers (film_samples.h); 0: receivers are the film
+  // samples. Otherwise places that no receiver sees get receivers of their own.
+  int film_samples = 0;
 };
+
+struct EyeVertex;
 
 // Sorted in Morton order of 4×4-pixel tiles, so that neighbors in the image are neighbors in memory.
 // A film sample may have several receivers (glass, smooth coatings) or none (it sees only emitters or the
@@ -42,6 +47,7 @@ struct Receivers {
   std::vector<std::uint16_t> depth;    // path segments from the eye to here (1: seen directly)
   std::vector<std::uint32_t> closure;  // index into closures (not lambertian), or kLambertian
   std::vector<Rgb> albedo;             // of lambertian receivers: diffuse reflectance
+  std::vector<std::uint32_t> surface;  // as in EyeVertex; empty without film samples of their own
   scatter::ClosurePool closures;       // non-delta lobes only
   // The closure of any receiver, lambertian or not, without its delta lobes.
   scatter::Closure closure_at(std::size_t i) const;
@@ -49,7 +55,9 @@ struct Receivers {
   static constexpr std::uint32_t kLambertian = 0xffffffffu;
 
   // Film samples: position on the whole film in pixels, and the emission that is seen directly or through the
-  // chain.
+  // chain. The last ones stand for receivers that were added where film samples found none: they have no
+  // emission, and a picture made of this grid of samples alone leaves them out.
+  std::size_t added = 0;
   std::vector<Vec2f> film;
   std::vector<Rgb> emission;
   // First hit of each sample, for AOVs: zero (distance: infinite) where the background is seen. Empty if not
@@ -64,7 +72,13 @@ struct Receivers {
 
   std::size_t size() const { return position.size(); }
   std::size_t samples() const { return film.size(); }
+  std::size_t grid_samples() const { return film.size() - added; }
   std::size_t memory_bytes() const;
+
+  // All fields of one receiver; closures stay where they are.
+  void resize(std::size_t count, bool with_surface);
+  EyeVertex get(std::size_t i) const;
+  void set(std::size_t i, const EyeVertex& vertex);
 };
 
 // A white diffuse receiver (albedo 1) at every first hit, for the irradiance there: E = π times its radiance.

@@ -1,0 +1,49 @@
+#include "transport/rows/film_samples.h"
+
+#include "base/random.h"
+
+namespace lumirank::transport {
+
+FilmEye::FilmEye(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings)
+    : world_(world),
+      camera_(camera),
+      settings_(settings),
+      chain_(world_, {settings.max_depth, settings.max_splits}),
+      pattern_(1, 0) {}
+
+void FilmEye::begin(Vec2i pixel) {
+  pixel_ = pixel;
+  id_ = static_cast<std::uint64_t>(pixel.y) * static_cast<std::uint64_t>(camera_.width()) +
+        static_cast<std::uint64_t>(pixel.x);
+  pattern_ = PixelPattern(settings_.film_samples, hash_ids(settings_.seed, Stage::film_samples, id_, ~0ull));
+  const Vec2f center{static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f};
+  center_ = camera_.ray(center, {0.5f, 0.5f});
+  beside_ = camera_.ray({center.x + 1, center.y}, {0.5f, 0.5f});
+  off_axis_ = camera_.ray(center, {1, 0.5f});
+}
+
+FilmSample FilmEye::trace(int k, FirstHit* first, scatter::ClosurePool* pool) {
+  const auto number = static_cast<std::uint64_t>(k);
+  Rng rng(settings_.seed, Stage::film_samples, id_, number);
+  const Vec2f film_jitter = rng.next_2d();
+  const auto place = pattern_.place(k, film_jitter, rng.next_2d());
+  FilmSample sample;
+  sample.film = on_pixel(pixel_, place.film);
+  vertices_.clear();
+  const std::uint64_t pixel =
+      static_cast<std::uint64_t>(pixel_.y) << 32 | static_cast<std::uint32_t>(pixel_.x);
+  sample.emission =
+      chain_.follow(camera_.ray(sample.film, place.lens), hash_ids(pixel, Stage::film_samples, number), 0,
+                    rng, vertices_, pool, first);
+  return sample;
+}
+
+float FilmEye::footprint(const EyeVertex& vertex) const {
+  const auto apart = [&](const geometry::Ray& ray) {
+    return length(ray.origin + ray.direction * vertex.distance -
+                  (center_.origin + center_.direction * vertex.distance));
+  };
+  return apart(beside_) + 2 * apart(off_axis_);
+}
+
+}  // namespace lumirank::transport
