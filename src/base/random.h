@@ -28,6 +28,7 @@ enum class Stage : std::uint32_t {
   traced_sharp,
   traced_near,
   gather_samples,
+  shutter,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

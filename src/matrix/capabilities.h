@@ -61,6 +61,9 @@ std::string describe(Capabilities capabilities);
 struct MethodContract {
   Capabilities needs;        // whatever its settings; other features are used where there are any
   bool combination = false;  // one combination of columns for all rows, which splits the picture by light
+  // It knows what to do with rows and columns of several instants (RowFeatures::instant): others would let a
+  // column stand for columns of other instants, of which a row has none.
+  bool instants = false;
 };
 // Of a method that asks for entries alone and gives such a combination.
 inline constexpr MethodContract kCombination{{}, true};
