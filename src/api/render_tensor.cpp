@@ -80,6 +80,8 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   require(settings.method.target_error <= 0, "it aims at no error",
           "leave out --error; more columns have less");
   require(settings.layers.empty(), "it makes no layers", "leave out --aov, or choose another method");
+  require(!settings.view.is_open(), "its frames are of one moment each",
+          "leave out --shutter, or choose another method");
   require(settings.traced.compensate == 0, "it gives back nothing of what clamping takes",
           "leave out --compensate");
   require(settings.traced.rest != RestOfPaths::trace, "it does not trace light that columns cannot carry",

@@ -71,6 +71,7 @@ transport::ReceiverSettings receiver_settings(const Recipe& recipe, const View& 
   rs.crop_width = std::min(film.width, view.crop_x + view.width + reach) - rs.crop_x;
   rs.crop_height = std::min(film.height, view.crop_y + view.height + reach) - rs.crop_y;
   rs.first_hits = recipe.first_hits;
+  rs.instants = recipe.instants, rs.instant = recipe.instant;
   return rs;
 }
 
@@ -123,8 +124,12 @@ const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::st
   } else {
     const auto& by_default = methods::find_method("slice-cuts");
     const auto& global = methods::find_method("row-column-sampling");
+    const auto& over_time = methods::find_method("multidimensional-lightcuts");
     const auto split = std::find_if(settings.layers.begin(), settings.layers.end(), parts_light);
-    if (split != settings.layers.end()) {
+    if (settings.view.is_open()) {
+      info = &over_time;
+      because = "the shutter is open for a while";
+    } else if (split != settings.layers.end()) {
       info = &global;
       because = "the layer '" + *split + "' takes one combination of columns";
     } else if (!takes_settings(by_default, settings.method.parameters) &&

@@ -23,6 +23,9 @@ struct ReceiverSettings {
   bool first_hits = true;  // keep the first_… arrays, for AOVs: 40 B and some µs per sample
   // Specular vertices at which both reflection and refraction are followed; at later ones, one is drawn.
   int max_splits = 3;
+  // Of so many instants of an open shutter, the samples of one: each pixel's samples are spread evenly over
+  // the instants, from a start of its own, so that every instant has 1/instants of them on average.
+  int instants = 1, instant = 0;
 };
 
 // Sorted in Morton order of 4×4-pixel tiles, so that neighbors in the image are neighbors in memory.
