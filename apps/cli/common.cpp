@@ -84,7 +84,7 @@ void add_moment_options(CLI::App& command, CommonOptions& common) {
                      "SECONDS: the moment of a scene that moves (default: as the file stands)");
   add_count(command, "--frame", common.frame, 0, 10'000'000, "the moment by its number, from 0 at second 0");
   add_number(command, "--fps", common.fps, {0, 1000, true, "frames per second"},
-             "frames per second of --frame (default 24)");
+             "frames per second of --frame and --shutter (default 24)");
   command.add_option("--clip", common.clip,
                      "glTF: the animation to show, by name or number; '*': all (default: the first)");
 }

@@ -50,7 +50,8 @@ void add_reference(CLI::App& app, Action& action) {
   add_moment_options(*command, options->common);
   add_output_options(*command, options->outputs);
   add_setting_options(*command, options->common,
-                      {"size", "max-depth", "only", "seed", "threads", "camera", "crop", "aov"});
+                      {"size", "max-depth", "only", "seed", "threads", "camera", "crop", "aov", "shutter",
+                       "shutter-samples"});
   command->get_option("--aov")->description(
       "direct, indirect or emission: a layer beside the picture; repeatable");
   add_count(*command, "--spp", options->how.spp, 1, 1 << 20,

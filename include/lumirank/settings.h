@@ -21,7 +21,7 @@ struct LoadOptions {
   // The moment, in seconds, of a scene that moves; before its first key as at it, after its last one as at
   // that. Unset: glTF's nodes as they stand, the first keys of a Mitsuba scene, pbrt's start of the shutter.
   std::optional<double> time = {};
-  double frames_per_second = 24;  // of meshes in numbered files (cloth.####.ply)
+  double frames_per_second = 24;  // of meshes in numbered files (cloth.####.ply), and of the shutter
   std::string clip = {};  // glTF: the animation, by name or number; "": the first; "*": all of them at once
 };
 
@@ -57,7 +57,13 @@ struct ViewSettings {
   std::optional<int> film_samples = {};
   int max_depth = 0;  // bounces as Mitsuba counts them; 0: as the scene says; -1: unlimited
   LightPart only = LightPart::all;
+  // Motion blur: the shutter opens and closes so many frames after the scene's moment; equal: one moment. The
+  // picture is the mean of that many instants between, evenly spread; unset: 16, a reference 64.
+  double shutter_open = 0, shutter_close = 0;
+  std::optional<int> shutter_samples = {};
 
+  bool is_open() const { return shutter_close > shutter_open; }
+  static constexpr int kDefaultInstants = 16, kReferenceInstants = 64;
   static constexpr int kDefaultSpp = 4, kDefaultFilmSamples = 16;
   int spp_or_default() const { return spp.value_or(kDefaultSpp); }
   int film_samples_or_default() const {

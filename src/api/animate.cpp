@@ -174,6 +174,10 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
           "tensor clustering leaves out light that columns cannot carry (caustics, light through glass); "
           "--rest skip says so");
   }
+  if (settings.render.view.is_open() && scene.impl().options.frames_per_second != settings.frames_per_second)
+    throw InputError("the shutter counts in other frames than the shot: the scene was read at " +
+                         Json(scene.impl().options.frames_per_second).dump() + " per second",
+                     "read it with the same LoadOptions::frames_per_second");
   if (settings.endings.empty()) throw InputError("the frames have no format", "give --format exr,png");
   const Range frames = frames_of(scene.impl().desc.motion, settings);
   Shot shot(scene, settings, folder);

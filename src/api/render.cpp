@@ -3,6 +3,7 @@
 
 #include "api/build_world.h"
 #include "api/scene.h"
+#include "api/shutter.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -11,6 +12,7 @@
 #include "pathtrace/reference.h"
 #include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
+#include "pipeline/exposure_run.h"
 #include "pipeline/layers.h"
 #include "pipeline/memory.h"
 #include "pipeline/preview_throttle.h"
@@ -28,6 +30,10 @@ double pixels_of(const pipeline::View& view) {
 double memory_of(const pipeline::View& view, const RenderSettings& settings, std::size_t lights) {
   return pipeline::memory_of_picture(pixels_of(view) * settings.view.spp_or_default(),
                                      static_cast<double>(lights), !settings.layers.empty());
+}
+
+std::size_t reference_instants(const RenderSettings& settings) {
+  return static_cast<std::size_t>(settings.view.shutter_samples.value_or(ViewSettings::kReferenceInstants));
 }
 
 void within_memory_and_threads(const RenderSettings& settings, const std::function<void()>& work) {
@@ -57,6 +63,15 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     pipeline::require_countable(pixels_of(task.view) * settings.view.spp_or_default());
     const double memory = memory_of(task.view, settings, pipeline::lights_for(*task.info, settings));
     pipeline::require_memory(memory, pipeline::kSmallerPicture);
+    if (settings.view.is_open()) {
+      pipeline::check_exposure(*task.info, settings);
+      const auto count = settings.view.shutter_samples.value_or(ViewSettings::kDefaultInstants);
+      const auto instants = api::open_shutter(scene, settings, static_cast<std::size_t>(count), sinks);
+      task.build_seconds = task.timer.seconds();
+      pipeline::require_memory(memory, pipeline::kSmallerPicture);
+      result = pipeline::run_exposure(instants, std::move(task), settings, sinks, on_preview);
+      return;
+    }
     task.world = api::build_world(scene, sinks);
     task.build_seconds = task.timer.seconds();
     if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty())
@@ -81,12 +96,17 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     const Timer timer;
     const world::View view = pipeline::make_view(scene.impl().desc, settings.view);
     pipeline::require_memory(pipeline::memory_of_reference(pixels_of(view)), pipeline::kSmallerPicture);
-    const auto world = api::build_world(scene, sinks);
+    const bool open = settings.view.is_open();
+    const std::vector<pathtrace::Instant> instants =
+        open ? api::open_shutter(scene, settings, reference_instants(settings), sinks)
+             : std::vector<pathtrace::Instant>{{api::build_world(scene, sinks), view}};
     const double build_seconds = timer.seconds();
-    if (const std::string text = pipeline::empty_view(*world, view); !text.empty()) sinks.warn(text);
+    if (!open)
+      if (const std::string text = pipeline::empty_view(*instants.front().world, view); !text.empty())
+        sinks.warn(text);
     pipeline::PreviewThrottle throttle(on_preview);
     const auto traced = pathtrace::path_trace(
-        *world, view, pipeline::reference_options(settings.view.only, settings.seed, how.paths),
+        instants, pipeline::reference_options(settings.view.only, settings.seed, how.paths),
         {how.spp, how.time, how.error}, sinks, [&](const image::Image& image) {
           if (throttle.due()) throttle.show(pipeline::to_picture(image));
         });
@@ -104,6 +124,7 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     report.seed = settings.seed;
     report.notes["paths"] = to_text(how.paths);
     report.numbers = {{"spp", traced.spp}, {"error.relative_l1", traced.error}};
+    if (open) report.numbers["shutter.instants"] = static_cast<double>(instants.size());
     report.seconds = {{"total", timer.seconds()}, {"build", build_seconds}};
     report.memory.peak = pipeline::peak_memory_bytes();
     report.settings = settings;

@@ -91,6 +91,8 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   require(settings.time <= 0, "it keeps no time budget",
           "leave out --time; --set columns=… decides its time");
   require(settings.layers.empty(), "it makes no layers", "leave out --aov, or choose another method");
+  require(!settings.view.is_open(), "its frames are of one moment each",
+          "leave out --shutter, or choose another method");
   require(settings.traced.compensate == 0, "it gives back nothing of what clamping takes",
           "leave out --compensate");
   require(settings.traced.rest != RestOfPaths::trace, "it does not trace light that columns cannot carry",

@@ -61,6 +61,8 @@ std::vector<std::string> Prepared::lights() const {
 Prepared prepare(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                  const Prepared& previous) {
   validate(settings);
+  if (settings.view.is_open())
+    throw InputError("what is prepared is of one moment", "leave out the shutter, or use render()");
   auto impl = std::make_shared<Prepared::Impl>();
   impl->scene = scene.share();
   impl->settings = settings;

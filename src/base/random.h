@@ -29,6 +29,7 @@ enum class Stage : std::uint32_t {
   traced_near,
   gather_samples,
   film_samples,
+  shutter,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

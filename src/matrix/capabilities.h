@@ -63,6 +63,9 @@ struct MethodContract {
   bool combination = false;  // one combination of columns for all rows, which splits the picture by light
   // Sums are right for all rows of a pixel together, not for each of them: they cannot be divided anew.
   bool sums_of_pixels = false;
+  // It knows what to do with rows and columns of several instants (RowFeatures::instant): others would let a
+  // column stand for columns of other instants, of which a row has none.
+  bool instants = false;
 };
 // Of a method that asks for entries alone and gives such a combination.
 inline constexpr MethodContract kCombination{{}, true};

@@ -143,11 +143,11 @@ class MaxEntries final : public RowBounds {
 std::unique_ptr<RowBounds> DenseMatrix::row_bounds() const { return std::make_unique<MaxEntries>(); }
 
 RowFeatures DenseMatrix::row_features() const {
-  return {pixel, row_position, row_normal, row_weight, row_id, row_albedo};
+  return {pixel, row_position, row_normal, row_weight, row_id, row_albedo, row_instant};
 }
 
 ColumnFeatures DenseMatrix::column_features() const {
-  return {column_position, column_normal, power, group, indirect, half, emitted, column_id};
+  return {column_position, column_normal, power, group, indirect, half, emitted, column_id, column_instant};
 }
 
 std::vector<Rgb> DenseMatrix::exact_sums() const {

@@ -50,6 +50,7 @@ class DenseMatrix : public LightingMatrix {
   std::vector<Rgb> emitted;
   std::vector<Rgb> row_albedo;
   std::vector<std::uint64_t> row_id, column_id;
+  std::vector<std::uint16_t> row_instant, column_instant;
 
  private:
   // Adds an entry to what a call cost.

@@ -35,6 +35,9 @@ struct RowFeatures {
   // are keyed by it survive another order, and other rows beside it.
   std::span<const std::uint64_t> id{};
   std::span<const Rgb> albedo{};  // reflectance towards the eye, in [0, 1]
+  // Moment that it belongs to, by number, where a picture is of several; empty: all of one. Entries of rows
+  // and columns of different instants are 0 (block_diagonal.h).
+  std::span<const std::uint16_t> instant{};
 };
 
 // Plain numbers about columns. Arrays of length columns(); may be empty if unknown.
@@ -50,7 +53,8 @@ struct ColumnFeatures {
   std::span<const std::uint8_t> half;
   std::span<const Rgb>
       emitted;  // what `power` is a scalar of: entries of like columns are in this proportion
-  std::span<const std::uint64_t> id{};  // as of rows
+  std::span<const std::uint64_t> id{};       // as of rows
+  std::span<const std::uint16_t> instant{};  // as of rows
 };
 
 // The key of a row's or a column's random numbers: its id, or its index where ids are unknown.

@@ -62,26 +62,51 @@ double stated_error(const world::View& view, const PathFilmHalf& a, const PathFi
   return total > 0 ? difference / total : 0.0;
 }
 
+// Van der Corput's sequence.
+double reversed_bits(std::uint32_t k) {
+  double value = 0;
+  for (double digit = 0.5; k > 0; k >>= 1, digit /= 2) value += static_cast<double>(k & 1) * digit;
+  return value;
+}
+
 }  // namespace
 
 struct PathFilm::Impl {
+  // What traces one instant.
+  struct Tracing {
+    PathTracer tracer;
+    world::Camera camera;
+  };
   world::View view;
   ReferenceOptions options;
-  PathTracer tracer;
-  world::Camera camera;
+  std::vector<Instant> instants;  // keep their worlds
+  std::vector<Tracing> tracing;
   film::FilterSampler filter;
   std::size_t pixels;
   PathFilmHalf halves[2];
   ReferenceResult result;
 
-  Impl(const world::World& world, const world::View& v, const ReferenceOptions& o)
+  Impl(const world::View& v, const ReferenceOptions& o)
       : view(v),
         options(o),
-        tracer(world, {o.seed, v.max_depth, o.paths, o.carried}),
-        camera(v.sensor, world.units()),
         filter(world::make_filter(v.sensor.film.filter)),
         pixels(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height)),
         halves{PathFilmHalf(pixels), PathFilmHalf(pixels)} {}
+
+  void add_instant(const world::World& world, const world::View& v) {
+    const PathSettings settings{options.seed, v.max_depth, options.paths, options.carried};
+    tracing.push_back({PathTracer(world, settings), world::Camera(v.sensor, world.units())});
+  }
+
+  const Tracing& at(std::uint64_t pixel, int sample) const {
+    if (tracing.size() == 1) return tracing.front();
+    const auto half = static_cast<std::uint64_t>(sample & 1);
+    const double place = reversed_bits(static_cast<std::uint32_t>(sample) >> 1) +
+                         unit_double(hash_ids(options.seed, Stage::shutter, ~pixel, half));
+    const auto count = static_cast<double>(tracing.size());
+    return tracing[std::min(static_cast<std::size_t>((place - std::floor(place)) * count),
+                            tracing.size() - 1)];
+  }
 
   void trace_pixel(std::size_t p, int begin, int end) {
     const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
@@ -90,12 +115,13 @@ struct PathFilm::Impl {
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
         static_cast<std::uint64_t>(x);
     for (int s = begin; s < end; ++s) {
+      const Tracing& now = this->at(id, s);
       SampleStream random(options.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
       const auto at = filter.sample(random.next_2d());
       const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
                        static_cast<float>(y) + 0.5f + at.offset.y};
       const Radiance radiance =
-          tracer.trace(camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
+          now.tracer.trace(now.camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
       if (!is_finite(radiance.total()))
         throw InternalError("the reference met a value that is not finite; replay pixel " +
                             std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
@@ -108,7 +134,14 @@ struct PathFilm::Impl {
 };
 
 PathFilm::PathFilm(const world::World& world, const world::View& view, const ReferenceOptions& options)
-    : impl_(std::make_unique<Impl>(world, view, options)) {}
+    : impl_(std::make_unique<Impl>(view, options)) {
+  impl_->add_instant(world, view);
+}
+PathFilm::PathFilm(std::vector<Instant> instants, const ReferenceOptions& options)
+    : impl_(std::make_unique<Impl>(instants.at(0).view, options)) {
+  impl_->instants = std::move(instants);
+  for (const Instant& instant : impl_->instants) impl_->add_instant(*instant.world, instant.view);
+}
 PathFilm::~PathFilm() = default;
 const ReferenceResult& PathFilm::result() const { return impl_->result; }
 
@@ -139,10 +172,10 @@ bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(doubl
   return true;
 }
 
-ReferenceResult path_trace(const world::World& world, const world::View& view,
-                           const ReferenceOptions& options, const ReferenceEnd& end, const Sinks& sinks,
-                           const std::function<void(const image::Image&)>& on_pass) {
-  PathFilm film(world, view, options);
+namespace {
+
+ReferenceResult trace_until(PathFilm& film, const ReferenceEnd& end, const Sinks& sinks,
+                            const std::function<void(const image::Image&)>& on_pass) {
   const int limit = end.spp > 0 ? end.spp : (end.time > 0 || end.error > 0 ? 1 << 20 : 64);
   const Timer timer;
   int done = 0;
@@ -168,6 +201,22 @@ ReferenceResult path_trace(const world::World& world, const world::View& view,
     }
   }
   return film.result();
+}
+
+}  // namespace
+
+ReferenceResult path_trace(const world::World& world, const world::View& view,
+                           const ReferenceOptions& options, const ReferenceEnd& end, const Sinks& sinks,
+                           const std::function<void(const image::Image&)>& on_pass) {
+  PathFilm film(world, view, options);
+  return trace_until(film, end, sinks, on_pass);
+}
+
+ReferenceResult path_trace(std::vector<Instant> instants, const ReferenceOptions& options,
+                           const ReferenceEnd& end, const Sinks& sinks,
+                           const std::function<void(const image::Image&)>& on_pass) {
+  PathFilm film(std::move(instants), options);
+  return trace_until(film, end, sinks, on_pass);
 }
 
 }  // namespace lumirank::pathtrace

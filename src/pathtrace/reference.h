@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "base/sinks.h"
 #include "image/image.h"
@@ -30,10 +31,19 @@ struct ReferenceOptions {
   CarriedByColumns carried;
 };
 
+// The scene at an instant of an open shutter, and the view of it: windows are of one size and place.
+struct Instant {
+  std::shared_ptr<const world::World> world;
+  world::View view;
+};
+
 // Paths are added in passes; the bits depend on their number alone.
 class PathFilm {
  public:
   PathFilm(const world::World& world, const world::View& view, const ReferenceOptions& options);
+  // Over several instants, each of which counts as much: the paths of a pixel are spread evenly over them,
+  // from a start of its own, those of either half by themselves.
+  PathFilm(std::vector<Instant> instants, const ReferenceOptions& options);
   ~PathFilm();
 
   // So many more paths per pixel. `progress` (may be empty) gets the finished fraction of the pass. False if
@@ -56,6 +66,9 @@ struct ReferenceEnd {
 // `on_pass` (may be empty) gets the image so far.
 ReferenceResult path_trace(const world::World& world, const world::View& view,
                            const ReferenceOptions& options, const ReferenceEnd& end, const Sinks& sinks,
+                           const std::function<void(const image::Image&)>& on_pass = {});
+ReferenceResult path_trace(std::vector<Instant> instants, const ReferenceOptions& options,
+                           const ReferenceEnd& end, const Sinks& sinks,
                            const std::function<void(const image::Image&)>& on_pass = {});
 
 }  // namespace lumirank::pathtrace

@@ -43,8 +43,9 @@ Recipe make_recipe(const RenderSettings& settings, const View& view) {
   Recipe recipe;
   recipe.seed = recipe.light_seed = settings.seed;
   recipe.spp = settings.view.spp_or_default();
-  // Sums that are right for a pixel's receivers together say nothing of one surface of it.
-  if (!chosen_method(settings).contract.sums_of_pixels)
+  // Sums that are right for a pixel's receivers together say nothing of one surface of it; with an open
+  // shutter a pixel's receivers are of several moments.
+  if (!chosen_method(settings).contract.sums_of_pixels && !settings.view.is_open())
     recipe.film_samples = settings.view.film_samples_or_default();
   recipe.max_depth = view.max_depth;
   recipe.only = settings.view.only;
@@ -75,6 +76,7 @@ transport::ReceiverSettings receiver_settings(const Recipe& recipe, const View& 
   rs.crop_width = std::min(film.width, view.crop_x + view.width + reach) - rs.crop_x;
   rs.crop_height = std::min(film.height, view.crop_y + view.height + reach) - rs.crop_y;
   rs.first_hits = recipe.first_hits;
+  rs.instants = recipe.instants, rs.instant = recipe.instant;
   return rs;
 }
 
@@ -128,8 +130,12 @@ const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::st
   } else {
     const auto& by_default = methods::find_method("slice-cuts");
     const auto& global = methods::find_method("row-column-sampling");
+    const auto& over_time = methods::find_method("multidimensional-lightcuts");
     const auto split = std::find_if(settings.layers.begin(), settings.layers.end(), parts_light);
-    if (split != settings.layers.end()) {
+    if (settings.view.is_open()) {
+      info = &over_time;
+      because = "the shutter is open for a while";
+    } else if (split != settings.layers.end()) {
       info = &global;
       because = "the layer '" + *split + "' takes one combination of columns";
     } else if (!takes_settings(by_default, settings.method.parameters) &&

@@ -42,6 +42,7 @@ struct Recipe {
   bool group_by_emitter = false;  // clusters may not cross emitters, for layers by light
   bool row_albedo = false;        // rows know their albedo, for methods that carry light between frames
   bool compensated = false;       // what clamping takes is given back by tracing
+  int instants = 1, instant = 0;  // of an open shutter: rows are those of one instant of so many
 
   friend bool operator==(const Recipe&, const Recipe&) = default;
 };
@@ -54,7 +55,8 @@ transport::SceneMatrixSettings matrix_settings(const Recipe& recipe);
 
 // The method that settings name and how many lights it wants. "auto" is slice-cuts; where layers part the
 // light by its source, which takes one combination of columns for all receivers, or where --set names
-// parameters of row-column-sampling, it is that. `why` (may be nullptr) says so.
+// parameters of row-column-sampling, it is that; with an open shutter it is multidimensional-lightcuts. `why`
+// (may be nullptr) says so.
 const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::string* why = nullptr);
 std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& settings);
 

@@ -73,6 +73,9 @@ void validate(const RenderSettings& settings) {
     if (settings.view.only == LightPart::direct)
       refuse("is for indirect light", "leave out 'only', or 'compensate'");
   }
+  if (settings.view.is_open() && settings.view.film_samples.value_or(0) > 0)
+    throw InputError("film samples are of one moment, and the shutter is open",
+                     "leave out 'film-samples', or 'shutter'");
   if (settings.method.name != "auto") {
     const methods::MethodInfo& method = methods::find_method(settings.method.name);
     method.make(settings.method.parameters);

@@ -1,5 +1,6 @@
 // What is shown and written: some of these settings have a syntax of their own.
 #include <algorithm>
+#include <cmath>
 
 #include "settings/table.h"
 
@@ -51,6 +52,33 @@ Row film_samples_row() {
                    At<&RenderSettings::view, &ViewSettings::film_samples>{}, 0, 4096);
   row.get = [](const RenderSettings& s) { return std::to_string(s.view.film_samples_or_default()); };
   return row;
+}
+
+Row shutter_row() {
+  return {
+      {"shutter", "text", "", "CLOSE or OPEN:CLOSE, each -1000 … 1000", "frames",
+       "motion blur: the shutter is open from OPEN (0 if not given) to CLOSE frames after the moment; 0.5 is "
+       "a shutter of 180°"},
+      [](RenderSettings& s, const std::string& text) {
+        s.view.shutter_open = s.view.shutter_close = 0;
+        if (text.empty()) return;
+        const auto parts = split_settings(text, ':');
+        if (parts.size() > 2)
+          throw InputError("'" + text + "' is not a shutter", "write it as 0.5, or as -0.25:0.25");
+        const double close = parse_number<double>("shutter", parts.back()),
+                     open = parts.size() == 2 ? parse_number<double>("shutter", parts[0]) : 0;
+        if (std::max(std::abs(open), std::abs(close)) > 1000)
+          throw InputError("the shutter " + text + " is out of range", "it counts in frames, -1000 … 1000");
+        if (close < open)
+          throw InputError("the shutter " + text + " closes before it opens",
+                           "give OPEN:CLOSE with the earlier one first");
+        s.view.shutter_open = open, s.view.shutter_close = close;
+      },
+      [](const RenderSettings& s) {
+        return s.view.shutter_open == s.view.shutter_close
+                   ? std::string{}
+                   : format_number(s.view.shutter_open) + ":" + format_number(s.view.shutter_close);
+      }};
 }
 
 bool known_aov(const std::string& name) {
@@ -113,6 +141,10 @@ void add_output_rows(std::vector<Row>& t) {
                          At<&S::view, &ViewSettings::camera>{}));
   t.push_back(crop_row());
   t.push_back(aov_row());
+  t.push_back(shutter_row());
+  t.push_back(number({"shutter-samples", "", "16", "1 … 1024", "instants",
+                      "instants of which a picture with --shutter is made; a reference takes 64 by default"},
+                     At<&S::view, &ViewSettings::shutter_samples>{}, 1, 1024));
 }
 
 }  // namespace lumirank::settings

@@ -61,6 +61,7 @@ class World::Builder {
   Builder(const sd::SceneDesc& desc, const BuildOptions& options, std::vector<sd::Warning>& warnings,
           const Sinks& sinks)
       : desc_(desc),
+        given_units_(options.units),
         sinks_(sinks),
         notes_(warnings, options.strict),
         textures_(desc),
@@ -120,7 +121,7 @@ class World::Builder {
 
   void assemble_geometry() {
     w_.info.meshes = store_.size() - store_.left_out(), w_.info.meshes_left_out = store_.left_out();
-    w_.units = units_for(placed_, store_);
+    w_.units = given_units_ ? *given_units_ : units_for(placed_, store_);
     geometry_ = assemble(std::move(placed_), store_, w_.units, notes_);
     if (geometry_.placements.empty())
       throw InputError(whole_scene(),
@@ -215,6 +216,7 @@ class World::Builder {
   }
 
   const sd::SceneDesc& desc_;
+  std::optional<Units> given_units_;
   const Sinks& sinks_;
   Notes notes_;
   MeshStore store_;

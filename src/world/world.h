@@ -20,6 +20,8 @@ namespace lumirank::world {
 
 struct BuildOptions {
   bool strict = false;  // warnings become errors
+  // Instead of its own: those of another moment of the same scene, so that places can be compared.
+  std::optional<Units> units = {};
 };
 
 struct WorldInfo {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/pbrt_scene.h"
 #include "scenedesc/schema/frame_files.h"
 #include "scenedesc/schema/keyed_transform.h"
@@ -127,6 +128,51 @@ TEST(FrameFiles, MeshesOfASceneMoveByThem) {
   options.frames_per_second = 10;
   EXPECT_EQ(file_at(options), "m_01.ply");
   EXPECT_EQ(file_at({}), "m_00.ply");
+}
+
+// A square of `vertices` corners around its middle.
+std::string fan(std::size_t vertices, bool ply) {
+  std::string text = ply ? "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices) +
+                               "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                               std::to_string(vertices - 2) +
+                               "\nproperty list uchar int vertex_indices\nend_header\n"
+                         : "";
+  for (std::size_t k = 0; k < vertices; ++k)
+    text += (ply ? "" : "v ") + std::to_string(std::cos(static_cast<double>(k))) + " " +
+            std::to_string(std::sin(static_cast<double>(k))) + " 0\n";
+  for (std::size_t k = 2; k < vertices; ++k)
+    text += ply ? "3 0 " + std::to_string(k - 1) + " " + std::to_string(k) + "\n"
+                : "f 1 " + std::to_string(k) + " " + std::to_string(k + 1) + "\n";
+  return text;
+}
+
+TEST(FrameFiles, AMeshThatBecomesAnotherIsRefusedWithBothFiles) {
+  for (const bool ply : {true, false}) {
+    const test::TemporaryFolder folder;
+    const std::string ending = ply ? ".ply" : ".obj";
+    std::ofstream(folder / ("m_00" + ending)) << fan(4, ply);
+    std::ofstream(folder / ("m_01" + ending)) << fan(4, ply) << (ply ? "" : "# v 1 2 3\nvt 0 0\n");
+    std::ofstream(folder / ("m_02" + ending)) << fan(5, ply);
+    MeshFileDesc file;
+    file.format = ply ? MeshFormat::ply : MeshFormat::obj;
+    file.sequence_start = folder / ("m_00" + ending);
+    for (const char* same : {"m_00", "m_01"}) {
+      file.filename = folder / (same + ending);
+      EXPECT_EQ(read_mesh(file).positions.size(), 4u) << same;
+    }
+    file.filename = folder / ("m_02" + ending);
+    try {
+      read_mesh(file);
+      FAIL() << "read as if it were the same mesh";
+    } catch (const InputError& error) {
+      const std::string said = error.what();
+      for (const std::string& part : {"m_00" + ending, "m_02" + ending, std::string("5 vertices and 3 faces"),
+                                      std::string("4 vertices and 2 faces")})
+        EXPECT_NE(said.find(part), std::string::npos) << part << " in: " << said;
+    }
+    file.sequence_start.clear();  // by itself it is sound
+    EXPECT_EQ(read_mesh(file).positions.size(), 5u);
+  }
 }
 
 }  // namespace

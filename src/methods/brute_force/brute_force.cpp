@@ -30,7 +30,7 @@ MethodInfo brute_force_info() {
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
           "",
-          matrix::kCombination};
+          {{}, true, true}};
 }
 
 }  // namespace lumirank::methods

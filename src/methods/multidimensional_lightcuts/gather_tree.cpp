@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "methods/multidimensional_lightcuts/race.h"
 
 namespace lumirank::methods {
 
@@ -55,6 +56,8 @@ float GatherTree::extent(const matrix::ColumnSet& set) const {
 void GatherTree::build(std::span<const Index> rows) {
   order_.assign(rows.begin(), rows.end());
   nodes_.clear();
+  parts_.clear();
+  key_ = matrix::id_of(features_.id, rows.front());
   nodes_.push_back({0, 0, static_cast<std::uint32_t>(rows.size()), 0, 0, 0, false});
   for (Node node = 0; node < nodes_.size(); ++node) {
     measure(node);
@@ -74,15 +77,38 @@ void GatherTree::build(std::span<const Index> rows) {
     nodes_.push_back({0, n.begin, middle, 0, 0, 0, false});
     nodes_.push_back({0, middle, n.end, 0, 0, 0, false});
   }
+  if (!features_.instant.empty())
+    for (Node node = 0; node < nodes_.size(); ++node) part_by_instants(node);
   // A tournament from the leaves up.
   for (Node node = static_cast<Node>(nodes_.size()); node-- > 0;) {
     if (is_leaf(node)) continue;
-    const double u =
-        unit_double(hash_ids(seed_, Stage::representatives, matrix::id_of(features_.id, rows.front()), node));
+    const double u = unit_double(hash_ids(seed_, Stage::representatives, key_, node));
     const Node l = left(node);
     const bool first = u * static_cast<double>(weight(node)) < static_cast<double>(weight(l));
     nodes_[node].representative = nodes_[first ? l : l + 1].representative;
   }
+}
+
+void GatherTree::part_by_instants(Node node) {
+  Inner& n = nodes_[node];
+  n.first_part = static_cast<std::uint32_t>(parts_.size());
+  for (std::uint32_t k = n.begin; k < n.end; ++k) {
+    const Index row = order_[k];
+    const std::uint16_t instant = features_.instant[row];
+    const auto begin = parts_.begin() + n.first_part;
+    auto at = std::find_if(begin, parts_.end(), [&](const Part& p) { return p.instant >= instant; });
+    const float weight = features_.weight.empty() ? 1.0f : features_.weight[row];
+    const float turn =
+        race_turn(hash_ids(seed_, Stage::representatives, matrix::id_of(features_.id, row), 1), weight);
+    if (at == parts_.end() || at->instant != instant) {
+      parts_.insert(at, {instant, 1, k, weight, turn});
+      continue;
+    }
+    ++at->rows;
+    at->weight += weight;
+    if (turn < at->turn) at->turn = turn, at->representative = k;
+  }
+  n.parts = static_cast<std::uint32_t>(parts_.size()) - n.first_part;
 }
 
 const matrix::RowBounds& GatherTree::bounds(Node node) {

@@ -41,14 +41,31 @@ class GatherTree {
   // Of all its rows.
   const matrix::RowBounds& bounds(Node node);
 
+  // Its rows by their instants, in the order of those; empty where rows have none. A part's representative is
+  // drawn in proportion to weight, and is its child's where that has it.
+  struct Part {
+    std::uint16_t instant = 0;
+    std::uint32_t rows = 0, representative = 0;  // a place
+    float weight = 0;
+    float turn = 0;  // of the representative in the draw: the least of all
+  };
+  std::span<const Part> parts(Node node) const {
+    return std::span(parts_).subspan(nodes_[node].first_part, nodes_[node].parts);
+  }
+  std::uint16_t instant(std::uint32_t place) const { return features_.instant[order_[place]]; }
+  // Whose random numbers the pixel uses.
+  std::uint64_t key() const { return key_; }
+
  private:
   struct Inner {
     Node left = 0;  // right follows; 0: a leaf
     std::uint32_t begin = 0, end = 0, representative = 0;
     float weight = 0, extent = 0;
     bool bounds_set = false;
+    std::uint32_t first_part = 0, parts = 0;
   };
   void measure(Node node);
+  void part_by_instants(Node node);
   // The longest of the six sides, places before normals.
   int longest_side(const Inner& n) const;
   float coordinate(matrix::Index row, int axis) const;
@@ -59,6 +76,8 @@ class GatherTree {
   float scale_;
   std::vector<matrix::Index> order_;
   std::vector<Inner> nodes_;
+  std::vector<Part> parts_;
+  std::uint64_t key_ = 0;
   std::vector<std::unique_ptr<matrix::RowBounds>> bounds_;
 };
 

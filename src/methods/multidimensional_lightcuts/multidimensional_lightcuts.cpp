@@ -1,6 +1,7 @@
 // Multidimensional lightcuts (Walter et al. 2006): the receivers of a pixel are a tree as the lights are, and
 // a cut goes through pairs of their nodes, until no pair's bound exceeds 2 % of the pixel's sum. Where the
-// receivers of a pixel are alike, one of them answers for all.
+// receivers of a pixel are alike, one of them answers for all. Rows and columns may belong to the instants of
+// an open shutter: nodes then hold several, and have a representative for each (pair_cut.h).
 //
 // Our deviations: bounds and sums are compared by luminance. A pair is refined on the side whose node is
 // larger in place and direction. A pixel's receivers weigh what they weigh in the picture; the pixel's filter
@@ -8,6 +9,7 @@
 #include "methods/multidimensional_lightcuts/multidimensional_lightcuts.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/timer.h"
 #include "matrix/entry_reader.h"
@@ -53,12 +55,12 @@ float extent_scale(const LightTree& lights) {
 
 class PixelWorkspace {
  public:
-  PixelWorkspace(const matrix::LightingMatrix& matrix, const LightTree& lights, std::uint64_t seed,
-                 const PairLimits& limits)
+  PixelWorkspace(const matrix::LightingMatrix& matrix, const LightTree& lights, const LightInstants* instants,
+                 std::uint64_t seed, const PairLimits& limits)
       : reader_(matrix.reader()) {
     const float scale = extent_scale(lights);
     for (std::size_t k = 0; k < kPixelsTogether; ++k)
-      cuts_.emplace_back(lights, GatherTree(matrix, seed, scale), limits);
+      cuts_.emplace_back(lights, instants, GatherTree(matrix, seed, scale), limits);
   }
 
   void limit(const PairLimits& limits) {
@@ -154,11 +156,13 @@ class MultidimensionalLightcuts final : public Method {
     RowsForError rows(matrix, options, timer);
     const double before_tree = timer.seconds();
     const LightTree lights(matrix, options.seed);
+    std::optional<LightInstants> instants;
+    if (!matrix.column_features().instant.empty()) instants.emplace(lights, matrix);
     estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
     const RowGroups pixels = RowGroups::pixels(matrix);
     {
       PixelPool pool([&] {
-        return std::make_unique<PixelWorkspace>(matrix, lights, options.seed,
+        return std::make_unique<PixelWorkspace>(matrix, lights, instants ? &*instants : nullptr, options.seed,
                                                 PairLimits{settings_.error_bound, settings_.max_pairs});
       });
       // A coarser or a finer cut is no other draw of the same, so turns replace each other.
@@ -193,7 +197,7 @@ MethodInfo multidimensional_lightcuts_info() {
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
        "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
        "error-bound or max-pairs",
-       {.needs = {matrix::Ability::bounds}, .sums_of_pixels = true}},
+       {.needs = {matrix::Ability::bounds}, .sums_of_pixels = true, .instants = true}},
       kMultidimensionalFields);
 }
 

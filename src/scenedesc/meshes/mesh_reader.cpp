@@ -2,12 +2,14 @@
 #include "scenedesc/meshes/mesh_reader.h"
 #include "base/error.h"
 #include "scenedesc/meshes/mesh_parts.h"
+#include "scenedesc/meshes/mesh_sequence.h"
 #include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {
 
 MeshData read_mesh(const MeshFileDesc& file) {
   const std::string bytes = read_file(file.filename, {file.filename, 0});
+  check_sequence(file, bytes);
   bool flat = false;  // the file itself asks for face normals
   MeshData mesh;
   switch (file.format) {

@@ -49,6 +49,11 @@ std::string SceneReader::path_at_time(const std::string& path) {
   return found->path;
 }
 
+std::string SceneReader::sequence_start(const std::string& path) {
+  const auto found = file_of_frame(path, std::nullopt);
+  return found ? found->path : "";
+}
+
 void SceneReader::add_motion(const std::string& what, double begin, double end) {
   Motion& motion = scene_.motion;
   const bool first = motion.moving.empty();

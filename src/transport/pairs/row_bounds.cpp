@@ -74,10 +74,27 @@ Rgb greater(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std:
 
 }  // namespace
 
-scatter::ClosureBound SceneRowBounds::closure_bound(Index i) const {
-  const scatter::ClosurePool& pool = receivers_.closures;
-  const std::uint32_t c = receivers_.closure[i];
-  const Vec3f n = receivers_.normal[i], wo = receivers_.wo[i];
+SceneRowBounds::SceneRowBounds(std::vector<const Receivers*> parts, const BoundRules& rules)
+    : parts_(std::move(parts)), rules_(rules) {
+  std::size_t rows = 0;
+  for (const Receivers* part : parts_) {
+    first_.push_back(rows);
+    rows += part->size();
+  }
+}
+
+SceneRowBounds::Row SceneRowBounds::row(Index i) const {
+  if (parts_.size() == 1) return {*parts_[0], i};
+  const auto part = std::upper_bound(first_.begin(), first_.end(), i) - first_.begin() - 1;
+  const auto k = static_cast<std::size_t>(part);
+  return {*parts_[k], static_cast<Index>(i - first_[k])};
+}
+
+scatter::ClosureBound SceneRowBounds::closure_bound(const Row& row) {
+  const auto& [receivers, i] = row;
+  const scatter::ClosurePool& pool = receivers.closures;
+  const std::uint32_t c = receivers.closure[i];
+  const Vec3f n = receivers.normal[i], wo = receivers.wo[i];
   return {pool.lobes(pool.recipe(c)), pool.colors(c), n, pool.tangent(c), wo, dot(n, wo) * pool.side(c) > 0};
 }
 
@@ -88,39 +105,43 @@ void SceneRowBounds::set_rows(std::span<const Index> rows) {
   behind_ = sharp_ = false;
   std::size_t closures = 0;
   Vec3f axis;
-  for (const Index i : rows) {
-    box_.extend(receivers_.position[i]);
-    const Vec3f n = receivers_.normal[i];
-    axis += dot(n, receivers_.wo[i]) < 0 ? -n : n;
-    closures += receivers_.closure[i] != Receivers::kLambertian;
+  for (const Index number : rows) {
+    const Row from = row(number);
+    const auto& [receivers, i] = from;
+    box_.extend(receivers.position[i]);
+    const Vec3f n = receivers.normal[i];
+    axis += dot(n, receivers.wo[i]) < 0 ? -n : n;
+    closures += receivers.closure[i] != Receivers::kLambertian;
   }
   many_ = closures > kMaxClosures;
   const float size = length(axis);
   normals_ = {size > 0 ? axis / size : Vec3f{0, 0, 1}, size > 0 ? 1.0f : -1.0f};
-  for (const Index i : rows) {
-    const Vec3f n = receivers_.normal[i];
+  for (const Index number : rows) {
+    const Row from = row(number);
+    const auto& [receivers, i] = from;
+    const Vec3f n = receivers.normal[i];
     // Of one row the axis is its normal.
     if (rows.size() == 1) {
-      normals_.axis = dot(n, receivers_.wo[i]) < 0 ? -n : n;
+      normals_.axis = dot(n, receivers.wo[i]) < 0 ? -n : n;
     } else {
       normals_.cosine = std::min(normals_.cosine, std::abs(dot(n, normals_.axis)) - kCosineSlack);
-      if (dot(n, normals_.axis) * dot(n, receivers_.wo[i]) < 0) normals_.cosine = -1;
+      if (dot(n, normals_.axis) * dot(n, receivers.wo[i]) < 0) normals_.cosine = -1;
     }
-    if (receivers_.closure[i] == Receivers::kLambertian) {
-      matt_ = greater(matt_, receivers_.albedo[i] * kInvPi);
+    if (receivers.closure[i] == Receivers::kLambertian) {
+      matt_ = greater(matt_, receivers.albedo[i] * kInvPi);
       continue;
     }
-    const auto lobes = receivers_.closures.lobes(receivers_.closures.recipe(receivers_.closure[i]));
+    const auto lobes = receivers.closures.lobes(receivers.closures.recipe(receivers.closure[i]));
     for (const scatter::Lobe& lobe : lobes) {
       behind_ = behind_ || scatter::shines_through(lobe.kind) || scatter::is_hair(lobe.kind);
       sharp_ = sharp_ || scatter::lobe_roughness(lobe) < 0.5f;
     }
     if (many_) {
-      const scatter::ClosureBound bound = closure_bound(i);
+      const scatter::ClosureBound bound = closure_bound(from);
       max_f_ = greater(max_f_, bound.anywhere(CosineFactor::cosine));
       max_direct_ = greater(max_direct_, bound.anywhere(CosineFactor::cosine, rules_.traced_direct_below));
     } else {
-      closures_.push_back(closure_bound(i));
+      closures_.push_back(closure_bound(from));
     }
   }
   normals_sine_ = sine_of(normals_.cosine);

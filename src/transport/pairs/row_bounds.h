@@ -22,7 +22,9 @@ struct BoundRules {
 class SceneRowBounds final : public matrix::RowBounds {
  public:
   SceneRowBounds(const Receivers& receivers, const BoundRules& rules)
-      : receivers_(receivers), rules_(rules) {}
+      : SceneRowBounds(std::vector<const Receivers*>{&receivers}, rules) {}
+  // Of several matrices, as block_diagonal.h numbers their rows: one part's after the other's.
+  SceneRowBounds(std::vector<const Receivers*> parts, const BoundRules& rules);
 
   void set_rows(std::span<const matrix::Index> rows) override;
   Rgb bound(const matrix::ColumnSet& set) const override;
@@ -32,10 +34,16 @@ class SceneRowBounds final : public matrix::RowBounds {
   // Rows with more closures than that know only their greatest values.
   static constexpr std::size_t kMaxClosures = 8;
 
-  scatter::ClosureBound closure_bound(matrix::Index row) const;
+  struct Row {
+    const Receivers& of;
+    matrix::Index i;
+  };
+  Row row(matrix::Index i) const;
+  static scatter::ClosureBound closure_bound(const Row& row);
   Rgb scattered(const scatter::DirectionCone& cone, float cosine, bool direct) const;
 
-  const Receivers& receivers_;
+  std::vector<const Receivers*> parts_;
+  std::vector<std::size_t> first_;  // rows of the parts before each
   BoundRules rules_;
   Bounds3f box_;
   matrix::Cone normals_;  // of rows that do not answer light from behind

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -45,6 +46,38 @@ std::uint64_t sample_id(int x, int y, std::uint64_t k) {
   return hash_ids(static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x), Stage::receivers, k);
 }
 
+// Which instant the samples of a pixel belong to. Neighbors on the film lie far apart in time: the order is
+// that of a lattice with a step near the golden section.
+class InstantOrder {
+ public:
+  explicit InstantOrder(const ReceiverSettings& settings) : settings_(settings) {
+    step_ = std::max(1, static_cast<int>(0.618034 * settings.spp));
+    while (std::gcd(step_, settings.spp) != 1) ++step_;
+  }
+  bool has(std::uint64_t pixel, int sample) const {
+    if (settings_.instants == 1) return true;
+    const double start = unit_double(hash_ids(settings_.seed, Stage::shutter, pixel));
+    const std::int64_t place = static_cast<std::int64_t>(sample) * step_ % settings_.spp;
+    const double time = static_cast<double>(place) / settings_.spp + start;
+    const int instant = static_cast<int>((time - std::floor(time)) * settings_.instants);
+    return std::min(instant, settings_.instants - 1) == settings_.instant;
+  }
+
+ private:
+  const ReceiverSettings& settings_;
+  int step_ = 1;
+};
+
+template <typename T>
+void keep_only(std::vector<T>& values, const std::vector<std::uint8_t>& kept) {
+  if (values.empty()) return;
+  std::size_t to = 0;
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (kept[k]) values[to++] = values[k];
+  values.resize(to);
+  values.shrink_to_fit();
+}
+
 class ReceiverTracer {
  public:
   ReceiverTracer(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings)
@@ -52,7 +85,8 @@ class ReceiverTracer {
         camera_(camera),
         settings_(settings),
         crop_(crop_of(camera, settings)),
-        order_(crop_.width, crop_.height) {}
+        order_(crop_.width, crop_.height),
+        instants_(settings_) {}
 
   Receivers run(const Sinks& sinks) {
     const std::size_t samples =
@@ -70,6 +104,7 @@ class ReceiverTracer {
       result_.first_position.resize(samples);
       result_.first_distance.resize(samples);
     }
+    if (settings_.instants > 1) kept_.resize(samples);
     pieces_.resize((order_.tiles.size() + kTilesPerPiece - 1) / kTilesPerPiece);
     std::atomic<std::size_t> done{0};
     parallel_for(order_.tiles.size(), kTilesPerPiece, [&](std::size_t begin, std::size_t end) {
@@ -80,6 +115,7 @@ class ReceiverTracer {
     });
     if (sinks.cancelled()) throw Cancelled();
     gather();
+    if (settings_.instants > 1) drop_other_instants();
     return std::move(result_);
   }
 
@@ -106,6 +142,8 @@ class ReceiverTracer {
                              static_cast<std::uint64_t>(x);
     const PixelPattern pattern(settings_.spp, hash_ids(settings_.seed, Stage::receivers, id, ~0ull));
     for (int k = 0; k < settings_.spp; ++k, ++sample) {
+      if (!instants_.has(id, k)) continue;
+      if (!kept_.empty()) kept_[sample] = 1;
       Rng rng(settings_.seed, Stage::receivers, id, static_cast<std::uint64_t>(k));
       const Vec2f film_jitter = rng.next_2d();
       const auto place = pattern.place(k, film_jitter, rng.next_2d());
@@ -149,11 +187,25 @@ class ReceiverTracer {
     });
   }
 
+  // Film samples are those that were traced.
+  void drop_other_instants() {
+    std::vector<std::uint32_t> number(kept_.size());
+    std::uint32_t next = 0;
+    for (std::size_t k = 0; k < kept_.size(); ++k) number[k] = kept_[k] ? next++ : 0;
+    for (std::uint32_t& sample : result_.sample) sample = number[sample];
+    keep_only(result_.film, kept_), keep_only(result_.emission, kept_);
+    keep_only(result_.first_albedo, kept_), keep_only(result_.first_normal, kept_);
+    keep_only(result_.first_ng, kept_), keep_only(result_.first_position, kept_);
+    keep_only(result_.first_distance, kept_);
+  }
+
   const world::World& world_;
   const world::Camera& camera_;
   ReceiverSettings settings_;
   Crop crop_;
   FilmOrder order_;
+  InstantOrder instants_;
+  std::vector<std::uint8_t> kept_;  // by film sample; empty where all are
   std::vector<Piece> pieces_;
   Receivers result_;
 };

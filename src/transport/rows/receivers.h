@@ -26,6 +26,9 @@ struct ReceiverSettings {
   // Film samples per pixel that take their light from receivers (film_samples.h); 0: receivers are the film
   // samples. Otherwise places that no receiver sees get receivers of their own.
   int film_samples = 0;
+  // Of so many instants of an open shutter, the samples of one: each pixel's samples are spread evenly over
+  // the instants, from a start of its own, so that every instant has 1/instants of them on average.
+  int instants = 1, instant = 0;
 };
 
 struct EyeVertex;

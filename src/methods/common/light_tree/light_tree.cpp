@@ -58,14 +58,18 @@ matrix::ScaledColumn LightTree::redrawn(Node node, std::uint64_t key) const {
 
 matrix::ScaledColumn LightTree::scaled_to(Node node, Index j) const {
   if (is_leaf(node)) return {j, Rgb(1)};
-  const Rgb whole = nodes_[node].emitted, own = emitted_of(j);
+  return {j, scale_to(nodes_[node].emitted, j)};
+}
+
+Rgb LightTree::scale_to(Rgb whole, Index j) const {
+  const Rgb own = emitted_of(j);
   const float scalar = power_of(whole) / std::max(power_of(j), 1e-30f);
   Rgb scale;
   for (int c = 0; c < 3; ++c) {
     const float ratio = whole[c] / std::max(own[c], 1e-30f);
     scale[c] = ratio <= 4 * scalar ? ratio : scalar;
   }
-  return {j, scale};
+  return scale;
 }
 
 std::size_t LightTree::memory_bytes() const {

@@ -65,6 +65,10 @@ class LightTree {
   std::size_t memory_bytes() const;
   // Of one column.
   Rgb emitted_of(matrix::Index j) const;
+  float power_of(matrix::Index j) const;
+  // What a column is scaled by to stand for so much emission, per channel; where one of its channels is
+  // (nearly) black, by the scalar.
+  Rgb scale_to(Rgb emission, matrix::Index j) const;
 
  private:
   matrix::ScaledColumn scaled_to(Node node, matrix::Index j) const;
@@ -86,7 +90,6 @@ class LightTree {
   };
   struct Builder;
 
-  float power_of(matrix::Index j) const;
   // Of an inner node: the luminance of `emitted`, which where emissions are unknown is the power in all
   // channels.
   static float power_of(Rgb emitted) { return luminance(emitted); }
