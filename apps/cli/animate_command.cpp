@@ -83,6 +83,10 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
       tensor.initial_clusters = read_count(option, value, 1, 1'000'000);
     else if (key == "time-weight")
       tensor.time_weight = read_number(option, value, {0, 1e9});
+    else if (key == "overlap")
+      tensor.overlap = read_count(option, value, 0, 1000);
+    else if (key == "memory")
+      tensor.memory = read_number(option, value, {0, 1e9});
     else if (key == "max-change")
       tensor.max_change = read_number(option, value, {0, 1e9});
     else if (key == "max-distance")
@@ -90,9 +94,9 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
     else if (key == "bits")
       tensor.bits = read_count(option, value, 16, 32);
     else
-      throw InputError(
-          "tensor-clustering has no parameter '" + key + "'",
-          "it has chunk, rows, columns, initial-clusters, time-weight, max-distance, max-change and bits");
+      throw InputError("tensor-clustering has no parameter '" + key + "'",
+                       "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, "
+                       "max-distance, max-change and bits");
   }
   return tensor;
 }

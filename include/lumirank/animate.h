@@ -13,9 +13,14 @@ namespace lumirank {
 // Tensor clustering (Hašan et al. 2008): columns are used in many frames, so that a shot costs less than its
 // frames by themselves, and does not flicker.
 struct TensorSettings {
-  int chunk = 40;              // frames that are clustered together, counted from the first one of the motion
-  int rows = 100;              // of each frame, read whole
-  int columns = 200;           // for each frame, in the mean; 0: all, the sum that clusterings approach
+  int chunk = 40;  // frames that are clustered together, counted from the first one of the motion
+  // Frames that a chunk has in common with the next one, where one is blended into the other (at most
+  // `chunk`). A process that is given later frames alone makes the chunk before them as well, unless its tail
+  // is there.
+  int overlap = 4;
+  double memory = 0;  // MB that the process may take at about; chunks are as short as it takes; 0: any
+  int rows = 100;     // of each frame, read whole
+  int columns = 200;  // for each frame, in the mean; 0: all, the sum that clusterings approach
   int initial_clusters = 100;  // of lights, before they are split in lights or in time
   double time_weight = 1;      // a split in time is taken if it leaves less cost by this factor; 0: none
   // Light of other frames is not carried to what is farther from all that they show than so many distances

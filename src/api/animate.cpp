@@ -1,14 +1,18 @@
 #include "lumirank/animate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "api/render_tensor.h"
 #include "api/scene.h"
+#include "api/shot_chunks.h"
 #include "base/error.h"
 #include "base/hash_text.h"
 #include "image/atomic_file.h"
@@ -120,18 +124,43 @@ class Shot {
     return true;
   }
 
-  // All frames from `first` to `last` by one clustering; writes those that are missing.
-  bool render_chunk(int first, int last, const std::vector<int>& missing, const Sinks& sinks) const {
+  // A chunk and its tail by one clustering; writes those of its own frames that are wanted. The tail of the
+  // one before it is there.
+  bool render_chunk(const api::ShotChunks& chunks, const api::Chunk& chunk, const std::vector<int>& wanted,
+                    const Sinks& sinks) const {
     std::vector<Scene> scenes;
-    for (int frame = first; frame <= last; ++frame)
-      scenes.push_back(scene_.at(frame / settings_.frames_per_second, frame == first ? sinks : Sinks{}));
-    const auto pictures = api::render_tensor(scenes, settings_.render, *settings_.tensor, sinks);
-    if (pictures.empty()) return false;
-    for (const int frame : missing) {
-      const RenderResult& result = pictures[static_cast<std::size_t>(frame - first)];
+    for (int frame = chunk.first; frame <= chunk.tail_last; ++frame)
+      scenes.push_back(
+          scene_.at(frame / settings_.frames_per_second, frame == chunk.first ? sinks : Sinks{}));
+    auto results = api::render_tensor(scenes, settings_.render, *settings_.tensor, sinks);
+    if (results.empty()) return false;
+    for (int frame = chunk.last + 1; frame <= chunk.tail_last; ++frame)
+      if (!is_finished(frame))
+        api::TailPicture(folder_, frame)
+            .write(results[static_cast<std::size_t>(frame - chunk.first)].picture);
+    for (const int frame : wanted) {
+      RenderResult& result = results[static_cast<std::size_t>(frame - chunk.first)];
+      const double part = chunks.part(frame);
+      const api::TailPicture tail(folder_, frame);
+      if (part < 1) tail.blend_into(result.picture, part);
+      result.report.numbers["chunk.part"] = part;
       write(frame, result.picture, result.report);
+      tail.remove();
     }
     return true;
+  }
+
+  // Frames of a chunk: as many as are asked for, and fit into the memory that is given.
+  int frames_at_once(int first_key) const {
+    const TensorSettings& t = *settings_.tensor;
+    return api::frames_within_memory(scene_.at(first_key / settings_.frames_per_second), settings_.render, t);
+  }
+
+  // All tails that `wanted` frames of a chunk need are there.
+  bool has_tails(const api::ShotChunks& chunks, const std::vector<int>& wanted) const {
+    return std::all_of(wanted.begin(), wanted.end(), [&](int frame) {
+      return chunks.part(frame) == 1 || api::TailPicture(folder_, frame).exists();
+    });
   }
 
  private:
@@ -145,6 +174,8 @@ class Shot {
             {"time_weight", t.time_weight},
             {"max_distance", t.max_distance},
             {"max_change", t.max_change},
+            {"overlap", t.overlap},
+            {"memory", t.memory},
             {"bits", t.bits}};
   }
   void write(int frame, const Picture& picture, const Report& report) const {
@@ -162,18 +193,66 @@ class Shot {
   Json manifest_;
 };
 
+// Tells how far a part of the shot is, of all that is missing.
+Sinks part_of_progress(const Sinks& sinks, double begin, double share) {
+  Sinks own = sinks;
+  own.progress = [&sinks, begin, share](const char* stage, double fraction) {
+    // Stages of a chunk, and the part of its time that they take, about.
+    constexpr std::pair<std::string_view, std::pair<double, double>> kStages[] = {
+        {"frames", {0, 0.3}}, {"rows", {0.3, 0.15}}, {"columns", {0.45, 0.35}}, {"changes", {0.8, 0.2}}};
+    for (const auto& [name, part] : kStages)
+      if (name == stage) sinks.report("frames", begin + share * (part.first + part.second * fraction));
+  };
+  return own;
+}
+
+void render_frames(const Shot& shot, const std::vector<int>& missing, AnimationResult& result,
+                   const Sinks& sinks) {
+  Sinks own = sinks;
+  own.progress = [](const char*, double) {};
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    sinks.report("frames", static_cast<double>(k) / static_cast<double>(missing.size()));
+    if (sinks.cancelled() || !shot.render_frame(missing[k], own)) {
+      result.interrupted = true;
+      return;
+    }
+    ++result.rendered;
+  }
+}
+
+void render_chunks(const Shot& shot, const AnimateSettings& settings, const Range& frames,
+                   const std::vector<int>& missing, AnimationResult& result, const Sinks& sinks) {
+  if (missing.empty()) return;
+  const int length = shot.frames_at_once(frames.first_key);
+  const api::ShotChunks chunks(frames.first_key, std::max(frames.last_key, frames.last), length,
+                               settings.tensor->overlap);
+  const auto all = static_cast<double>(missing.size());
+  for (std::size_t k = 0; k < missing.size();) {
+    const api::Chunk chunk = chunks.of(missing[k]);
+    const double begin = static_cast<double>(k) / all;
+    std::vector<int> wanted;
+    while (k < missing.size() && missing[k] <= chunk.last) wanted.push_back(missing[k++]);
+    const double share = static_cast<double>(wanted.size()) / all;
+    const bool before = !shot.has_tails(chunks, wanted);
+    if (sinks.cancelled() ||
+        (before &&
+         !shot.render_chunk(chunks, chunks.before(chunk), {}, part_of_progress(sinks, begin, share / 2))) ||
+        !shot.render_chunk(
+            chunks, chunk, wanted,
+            part_of_progress(sinks, begin + (before ? share / 2 : 0), before ? share / 2 : share))) {
+      result.interrupted = true;
+      return;
+    }
+    result.rendered += static_cast<int>(wanted.size());
+  }
+}
+
 }  // namespace
 
 AnimationResult animate(const Scene& scene, const AnimateSettings& settings, const std::string& folder,
                         const Sinks& sinks) {
   validate(settings.render);
-  if (settings.tensor) {
-    api::check(*settings.tensor, settings.render);
-    if (settings.render.traced.rest != RestOfPaths::skip)
-      sinks.warn(
-          "tensor clustering leaves out light that columns cannot carry (caustics, light through glass); "
-          "--rest skip says so");
-  }
+  if (settings.tensor) api::check(*settings.tensor, settings.render);
   if (settings.render.view.is_open() && scene.impl().options.frames_per_second != settings.frames_per_second)
     throw InputError("the shutter counts in other frames than the shot: the scene was read at " +
                          Json(scene.impl().options.frames_per_second).dump() + " per second",
@@ -189,24 +268,10 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
       ++result.kept;
     else
       missing.push_back(frame);
-  Sinks own = sinks;
-  own.progress = [](const char*, double) {};
-  // Frame by frame, or chunks that begin at the same frames whatever part of the shot is asked for.
-  const int chunk = settings.tensor ? settings.tensor->chunk : 1;
-  for (std::size_t k = 0; k < missing.size();) {
-    sinks.report("frames", static_cast<double>(k) / static_cast<double>(missing.size()));
-    const int first = frames.first_key + (missing[k] - frames.first_key) / chunk * chunk,
-              last = std::min(first + chunk - 1, std::max(frames.last_key, frames.last));
-    std::vector<int> together;
-    while (k < missing.size() && missing[k] <= last) together.push_back(missing[k++]);
-    const bool whole = !sinks.cancelled() && (settings.tensor ? shot.render_chunk(first, last, together, own)
-                                                              : shot.render_frame(together[0], own));
-    if (!whole) {
-      result.interrupted = true;
-      break;
-    }
-    result.rendered += static_cast<int>(together.size());
-  }
+  if (settings.tensor)
+    render_chunks(shot, settings, frames, missing, result, sinks);
+  else
+    render_frames(shot, missing, result, sinks);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "api/render_tensor.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "api/build_world.h"
@@ -12,10 +13,16 @@
 #include "pipeline/develop.h"
 #include "pipeline/memory.h"
 #include "pipeline/report.h"
+#include "pipeline/rest_tracing.h"
 #include "pipeline/shot.h"
 
 namespace lumirank::api {
 namespace {
+
+// What a frame of a chunk takes beside its picture, as measured: mappings, sums and albedo; places in the
+// common numbering, weights and norms. And what does not grow with frames: the program, and entries of rows
+// that are shaded afresh.
+constexpr double kBytesOfRow = 90, kBytesOfLight = 100, kBytesAtLeast = 60e6, kBytesOfEntries = 100e6;
 
 methods::TensorClusteringSettings inner(const TensorSettings& t) {
   methods::TensorClusteringSettings s;
@@ -95,9 +102,9 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
           "leave out --shutter, or choose another method");
   require(settings.traced.compensate == 0, "it gives back nothing of what clamping takes",
           "leave out --compensate");
-  require(settings.traced.rest != RestOfPaths::trace, "it does not trace light that columns cannot carry",
-          "leave out --rest, or choose another method");
   require(t.chunk >= 1 && t.chunk <= 1000, "a chunk has no such number of frames", "give 1 to 1000");
+  require(t.overlap >= 0, "chunks overlap by a negative number of frames", "give 0 or more");
+  require(t.memory >= 0 && std::isfinite(t.memory), "its memory is negative", "give a number of megabytes");
   require(t.rows >= 1 && t.rows <= 10'000, "there is no such number of rows", "give 1 to 10000");
   require(t.columns >= 0 && t.columns <= 1'000'000, "there is no such number of columns",
           "give 1 to 1000000, or 0 for all columns");
@@ -106,6 +113,32 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   require(t.max_change >= 0, "the greatest change of light is negative", "give 0 or more");
   require(t.max_distance >= 0, "the greatest distance of a mapping is negative", "give 0 or more");
   require(t.bits == 16 || t.bits == 32, "entries have 16 or 32 bits", "give one of them");
+}
+
+int frames_within_memory(const Scene& scene, const RenderSettings& settings, const TensorSettings& t) {
+  const pipeline::View view = pipeline::make_view(scene.impl().desc, settings.view);
+  const double lights = static_cast<double>(settings.lights.count_or_default()),
+               rows = static_cast<double>(view.width) * view.height * settings.view.spp_or_default();
+  const double read =
+      settings.method.target_error > 0 ? methods::TensorClusteringSettings{}.max_rows : t.rows;
+  const auto world = build_world(scene, {});
+  const double frame = static_cast<double>(world->info().memory_bytes) +
+                       pipeline::memory_of_picture(rows, lights, false) + kBytesOfRow * rows +
+                       (kBytesOfLight + read * t.bits / 8) * lights;
+  const double fixed = kBytesAtLeast + kBytesOfEntries;
+  const auto room = [&](double bytes) { return (bytes - fixed) / frame - t.overlap; };
+  if (t.memory > 0) {
+    if (room(1e6 * t.memory) < 1)
+      throw InputError("tensor clustering takes about " +
+                           std::to_string(std::lround((fixed + frame * (1 + t.overlap)) / 1e6)) +
+                           " MB for one frame and the overlap, more than the memory that is given",
+                       "give more with --set memory=…, or fewer --lights, a smaller --size or a lower --spp");
+    return static_cast<int>(std::min<double>(t.chunk, room(1e6 * t.memory)));
+  }
+  pipeline::require_memory(
+      fixed + frame * (t.chunk + t.overlap),
+      "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
+  return t.chunk;
 }
 
 std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
@@ -138,16 +171,26 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
             tensor.columns == 0 ? all_columns(frames, sinks) : methods::estimate_tensor(shot, how, options);
         if (estimate.interrupted) return;
         warn_of_error(how.target_error, estimate, sinks);
+        // Whether the rest of the light matters is asked once, so that it does not come and go.
+        const std::size_t middle = frames.size() / 2;
+        const pipeline::RestPlan rest_plan =
+            pipeline::plan_rest(*worlds[middle], views[middle], settings, silent);
         for (std::size_t k = 0; k < frames.size(); ++k) {
           const pipeline::Prepared& frame = *frames[k];
           RenderResult result;
           pipeline::FilmFits fits;
-          result.picture =
-              pipeline::to_picture(pipeline::develop(pipeline::film_input(frame), estimate.sums[k],
-                                                     pipeline::wanted_parts(settings.view.only), &fits));
+          image::Image image = pipeline::develop(pipeline::film_input(frame), estimate.sums[k],
+                                                 pipeline::wanted_parts(settings.view.only), &fits);
+          pipeline::RestTracing rest(frame.world, settings, rest_plan);
+          if (!rest.trace_all(frame.view, silent)) throw Cancelled();
+          rest.add_to(image);
+          result.picture = pipeline::to_picture(image);
           result.report = report_of(frame, estimate, k, frames.size(), settings);
           pipeline::add_film_numbers(result.report.numbers, recipe,
                                      pipeline::seen_rows(frame.receivers(), frame.traced), fits);
+          if (rest_plan.piloted) result.report.numbers["rest.share"] = rest_plan.pilot.share;
+          result.report.numbers["rest.paths"] = rest.paths();
+          result.report.seconds["rest"] = rest.seconds();
           result.report.numbers["lights.in_all_frames"] = shot.common_share();
           results.push_back(std::move(result));
         }

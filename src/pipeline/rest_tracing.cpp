@@ -23,6 +23,11 @@ RestTracing::RestTracing(SharedWorld world, const View& view, const RenderSettin
                  : ", left out"));
 }
 
+RestTracing::RestTracing(SharedWorld world, const RenderSettings& settings, const RestPlan& plan)
+    : world_(std::move(world)),
+      options_(reference_options(settings.view.only, settings.seed, ReferencePaths::rest)),
+      plan_(plan) {}
+
 bool RestTracing::add(int paths, const Sinks& sinks) {
   if (!film_->add(paths, sinks, [&](double fraction) { sinks.report("rest", fraction); })) return false;
   paths_ = film_->result().spp;

@@ -17,6 +17,9 @@ class RestTracing {
   // Pilots where the settings leave it open.
   RestTracing(SharedWorld world, const View& view, const RenderSettings& settings, const Sinks& sinks);
 
+  // By a plan that has been made for several views.
+  RestTracing(SharedWorld world, const RenderSettings& settings, const RestPlan& plan);
+
   const RestPlan& plan() const { return plan_; }
   double pilot_seconds() const { return pilot_seconds_; }
 

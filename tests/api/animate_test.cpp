@@ -9,8 +9,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 #include <vector>
 
+#include "api/render_tensor.h"
+#include "api/shot_chunks.h"
 #include "base/error.h"
 #include "image/image_io.h"
 #include "lumirank/animate.h"
@@ -144,19 +147,91 @@ TEST(Animate, TensorClusteringSaysWhatItDoesNot) {
   };
   EXPECT_NE(with([](auto& s) { s.render.time = 1; }).find("no time budget"), std::string::npos);
   EXPECT_NE(with([](auto& s) { s.render.layers = {"direct"}; }).find("no layers"), std::string::npos);
-  EXPECT_NE(with([](auto& s) { s.render.traced.rest = RestOfPaths::trace; }).find("cannot carry"),
-            std::string::npos);
   EXPECT_NE(with([](auto& s) { s.tensor->bits = 17; }).find("16 or 32"), std::string::npos);
+  EXPECT_NE(with([](auto& s) { s.tensor->overlap = -1; }).find("negative number of frames"),
+            std::string::npos);
+  EXPECT_NE(with([](auto& s) { s.tensor->max_change = -1; }).find("change of light"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "none"));
+}
+
+// Light that columns cannot carry is traced beside them: in the same way in every frame.
+TEST(Animate, TensorClusteringTracesTheRestOfTheLight) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
   AnimateSettings settings = small_shot(0, 1);
   settings.tensor = TensorSettings{};
   settings.tensor->columns = 20;
-  settings.render.traced.rest = RestOfPaths::automatic;
-  std::string said;
-  Sinks sinks;
-  sinks.warning = [&](const std::string& text) { said += text; };
-  EXPECT_EQ(animate(scene, settings, folder / "shot", sinks).rendered, 2);
-  EXPECT_NE(said.find("leaves out light"), std::string::npos);
+  for (const RestOfPaths rest : {RestOfPaths::skip, RestOfPaths::trace}) {
+    settings.render.traced.rest = rest;
+    const std::string out = folder / (rest == RestOfPaths::skip ? "skip" : "trace");
+    EXPECT_EQ(animate(scene, settings, out).rendered, 2);
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(out + "/frame_0001.json"))["rest.paths"],
+              rest == RestOfPaths::skip ? 0 : 16);
+  }
+}
+
+AnimateSettings clustered_shot(int first, int last) {
+  AnimateSettings settings = small_shot(first, last);
+  settings.tensor = TensorSettings{.chunk = 2, .overlap = 1, .rows = 20, .columns = 10};
+  return settings;
+}
+
+TEST(Animate, TensorClusteringOfAStaticSceneHasOneFrame) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder, false));
+  animate(scene, clustered_shot(0, 3), folder / "shot");  // two chunks, as long as each other
+  for (int k = 1; k < 4; ++k)
+    EXPECT_EQ(bytes_of(frame(folder / "shot", k)), bytes_of(frame(folder / "shot", 0))) << k;
+}
+
+// Chunks are blended where they overlap, by pictures that one leaves for the next: whoever makes them, and in
+// whatever order, bits are the same.
+TEST(Animate, ChunksOverlapToTheSameBitsWhoeverMakesThem) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  const std::string whole = folder / "whole", parts = folder / "parts";
+  animate(scene, clustered_shot(0, 4), whole);
+  for (const auto& [first, last] : {std::pair{4, 4}, {1, 2}, {0, 3}})
+    animate(scene, clustered_shot(first, last), parts);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(bytes_of(frame(parts, k)), bytes_of(frame(whole, k))) << k;
+    EXPECT_FALSE(fs::exists(whole + "/tail_000" + std::to_string(k) + ".pfm")) << k;
+  }
+}
+
+TEST(ShotChunks, ShareFramesWithTheNext) {
+  const api::ShotChunks chunks(10, 29, 8, 3);
+  const api::Chunk first = chunks.of(12), last = chunks.of(29);
+  EXPECT_EQ(std::tuple(first.first, first.last, first.tail_last), std::tuple(10, 17, 20));
+  EXPECT_EQ(std::tuple(last.first, last.last, last.tail_last), std::tuple(26, 29, 29));
+  EXPECT_EQ(chunks.before(last).first, 18);
+  EXPECT_EQ(chunks.part(10), 1);
+  EXPECT_EQ(chunks.part(17), 1);
+  EXPECT_EQ(chunks.part(18), 0.25);
+  EXPECT_EQ(chunks.part(20), 0.75);
+  EXPECT_EQ(chunks.part(21), 1);
+  EXPECT_EQ(api::ShotChunks(0, 9, 2, 4).of(0).tail_last, 3);  // no longer than a chunk
+}
+
+TEST(Animate, ChunksAreAsShortAsMemoryWants) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  AnimateSettings settings = clustered_shot(0, 4);
+  settings.tensor->memory = 1;
+  EXPECT_NE(
+      refused([&] { animate(scene, settings, folder / "none"); }).find("more than the memory that is given"),
+      std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "none/frame_0000.pfm"));
+  settings.tensor->chunk = 1000;
+  settings.render.lights.count = 100'000;
+  int before = 0;
+  for (const double megabytes : {300, 600, 3000, 1'000'000}) {
+    settings.tensor->memory = megabytes;
+    const int frames = api::frames_within_memory(scene.at(0), settings.render, *settings.tensor);
+    EXPECT_GT(frames, before) << megabytes;
+    before = frames;
+  }
+  EXPECT_EQ(before, 1000);
 }
 
 // All columns of a chunk of one frame are those that the frame has by itself, added up in another order.
@@ -166,7 +241,7 @@ TEST(Animate, TensorClusteringOfNoColumnsSumsThemAll) {
   AnimateSettings settings = small_shot(1, 2);
   settings.render.lights.placement = LightPlacement::gather;  // as clusterings have it
   animate(scene, settings, folder / "alone");
-  settings.tensor = TensorSettings{.chunk = 1, .columns = 0};
+  settings.tensor = TensorSettings{.chunk = 1, .overlap = 0, .columns = 0};
   animate(scene, settings, folder / "summed");
   const auto values = [&](const char* shot, int k) {
     const std::string bytes = bytes_of(frame(folder / shot, k));

@@ -30,7 +30,7 @@ MethodInfo brute_force_info() {
           },
           [](const SettingsMap&) -> std::size_t { return 0; },
           "",
-          {{}, true, true}};
+          {.needs = {}, .combination = true, .instants = true}};
 }
 
 }  // namespace lumirank::methods
