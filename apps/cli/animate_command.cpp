@@ -91,12 +91,16 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
       tensor.max_change = read_number(option, value, {0, 1e9});
     else if (key == "max-distance")
       tensor.max_distance = read_number(option, value, {0, 1e9});
+    else if (key == "representatives" && (value == "central" || value == "largest"))
+      tensor.largest_representatives = value == "largest";
+    else if (key == "representatives")
+      throw InputError("'" + value + "' names no representatives", "give central or largest");
     else if (key == "bits")
       tensor.bits = read_count(option, value, 16, 32);
     else
       throw InputError("tensor-clustering has no parameter '" + key + "'",
                        "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, "
-                       "max-distance, max-change and bits");
+                       "max-distance, max-change, representatives and bits");
   }
   return tensor;
 }

@@ -29,6 +29,9 @@ struct TensorSettings {
   // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
   // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.
   double max_change = 0.1;
+  // The lights that stand for their clusters: those of the largest norm, as in the paper, or those nearest to
+  // the cluster's mean, which are not biased towards lights close to the rows that are read.
+  bool largest_representatives = false;
   int bits = 16;  // of the rows' entries in memory: 16 or 32
 };
 

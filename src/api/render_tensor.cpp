@@ -29,6 +29,7 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
   s.rows = static_cast<std::size_t>(t.rows), s.columns = static_cast<std::size_t>(t.columns);
   s.initial_clusters = static_cast<std::size_t>(t.initial_clusters);
   s.time_weight = t.time_weight, s.max_distance = t.max_distance, s.max_change = t.max_change;
+  if (t.largest_representatives) s.representatives = methods::Representatives::largest;
   s.precision =
       t.bits == 32 ? linalg::ReducedTensor::Precision::bits32 : linalg::ReducedTensor::Precision::bits16;
   return s;

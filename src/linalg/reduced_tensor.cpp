@@ -26,14 +26,18 @@ void ReducedTensor::set_frame(std::size_t frame, std::span<const Rgb> entries) {
   parallel_for(columns, kTensorStretch, [&](std::size_t begin, std::size_t end) {
     std::vector<float> scalar(rows);
     for (std::size_t j = begin; j < end; ++j) {
-      double square[3] = {};
+      double square[3] = {}, sum[3] = {};
       for (std::size_t i = 0; i < rows; ++i) {
         const Rgb v = entries[i * columns + j];
-        for (int c = 0; c < 3; ++c) square[c] += static_cast<double>(v[c]) * static_cast<double>(v[c]);
+        for (int c = 0; c < 3; ++c) {
+          const auto channel = static_cast<double>(v[c]);
+          square[c] += channel * channel, sum[c] += channel;
+        }
         scalar[i] = norm2(v);
       }
       Norms& n = norms_[at(j, frame)];
-      for (int c = 0; c < 3; ++c) n.channel[c] = static_cast<float>(std::sqrt(square[c]));
+      for (int c = 0; c < 3; ++c)
+        n.channel[c] = static_cast<float>(std::sqrt(square[c])), n.sum[c] = static_cast<float>(sum[c]);
       n.all = static_cast<float>(std::sqrt(square[0] + square[1] + square[2]));
       const float inverse = n.all > 0 ? 1 / n.all : 0.0f;
       const std::size_t to = at(j, frame) * rows;

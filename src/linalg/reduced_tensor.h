@@ -32,6 +32,10 @@ class ReducedTensor {
   float channel(std::size_t column, std::size_t frame, std::size_t c) const {
     return norms_[at(column, frame)].channel[c];
   }
+  // Sum of one channel of the column over the rows.
+  float sum(std::size_t column, std::size_t frame, std::size_t c) const {
+    return norms_[at(column, frame)].sum[c];
+  }
   // x of a light in a frame, rows() numbers; zeros where its weight is 0.
   void information(std::size_t column, std::size_t frame, float* out) const;
 
@@ -40,7 +44,7 @@ class ReducedTensor {
 
  private:
   struct Norms {
-    float all = 0, channel[3] = {};
+    float all = 0, channel[3] = {}, sum[3] = {};
   };
   // All that belongs to a light lies together, frame after frame.
   std::size_t at(std::size_t column, std::size_t frame) const { return column * shape_.frames + frame; }

@@ -93,11 +93,11 @@ class ChangeSearch {
     });
     return any;
   }
-  // Its parts and those of its neighbors; single pixels have no parts but themselves.
+  // Its parts and those of its neighbors that touch it; single pixels have no parts but themselves.
   void open_around(const Square& s, int size, std::set<Square>& next) const {
     const int parts = size > 1 ? 2 : 1, part = size > 1 ? size / 2 : 1;
-    for (int y = parts * (s.first - 1); y < parts * (s.first + 2); ++y)
-      for (int x = parts * (s.second - 1); x < parts * (s.second + 2); ++x)
+    for (int y = parts * s.first - 1; y <= parts * s.first + parts; ++y)
+      for (int x = parts * s.second - 1; x <= parts * s.second + parts; ++x)
         if (y >= 0 && x >= 0 && y * part < height_ && x * part < width_) next.insert({y, x});
   }
   void ask(std::vector<Index> rows, const HasChanged& has_changed) {

@@ -18,7 +18,7 @@ using HasChanged = std::function<std::vector<bool>(std::span<const matrix::Index
 
 // `pixel`: of every row, or empty (rows then lie on a line). Every row that was asked, once, in the order of
 // asking. Rows are asked in squares of 8, then 4, 2 and 1 pixels: in every square of 8 one, in a smaller one
-// if the one around it, or a neighbor of that, has changed.
+// if the one around it, or one that it touches, has changed.
 std::vector<matrix::Index> ask_for_changes(std::span<const Vec2f> pixel, std::size_t rows,
                                            const HasChanged& has_changed);
 

@@ -1,57 +1,97 @@
 #include "methods/tensor_clustering/cluster_columns.h"
 
+#include <cmath>
+
 namespace lumirank::methods {
 namespace {
 
 using linalg::RectangleClustering;
-using linalg::ReducedTensor;
 using matrix::Index;
 
-constexpr float kNoChannel = 1e-3f;     // of a column's norm
+constexpr double kNoChannel = 1e-3;     // of a column
 constexpr float kBrightEnough = 0.25f;  // of the brightest
+constexpr double kLeastWeight = 0.5;    // of the mean of the cluster
 
-// What column (j, computed_in) is multiplied with to stand for all lights of the rectangle in a frame.
-Rgb scale_of(const ReducedTensor& reduced, const RectangleClustering::Rectangle& rectangle,
-             std::uint32_t frame, Index j, std::uint32_t computed_in) {
-  const float own_norm = reduced.weight(j, computed_in);
-  if (!(own_norm > 0)) return Rgb(0);
-  double all = 0, channels[3] = {};
-  for (const std::uint32_t light : rectangle.lights) {
-    all += static_cast<double>(reduced.weight(light, frame));
-    for (std::size_t c = 0; c < 3; ++c) channels[c] += static_cast<double>(reduced.channel(light, frame, c));
-  }
-  Rgb scale(0);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float own = reduced.channel(j, computed_in, c);
-    // A channel that the representative hardly has cannot be scaled to the cluster's.
-    scale[static_cast<int>(c)] = own > kNoChannel * own_norm ? static_cast<float>(channels[c]) / own
-                                                             : static_cast<float>(all) / own_norm;
-  }
-  return scale;
+// body(pair, weight) for all pairs that are not black.
+template <typename Body>
+void each_pair(const linalg::ReducedTensor& reduced, const RectangleClustering::Rectangle& rectangle,
+               const Body& body) {
+  for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
+    for (const std::uint32_t j : rectangle.lights)
+      if (const float w = reduced.weight(j, k); w > 0) body(j, k, static_cast<double>(w));
 }
 
 }  // namespace
 
-ClusterColumn column_of(const ReducedTensor& reduced, const RectangleClustering::Rectangle& rectangle) {
-  ClusterColumn best;
-  best.of = &rectangle;
-  float largest = -1;
-  for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
-    for (const std::uint32_t j : rectangle.lights)
-      if (reduced.weight(j, k) > largest) largest = reduced.weight(j, k), best.column = j, best.frame = k;
-  for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
-    best.scale.push_back(scale_of(reduced, rectangle, k, best.column, best.frame));
+ClusterColumns::Pair ClusterColumns::largest(const RectangleClustering::Rectangle& rectangle) const {
+  Pair best{rectangle.lights.front(), rectangle.begin};
+  double largest = 0;
+  each_pair(reduced_, rectangle, [&](Index j, std::uint32_t k, double w) {
+    if (w > largest) largest = w, best = {j, k};
+  });
   return best;
 }
 
-matrix::ScaledColumn column_in_frame(const ReducedTensor& reduced, const ClusterColumn& of,
-                                     std::uint32_t frame) {
-  Index brightest = of.column;
+ClusterColumns::Pair ClusterColumns::central(const RectangleClustering::Rectangle& rectangle) const {
+  std::vector<double> sum(reduced_.rows(), 0.0);
+  std::vector<float> x(reduced_.rows());
+  double weights = 0, pairs = 0;
+  each_pair(reduced_, rectangle, [&](Index j, std::uint32_t k, double w) {
+    reduced_.information(j, k, x.data());
+    for (std::size_t i = 0; i < x.size(); ++i) sum[i] += w * static_cast<double>(x[i]);
+    weights += w, pairs += 1;
+  });
+  Pair best{rectangle.lights.front(), rectangle.begin};
+  double nearest = -1;
+  each_pair(reduced_, rectangle, [&](Index j, std::uint32_t k, double w) {
+    if (w < kLeastWeight * weights / pairs) return;
+    reduced_.information(j, k, x.data());
+    double along = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) along += sum[i] * static_cast<double>(x[i]);
+    if (along > nearest) nearest = along, best = {j, k};
+  });
+  return best;
+}
+
+// What is to add up: the column's sum over the rows that were read, or its norm.
+double ClusterColumns::amount(Pair pair, std::size_t channel) const {
+  return static_cast<double>(how_ == Representatives::central
+                                 ? reduced_.sum(pair.column, pair.frame, channel)
+                                 : reduced_.channel(pair.column, pair.frame, channel));
+}
+
+// What the computed column is multiplied with to stand for all lights of the rectangle in a frame.
+Rgb ClusterColumns::scale(const RectangleClustering::Rectangle& rectangle, std::uint32_t frame,
+                          Pair computed) const {
+  double own[3], all[3] = {}, own_all = 0, all_all = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    own[c] = amount(computed, c);
+    for (const std::uint32_t light : rectangle.lights) all[c] += amount({light, frame}, c);
+    own_all += own[c], all_all += all[c];
+  }
+  if (!(own_all > 0)) return Rgb(0);
+  Rgb scale(0);
+  for (std::size_t c = 0; c < 3; ++c)  // a channel that it hardly has cannot be scaled to the cluster's
+    scale[static_cast<int>(c)] =
+        static_cast<float>(own[c] > kNoChannel * own_all ? all[c] / own[c] : all_all / own_all);
+  return scale;
+}
+
+ClusterColumn ClusterColumns::column_of(const RectangleClustering::Rectangle& rectangle) const {
+  const Pair best = how_ == Representatives::central ? central(rectangle) : largest(rectangle);
+  ClusterColumn column{best.column, best.frame, &rectangle, {}};
+  for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
+    column.scale.push_back(scale(rectangle, k, best));
+  return column;
+}
+
+matrix::ScaledColumn ClusterColumns::in_frame(const ClusterColumn& of, std::uint32_t frame) const {
+  Pair best{of.column, frame};
   for (const std::uint32_t j : of.of->lights)
-    if (reduced.weight(j, frame) > reduced.weight(brightest, frame)) brightest = j;
-  const bool stays = reduced.weight(of.column, frame) >= kBrightEnough * reduced.weight(brightest, frame);
-  const Index column = stays ? of.column : brightest;
-  return {column, scale_of(reduced, *of.of, frame, column, frame), 0};
+    if (reduced_.weight(j, frame) > reduced_.weight(best.column, frame)) best.column = j;
+  if (reduced_.weight(of.column, frame) >= kBrightEnough * reduced_.weight(best.column, frame))
+    best.column = of.column;
+  return {best.column, scale(*of.of, frame, best), 0};
 }
 
 }  // namespace lumirank::methods

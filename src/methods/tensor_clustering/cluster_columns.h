@@ -11,21 +11,46 @@
 
 namespace lumirank::methods {
 
+enum class Representatives {
+  // Ours: the pair whose direction is nearest to that of the cluster's sum, of those that are not much dimmer
+  // than its mean, scaled so that sums over the rows that were read are the cluster's. A pair of the largest
+  // norm often has it because it stands close to one of those rows, so it is too dark everywhere else.
+  central,
+  largest,  // as in the paper: of the largest norm, scaled to the sum of the cluster's norms
+};
+
 struct ClusterColumn {
   matrix::Index column = 0;
   std::uint32_t frame = 0;  // in which it is computed
   const linalg::RectangleClustering::Rectangle* of = nullptr;
-  std::vector<Rgb> scale;  // in each of the rectangle's frames
+  std::vector<Rgb> scale;  // in each of the rectangle's frames, per channel
 };
 
-// Of the largest norm, scaled per channel so that norms add up to those of the cluster's lights.
-ClusterColumn column_of(const linalg::ReducedTensor& reduced,
-                        const linalg::RectangleClustering::Rectangle& rectangle);
+// The clusters' columns and scales, by what is known of them from the rows that were read.
+class ClusterColumns {
+ public:
+  ClusterColumns(const linalg::ReducedTensor& reduced, Representatives how) : reduced_(reduced), how_(how) {}
 
-// The cluster in one of its frames when it is computed in that very frame (ours): by the representative's
-// light, if it still is one of the brighter there, else by the brightest. Where nothing moves it is what is
-// carried there.
-matrix::ScaledColumn column_in_frame(const linalg::ReducedTensor& reduced, const ClusterColumn& of,
-                                     std::uint32_t frame);
+  ClusterColumn column_of(const linalg::RectangleClustering::Rectangle& rectangle) const;
+
+  // The cluster in one of its frames when it is computed in that very frame (ours): by the representative's
+  // light, if it still is one of the brighter there, else by the brightest. Where nothing moves it is what is
+  // carried there.
+  matrix::ScaledColumn in_frame(const ClusterColumn& of, std::uint32_t frame) const;
+
+ private:
+  struct Pair {
+    matrix::Index column = 0;
+    std::uint32_t frame = 0;
+  };
+  Pair largest(const linalg::RectangleClustering::Rectangle& rectangle) const;
+  Pair central(const linalg::RectangleClustering::Rectangle& rectangle) const;
+  double amount(Pair pair, std::size_t channel) const;
+  Rgb scale(const linalg::RectangleClustering::Rectangle& rectangle, std::uint32_t frame,
+            Pair computed) const;
+
+  const linalg::ReducedTensor& reduced_;
+  Representatives how_;
+};
 
 }  // namespace lumirank::methods

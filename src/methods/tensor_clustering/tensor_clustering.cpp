@@ -58,7 +58,7 @@ constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
 // What is too dark to be seen may change: this part of a frame's mean light.
 constexpr float kUnseen = 0.05f;
 
-constexpr std::size_t kEntriesAtOnce = 1 << 22;
+constexpr std::size_t kRowsAtOnce = 2048;
 
 class TensorRun {
  public:
@@ -204,8 +204,9 @@ class TensorRun {
     clustering_->split_to(columns * tensor_.frames());
     const auto& rectangles = clustering_->rectangles();
     clusters_.assign(rectangles.size(), {});
+    const ClusterColumns columns_of(*reduced_, settings_.representatives);
     parallel_for(rectangles.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c) clusters_[c] = column_of(*reduced_, rectangles[c]);
+      for (std::size_t c = begin; c < end; ++c) clusters_[c] = columns_of.column_of(rectangles[c]);
     });
   }
 
@@ -314,22 +315,25 @@ class TensorRun {
     if (rows.empty()) return sums;
     std::vector<Index> columns;
     std::vector<Rgb> scales;
+    const ClusterColumns columns_of(*reduced_, settings_.representatives);
     for (const ClusterColumn* c : clusters) {
-      const matrix::ScaledColumn own = column_in_frame(*reduced_, *c, f);
+      const matrix::ScaledColumn own = columns_of.in_frame(*c, f);
       if (is_black(own.scale)) continue;
       columns.push_back(own.column), scales.push_back(own.scale);
     }
-    // More rows than columns, if there are: neighbors then share a light's rays.
-    const std::size_t at_once =
-        std::max(columns.size(), kEntriesAtOnce / std::max<std::size_t>(1, columns.size()));
+    // No more columns than rows at a time: then neighboring rows share a light's rays.
+    const std::size_t rows_at_once = std::min(rows.size(), kRowsAtOnce);
     std::vector<Rgb> values;
-    for (std::size_t begin = 0; begin < rows.size(); begin += at_once) {
-      const auto some = rows.subspan(begin, std::min(at_once, rows.size() - begin));
-      values.resize(some.size() * columns.size());
-      estimate_.spent += matrix.block(some, columns, values, matrix::Part::value);
-      for (std::size_t a = 0; a < some.size(); ++a)
-        for (std::size_t b = 0; b < columns.size(); ++b)
-          sums[begin + a] += scales[b] * values[a * columns.size() + b];
+    for (std::size_t begin = 0; begin < rows.size(); begin += rows_at_once) {
+      const auto some = rows.subspan(begin, std::min(rows_at_once, rows.size() - begin));
+      for (std::size_t first = 0; first < columns.size(); first += some.size()) {
+        const auto lights = std::span(columns).subspan(first, std::min(some.size(), columns.size() - first));
+        values.resize(some.size() * lights.size());
+        estimate_.spent += matrix.block(some, lights, values, matrix::Part::value);
+        for (std::size_t a = 0; a < some.size(); ++a)
+          for (std::size_t b = 0; b < lights.size(); ++b)
+            sums[begin + a] += scales[first + b] * values[a * lights.size() + b];
+      }
     }
     return sums;
   }

@@ -4,9 +4,9 @@
 // 1. Some rows of every frame are read whole: the reduced tensor.
 // 2. Light-frame pairs are clustered into rectangles of lights × frames: at first in lights alone, then by
 //    splitting the costliest in lights or in time (linalg/rectangle_clustering.h).
-// 3. In each the pair of the largest norm is the representative. Its column is computed in its frame, scaled
-//    per channel to the summed norms of the cluster's lights in every frame of the rectangle, and carried
-//    there by mappings of rows (cluster_columns.h, row_mapping.h).
+// 3. In each one pair is the representative. Its column is computed in its frame, scaled per channel to the
+//    cluster's lights in every frame of the rectangle, and carried there by mappings of rows
+//    (cluster_columns.h, row_mapping.h).
 //
 // Ours: columns of one frame that are carried to the same other frame are added up before they are carried,
 // since that is linear, so each pair of frames is mapped once. Light is divided by the diffuse reflectance on
@@ -21,6 +21,7 @@
 #include "linalg/rectangle_clustering.h"
 #include "matrix/lighting_tensor.h"
 #include "methods/method.h"
+#include "methods/tensor_clustering/cluster_columns.h"
 
 namespace lumirank::methods {
 
@@ -40,6 +41,7 @@ struct TensorClusteringSettings {
   // `max_columns` for each frame) and of rows (up to `max_rows`) is found for it. 0: as given.
   double target_error = 0;
   std::size_t max_columns = 2000, max_rows = 400;
+  Representatives representatives = Representatives::central;
   linalg::ReducedTensor::Precision precision = linalg::ReducedTensor::Precision::bits16;
 };
 
