@@ -7,6 +7,7 @@ namespace lumirank::transport {
 namespace {
 std::vector<std::shared_ptr<const matrix::LightingMatrix>> blocks_of(const std::vector<InstantParts>& parts) {
   std::vector<std::shared_ptr<const matrix::LightingMatrix>> blocks;
+  blocks.reserve(parts.size());
   for (const InstantParts& part : parts) blocks.push_back(part.matrix);
   return blocks;
 }
