@@ -22,7 +22,18 @@ namespace {
 // What a frame of a chunk takes beside its picture, as measured: mappings, sums and albedo; places in the
 // common numbering, weights and norms. And what does not grow with frames: the program, and entries of rows
 // that are shaded afresh.
-constexpr double kBytesOfRow = 90, kBytesOfLight = 100, kBytesAtLeast = 60e6, kBytesOfEntries = 100e6;
+constexpr double kBytesOfRow = 90, kBytesOfLight = 100, kBytesOfProgram = 160e6;
+
+double bytes_of_frame(const world::World& world, const pipeline::View& view, const RenderSettings& settings,
+                      const TensorSettings& t) {
+  const double lights = static_cast<double>(settings.lights.count_or_default()),
+               rows = static_cast<double>(view.width) * view.height * settings.view.spp_or_default();
+  const double read = settings.method.target_error > 0
+                          ? static_cast<double>(methods::TensorClusteringSettings{}.max_rows)
+                          : t.rows;
+  return static_cast<double>(world.info().memory_bytes) + pipeline::memory_of_picture(rows, lights, false) +
+         kBytesOfRow * rows + (kBytesOfLight + read * t.bits / 8) * lights;
+}
 
 methods::TensorClusteringSettings inner(const TensorSettings& t) {
   methods::TensorClusteringSettings s;
@@ -117,29 +128,19 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
 }
 
 int frames_within_memory(const Scene& scene, const RenderSettings& settings, const TensorSettings& t) {
-  const pipeline::View view = pipeline::make_view(scene.impl().desc, settings.view);
-  const double lights = static_cast<double>(settings.lights.count_or_default()),
-               rows = static_cast<double>(view.width) * view.height * settings.view.spp_or_default();
-  const double read =
-      settings.method.target_error > 0 ? methods::TensorClusteringSettings{}.max_rows : t.rows;
-  const auto world = build_world(scene, {});
-  const double frame = static_cast<double>(world->info().memory_bytes) +
-                       pipeline::memory_of_picture(rows, lights, false) + kBytesOfRow * rows +
-                       (kBytesOfLight + read * t.bits / 8) * lights;
-  const double fixed = kBytesAtLeast + kBytesOfEntries;
-  const auto room = [&](double bytes) { return (bytes - fixed) / frame - t.overlap; };
-  if (t.memory > 0) {
-    if (room(1e6 * t.memory) < 1)
-      throw InputError("tensor clustering takes about " +
-                           std::to_string(std::lround((fixed + frame * (1 + t.overlap)) / 1e6)) +
-                           " MB for one frame and the overlap, more than the memory that is given",
-                       "give more with --set memory=…, or fewer --lights, a smaller --size or a lower --spp");
-    return static_cast<int>(std::min<double>(t.chunk, room(1e6 * t.memory)));
-  }
-  pipeline::require_memory(
-      fixed + frame * (t.chunk + t.overlap),
-      "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
-  return t.chunk;
+  if (!(t.memory > 0)) return t.chunk;
+  const double frame = bytes_of_frame(*build_world(scene, {}),
+                                      pipeline::make_view(scene.impl().desc, settings.view), settings, t);
+  const double fitting = std::floor((1e6 * t.memory - kBytesOfProgram) / frame), overlap = t.overlap;
+  // A chunk overlaps by no more frames than it has.
+  const double length = fitting >= 2 * overlap ? fitting - overlap : std::floor(fitting / 2);
+  if (length < 1)
+    throw InputError(
+        "tensor clustering takes about " +
+            std::to_string(std::lround((kBytesOfProgram + frame * (overlap > 0 ? 2 : 1)) / 1e6)) +
+            " MB for one frame and its overlap, more than the memory that is given",
+        "give more with --set memory=…, or fewer --lights, a smaller --size or a lower --spp");
+  return static_cast<int>(std::min<double>(t.chunk, length));
 }
 
 std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
@@ -154,6 +155,10 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
       for (const Scene& scene : scenes) {
         worlds.push_back(build_world(scene, worlds.empty() ? sinks : silent));
         views.push_back(pipeline::make_view(scene.impl().desc, settings.view));
+        if (worlds.size() == 1)
+          pipeline::require_memory(
+              bytes_of_frame(*worlds[0], views[0], settings, tensor) * static_cast<double>(scenes.size()),
+              "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
       }
       pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
       recipe.row_albedo = true;

@@ -7,43 +7,46 @@ namespace {
 
 using linalg::RectangleClustering;
 using matrix::Index;
+using FrameRange = ClusterColumns::FrameRange;
 
-constexpr double kNoChannel = 1e-3;     // of a column
-constexpr float kBrightEnough = 0.25f;  // of the brightest
-constexpr double kLeastWeight = 0.5;    // of the mean of the cluster
+constexpr double kNoChannel = 1e-3;  // of a column
+// Of the mean weight in the cluster: what a representative has at least, and what it keeps in other frames.
+constexpr double kLeastWeight = 0.5, kWeightKept = 0.25;
 
-// body(pair, weight) for all pairs that are not black.
+// body(light, frame, weight) for all pairs that are not black.
 template <typename Body>
 void each_pair(const linalg::ReducedTensor& reduced, const RectangleClustering::Rectangle& rectangle,
-               const Body& body) {
-  for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
+               const FrameRange& frames, const Body& body) {
+  for (std::uint32_t k = frames.begin; k < frames.end; ++k)
     for (const std::uint32_t j : rectangle.lights)
       if (const float w = reduced.weight(j, k); w > 0) body(j, k, static_cast<double>(w));
 }
 
 }  // namespace
 
-ClusterColumns::Pair ClusterColumns::largest(const RectangleClustering::Rectangle& rectangle) const {
-  Pair best{rectangle.lights.front(), rectangle.begin};
+ClusterColumns::Pair ClusterColumns::largest(const RectangleClustering::Rectangle& rectangle,
+                                             FrameRange frames) const {
+  Pair best{rectangle.lights.front(), frames.begin};
   double largest = 0;
-  each_pair(reduced_, rectangle, [&](Index j, std::uint32_t k, double w) {
+  each_pair(reduced_, rectangle, frames, [&](Index j, std::uint32_t k, double w) {
     if (w > largest) largest = w, best = {j, k};
   });
   return best;
 }
 
-ClusterColumns::Pair ClusterColumns::central(const RectangleClustering::Rectangle& rectangle) const {
+ClusterColumns::Pair ClusterColumns::central(const RectangleClustering::Rectangle& rectangle,
+                                             FrameRange frames) const {
   std::vector<double> sum(reduced_.rows(), 0.0);
   std::vector<float> x(reduced_.rows());
   double weights = 0, pairs = 0;
-  each_pair(reduced_, rectangle, [&](Index j, std::uint32_t k, double w) {
+  each_pair(reduced_, rectangle, frames, [&](Index j, std::uint32_t k, double w) {
     reduced_.information(j, k, x.data());
     for (std::size_t i = 0; i < x.size(); ++i) sum[i] += w * static_cast<double>(x[i]);
     weights += w, pairs += 1;
   });
-  Pair best{rectangle.lights.front(), rectangle.begin};
+  Pair best{rectangle.lights.front(), frames.begin};
   double nearest = -1;
-  each_pair(reduced_, rectangle, [&](Index j, std::uint32_t k, double w) {
+  each_pair(reduced_, rectangle, frames, [&](Index j, std::uint32_t k, double w) {
     if (w < kLeastWeight * weights / pairs) return;
     reduced_.information(j, k, x.data());
     double along = 0;
@@ -51,6 +54,11 @@ ClusterColumns::Pair ClusterColumns::central(const RectangleClustering::Rectangl
     if (along > nearest) nearest = along, best = {j, k};
   });
   return best;
+}
+
+ClusterColumns::Pair ClusterColumns::representative(const RectangleClustering::Rectangle& rectangle,
+                                                    FrameRange frames) const {
+  return how_ == Representatives::central ? central(rectangle, frames) : largest(rectangle, frames);
 }
 
 // What is to add up: the column's sum over the rows that were read, or its norm.
@@ -78,7 +86,7 @@ Rgb ClusterColumns::scale(const RectangleClustering::Rectangle& rectangle, std::
 }
 
 ClusterColumn ClusterColumns::column_of(const RectangleClustering::Rectangle& rectangle) const {
-  const Pair best = how_ == Representatives::central ? central(rectangle) : largest(rectangle);
+  const Pair best = representative(rectangle, {rectangle.begin, rectangle.end});
   ClusterColumn column{best.column, best.frame, &rectangle, {}};
   for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
     column.scale.push_back(scale(rectangle, k, best));
@@ -86,11 +94,12 @@ ClusterColumn ClusterColumns::column_of(const RectangleClustering::Rectangle& re
 }
 
 matrix::ScaledColumn ClusterColumns::in_frame(const ClusterColumn& of, std::uint32_t frame) const {
-  Pair best{of.column, frame};
-  for (const std::uint32_t j : of.of->lights)
-    if (reduced_.weight(j, frame) > reduced_.weight(best.column, frame)) best.column = j;
-  if (reduced_.weight(of.column, frame) >= kBrightEnough * reduced_.weight(best.column, frame))
-    best.column = of.column;
+  double weights = 0, pairs = 0;
+  each_pair(reduced_, *of.of, {frame, frame + 1},
+            [&](Index, std::uint32_t, double w) { weights += w, pairs += 1; });
+  const auto own = static_cast<double>(reduced_.weight(of.column, frame));
+  const bool stays = own > 0 && own * pairs >= kWeightKept * weights;
+  const Pair best = stays ? Pair{of.column, frame} : representative(*of.of, {frame, frame + 1});
   return {best.column, scale(*of.of, frame, best), 0};
 }
 

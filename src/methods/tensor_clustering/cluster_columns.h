@@ -34,17 +34,22 @@ class ClusterColumns {
   ClusterColumn column_of(const linalg::RectangleClustering::Rectangle& rectangle) const;
 
   // The cluster in one of its frames when it is computed in that very frame (ours): by the representative's
-  // light, if it still is one of the brighter there, else by the brightest. Where nothing moves it is what is
-  // carried there.
+  // light, unless that has become much dimmer than the cluster's mean there; else by another that is found as
+  // it was. Where nothing moves it is what is carried there, to the bit.
   matrix::ScaledColumn in_frame(const ClusterColumn& of, std::uint32_t frame) const;
+
+  struct FrameRange {
+    std::uint32_t begin = 0, end = 0;
+  };
 
  private:
   struct Pair {
     matrix::Index column = 0;
     std::uint32_t frame = 0;
   };
-  Pair largest(const linalg::RectangleClustering::Rectangle& rectangle) const;
-  Pair central(const linalg::RectangleClustering::Rectangle& rectangle) const;
+  Pair representative(const linalg::RectangleClustering::Rectangle& rectangle, FrameRange frames) const;
+  Pair largest(const linalg::RectangleClustering::Rectangle& rectangle, FrameRange frames) const;
+  Pair central(const linalg::RectangleClustering::Rectangle& rectangle, FrameRange frames) const;
   double amount(Pair pair, std::size_t channel) const;
   Rgb scale(const linalg::RectangleClustering::Rectangle& rectangle, std::uint32_t frame,
             Pair computed) const;
