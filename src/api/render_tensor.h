@@ -12,12 +12,12 @@ namespace lumirank::api {
 void check(const TensorSettings& tensor, const RenderSettings& settings);
 
 // As many frames as a chunk may have, so that it takes no more memory than `tensor` allows, by estimates that
-// are the same on every machine. Throws InputError if one frame is too many, or, where nothing is said, if
-// the whole chunk takes more than there is.
+// are the same on every machine; all that `tensor` wants where it names no memory. Throws InputError if one
+// frame is too many.
 int frames_within_memory(const Scene& scene, const RenderSettings& settings, const TensorSettings& tensor);
 
 // One picture and report for each scene, which are one scene at moments one after the other; none if it was
-// cancelled.
+// cancelled. Throws InputError if they take more memory than there is.
 std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
                                         const TensorSettings& tensor, const Sinks& sinks);
 
