@@ -2,7 +2,57 @@
 
 #include <algorithm>
 
+#include "matrix/entry_reader.h"
+
 namespace lumirank::matrix {
+namespace {
+
+// Entries of a list, whose columns that are not black `ask` knows by their own numbers.
+template <typename Ask>
+Cost of_lit(const std::vector<Index>& whole, std::span<const Index> rows, std::span<const Index> columns,
+            std::span<Rgb> out, const Ask& ask) {
+  std::vector<Index> asked_rows, asked_columns;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (whole[columns[k]] != RenumberedColumns::kBlack)
+      asked_rows.push_back(rows[k]), asked_columns.push_back(whole[columns[k]]);
+  std::vector<Rgb> found(asked_rows.size());
+  const Cost cost =
+      ask(std::span<const Index>(asked_rows), std::span<const Index>(asked_columns), std::span<Rgb>(found));
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    out[k] = whole[columns[k]] == RenumberedColumns::kBlack ? Rgb(0) : found[next++];
+  return cost;
+}
+
+}  // namespace
+
+class RenumberedColumns::Reader final : public EntryReader {
+ public:
+  explicit Reader(const RenumberedColumns& matrix)
+      : whole_(matrix.whole_), reader_(matrix.matrix_->reader()) {}
+  void set_rows(std::span<const Index> rows) override { reader_->set_rows(rows); }
+  Cost column(Index j, std::span<Rgb> out, Part part) override {
+    if (whole_[j] != kBlack) return reader_->column(whole_[j], out, part);
+    std::fill(out.begin(), out.end(), Rgb(0));
+    return {};
+  }
+  Cost entries_at(std::span<const std::uint32_t> places, std::span<const Index> columns, std::span<Rgb> out,
+                  Part part) override {
+    return of_lit(whole_, places, columns, out,
+                  [&](auto p, auto c, auto o) { return reader_->entries_at(p, c, o, part); });
+  }
+  Cost entries(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
+               Part part) override {
+    return of_lit(whole_, rows, columns, out,
+                  [&](auto r, auto c, auto o) { return reader_->entries(r, c, o, part); });
+  }
+
+ private:
+  const std::vector<Index>& whole_;
+  std::unique_ptr<EntryReader> reader_;
+};
+
+std::unique_ptr<EntryReader> RenumberedColumns::reader() const { return std::make_unique<Reader>(*this); }
 
 RenumberedColumns::RenumberedColumns(std::shared_ptr<const LightingMatrix> matrix, std::vector<Index> whole)
     : matrix_(std::move(matrix)), whole_(std::move(whole)) {}
@@ -37,16 +87,8 @@ Cost RenumberedColumns::block(std::span<const Index> rows, std::span<const Index
 
 Cost RenumberedColumns::entries(std::span<const Index> rows, std::span<const Index> columns,
                                 std::span<Rgb> out, Part part) const {
-  std::vector<Index> asked_rows, asked_columns;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (whole_[columns[k]] != kBlack)
-      asked_rows.push_back(rows[k]), asked_columns.push_back(whole_[columns[k]]);
-  std::vector<Rgb> found(asked_rows.size());
-  const Cost cost = matrix_->entries(asked_rows, asked_columns, found, part);
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    out[k] = whole_[columns[k]] == kBlack ? Rgb(0) : found[next++];
-  return cost;
+  return of_lit(whole_, rows, columns, out,
+                [&](auto r, auto c, auto o) { return matrix_->entries(r, c, o, part); });
 }
 
 Cost RenumberedColumns::accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,

@@ -26,9 +26,11 @@ class RenumberedColumns : public LightingMatrix {
                Part part = Part::value) const override;
   Cost accumulate(std::span<const ScaledColumn> columns, std::span<Rgb> sums,
                   const Sinks& sinks = {}) const override;
+  std::unique_ptr<EntryReader> reader() const override;
   RowFeatures row_features() const override { return matrix_->row_features(); }
 
  private:
+  class Reader;
   std::shared_ptr<const LightingMatrix> matrix_;
   std::vector<Index> whole_;
 };

@@ -87,10 +87,15 @@ Rgb ClusterColumns::scale(const RectangleClustering::Rectangle& rectangle, std::
 
 ClusterColumn ClusterColumns::column_of(const RectangleClustering::Rectangle& rectangle) const {
   const Pair best = representative(rectangle, {rectangle.begin, rectangle.end});
-  ClusterColumn column{best.column, best.frame, &rectangle, {}};
+  ClusterColumn column{best.column, best.frame, &rectangle, {}, {}};
   for (std::uint32_t k = rectangle.begin; k < rectangle.end; ++k)
     column.scale.push_back(scale(rectangle, k, best));
   return column;
+}
+
+void ClusterColumns::find_in_frames(ClusterColumn& of) const {
+  of.in_frame.clear();
+  for (std::uint32_t k = of.of->begin; k < of.of->end; ++k) of.in_frame.push_back(in_frame(of, k));
 }
 
 matrix::ScaledColumn ClusterColumns::in_frame(const ClusterColumn& of, std::uint32_t frame) const {

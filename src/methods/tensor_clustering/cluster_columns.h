@@ -24,6 +24,9 @@ struct ClusterColumn {
   std::uint32_t frame = 0;  // in which it is computed
   const linalg::RectangleClustering::Rectangle* of = nullptr;
   std::vector<Rgb> scale;  // in each of the rectangle's frames, per channel
+  // In each of the rectangle's frames: what it is where it is computed in that very frame; empty until asked
+  // for.
+  std::vector<matrix::ScaledColumn> in_frame;
 };
 
 // The clusters' columns and scales, by what is known of them from the rows that were read.
@@ -33,10 +36,10 @@ class ClusterColumns {
 
   ClusterColumn column_of(const linalg::RectangleClustering::Rectangle& rectangle) const;
 
-  // The cluster in one of its frames when it is computed in that very frame (ours): by the representative's
-  // light, unless that has become much dimmer than the cluster's mean there; else by another that is found as
-  // it was. Where nothing moves it is what is carried there, to the bit.
-  matrix::ScaledColumn in_frame(const ClusterColumn& of, std::uint32_t frame) const;
+  // Fills `in_frame` (ours): with the representative's light, unless that has become much dimmer than the
+  // cluster's mean there; else with another that is found as it was. Where nothing moves it is what is
+  // carried there, to the bit.
+  void find_in_frames(ClusterColumn& of) const;
 
   struct FrameRange {
     std::uint32_t begin = 0, end = 0;
@@ -50,6 +53,7 @@ class ClusterColumns {
   Pair representative(const linalg::RectangleClustering::Rectangle& rectangle, FrameRange frames) const;
   Pair largest(const linalg::RectangleClustering::Rectangle& rectangle, FrameRange frames) const;
   Pair central(const linalg::RectangleClustering::Rectangle& rectangle, FrameRange frames) const;
+  matrix::ScaledColumn in_frame(const ClusterColumn& of, std::uint32_t frame) const;
   double amount(Pair pair, std::size_t channel) const;
   Rgb scale(const linalg::RectangleClustering::Rectangle& rectangle, std::uint32_t frame,
             Pair computed) const;

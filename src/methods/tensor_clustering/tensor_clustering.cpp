@@ -12,6 +12,7 @@
 #include "methods/tensor_clustering/changed_rows.h"
 #include "methods/tensor_clustering/cluster_columns.h"
 #include "methods/tensor_clustering/row_mapping.h"
+#include "methods/tensor_clustering/slice_columns.h"
 #include "methods/tensor_clustering/test_rows.h"
 
 namespace lumirank::methods {
@@ -58,8 +59,6 @@ constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
 // What is too dark to be seen may change: this part of a frame's mean light.
 constexpr float kUnseen = 0.05f;
 
-constexpr std::size_t kRowsAtOnce = 2048;
-
 class TensorRun {
  public:
   TensorRun(const matrix::LightingTensor& tensor, const TensorClusteringSettings& settings,
@@ -77,6 +76,13 @@ class TensorRun {
       for (std::uint32_t k = c.of->begin; k < c.of->end; ++k) ++estimate_.active[k];
     estimate_.clusters = clusters_.size();
     estimate_.cost = clustering_->cost();
+    timed("clustering", [&] {
+      const ClusterColumns columns_of(*reduced_, settings_.representatives);
+      parallel_for(clusters_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) columns_of.find_in_frames(clusters_[c]);
+      });
+      return true;
+    });
     if (!timed("columns", [&] { return compute_columns(); })) return interrupted();
     if (!timed("changes", [&] { return shade_changes(); })) return interrupted();
     auto& numbers = estimate_.trace.numbers;
@@ -256,32 +262,42 @@ class TensorRun {
     for (const ClusterColumn* c : clusters)
       first = std::min(first, c->of->begin), last = std::max(last, c->of->end - 1);
     std::vector<std::vector<Rgb>> to(last - first + 1);
-    std::vector<Rgb> column(matrix->rows());
-    for (const ClusterColumn* c : clusters) {
-      estimate_.spent += matrix->column(c->column, column);
-      for (std::uint32_t f = c->of->begin; f < c->of->end; ++f) {
-        std::vector<Rgb>& sums = f == k ? own_[k] : to[f - first];
-        if (sums.empty()) sums.assign(matrix->rows(), Rgb(0));
-        const Rgb scale = c->scale[f - c->of->begin];
-        parallel_for(sums.size(), 16384, [&](std::size_t b, std::size_t e) {
-          for (std::size_t i = b; i < e; ++i) sums[i] += scale * column[i];
+    const auto sums_of = [&](std::uint32_t f) -> std::vector<Rgb>& {
+      return f == k ? own_[k] : to[f - first];
+    };
+    for (const ClusterColumn* c : clusters)
+      for (std::uint32_t f = c->of->begin; f < c->of->end; ++f) sums_of(f).resize(matrix->rows(), Rgb(0));
+    std::vector<Index> rows(matrix->rows());
+    std::iota(rows.begin(), rows.end(), Index{0});
+    estimate_.spent +=
+        each_slice(*matrix, rows, [&](matrix::EntryReader& reader, std::size_t begin, std::size_t end) {
+          matrix::Cost cost;
+          std::vector<Rgb> column(end - begin);
+          for (const ClusterColumn* c : clusters) {
+            cost += reader.column(c->column, column);
+            for (std::uint32_t f = c->of->begin; f < c->of->end; ++f) {
+              const Rgb scale = c->scale[f - c->of->begin];
+              Rgb* const sums = sums_of(f).data() + begin;
+              for (std::size_t i = 0; i < column.size(); ++i) sums[i] += scale * column[i];
+            }
+          }
+          return cost;
         });
-      }
-    }
     RowMapping mapping = RowMapping::identity(matrix->rows());
     for (std::uint32_t f = static_cast<std::uint32_t>(k) + 1; f <= last; ++f) {
       mapping = mapping.then(mappings_.to_later[f - 1]);
-      carry(*matrix, to[f - first], f, mapping, clusters);
+      carry(static_cast<std::uint32_t>(k), *matrix, to[f - first], f, mapping);
     }
     mapping = RowMapping::identity(matrix->rows());
     for (std::uint32_t f = static_cast<std::uint32_t>(k); f-- > first;) {
       mapping = mapping.then(mappings_.to_earlier[f]);
-      carry(*matrix, to[f - first], f, mapping, clusters);
+      carry(static_cast<std::uint32_t>(k), *matrix, to[f - first], f, mapping);
     }
   }
 
-  void carry(const matrix::LightingMatrix& source, const std::vector<Rgb>& sums, std::uint32_t f,
-             const RowMapping& mapping, const std::vector<const ClusterColumn*>& clusters) {
+  // Sums of the columns of frame `from` that are meant for frame f.
+  void carry(std::uint32_t from, const matrix::LightingMatrix& source, const std::vector<Rgb>& sums,
+             std::uint32_t f, const RowMapping& mapping) {
     if (sums.empty()) return;
     const auto target = tensor_.frame(f);
     const auto here = source.row_features().albedo, there = target->row_features().albedo;
@@ -296,46 +312,28 @@ class TensorRun {
       else
         carried_[f][i] += relit ? relight(sums[at], here[at], there[i]) : sums[at];
     }
-    std::vector<const ClusterColumn*> acting;
-    for (const ClusterColumn* c : clusters)
-      if (f >= c->of->begin && f < c->of->end) acting.push_back(c);
-    const std::vector<Rgb> found = in_own_frame(*target, f, hidden, acting);
-    for (std::size_t a = 0; a < hidden.size(); ++a) carried_[f][hidden[a]] += found[a];
+    if (!hidden.empty()) {
+      const std::vector<Rgb> found =
+          sums_at(*target, hidden, in_own_frame(f, [&](const ClusterColumn& c) { return c.frame == from; }),
+                  estimate_.spent);
+      for (std::size_t a = 0; a < hidden.size(); ++a) carried_[f][hidden[a]] += found[a];
+    }
     carried_rows_ += static_cast<double>(mapping.from.size());
     fresh_rows_ += static_cast<double>(hidden.size());
   }
 
   // -------------------------------------------------------------------------------------------- changes
 
-  // Sums over clusters, as frame f has them itself, at some of its rows.
-  std::vector<Rgb> in_own_frame(const matrix::LightingMatrix& matrix, std::uint32_t f,
-                                std::span<const Index> rows,
-                                const std::vector<const ClusterColumn*>& clusters) {
-    std::vector<Rgb> sums(rows.size(), Rgb(0));
-    if (rows.empty()) return sums;
-    std::vector<Index> columns;
-    std::vector<Rgb> scales;
-    const ClusterColumns columns_of(*reduced_, settings_.representatives);
-    for (const ClusterColumn* c : clusters) {
-      const matrix::ScaledColumn own = columns_of.in_frame(*c, f);
-      if (is_black(own.scale)) continue;
-      columns.push_back(own.column), scales.push_back(own.scale);
+  // Of the clusters that act in frame f and are wanted: what they are in that very frame.
+  template <typename Wanted>
+  std::vector<matrix::ScaledColumn> in_own_frame(std::uint32_t f, const Wanted& wanted) const {
+    std::vector<matrix::ScaledColumn> out;
+    for (const ClusterColumn& c : clusters_) {
+      if (f < c.of->begin || f >= c.of->end || !wanted(c)) continue;
+      const matrix::ScaledColumn& own = c.in_frame[f - c.of->begin];
+      if (!is_black(own.scale)) out.push_back(own);
     }
-    // No more columns than rows at a time: then neighboring rows share a light's rays.
-    const std::size_t rows_at_once = std::min(rows.size(), kRowsAtOnce);
-    std::vector<Rgb> values;
-    for (std::size_t begin = 0; begin < rows.size(); begin += rows_at_once) {
-      const auto some = rows.subspan(begin, std::min(rows_at_once, rows.size() - begin));
-      for (std::size_t first = 0; first < columns.size(); first += some.size()) {
-        const auto lights = std::span(columns).subspan(first, std::min(some.size(), columns.size() - first));
-        values.resize(some.size() * lights.size());
-        estimate_.spent += matrix.block(some, lights, values, matrix::Part::value);
-        for (std::size_t a = 0; a < some.size(); ++a)
-          for (std::size_t b = 0; b < lights.size(); ++b)
-            sums[begin + a] += scales[first + b] * values[a * lights.size() + b];
-      }
-    }
-    return sums;
+    return out;
   }
 
   bool shade_changes() {
@@ -351,10 +349,9 @@ class TensorRun {
   }
 
   void shade_changes(std::uint32_t f) {
-    std::vector<const ClusterColumn*> acting;
-    for (const ClusterColumn& c : clusters_)
-      if (c.frame != f && f >= c.of->begin && f < c.of->end) acting.push_back(&c);
-    if (acting.empty()) return;
+    const std::vector<matrix::ScaledColumn> carried =
+        in_own_frame(f, [&](const ClusterColumn& c) { return c.frame != f; });
+    if (carried.empty()) return;
     const auto matrix = tensor_.frame(f);
     double all = 0;
     for (std::size_t i = 0; i < rows_[f]; ++i)
@@ -362,15 +359,15 @@ class TensorRun {
     const float unseen =
         kUnseen * static_cast<float>(all / static_cast<double>(std::max<std::size_t>(1, rows_[f])));
     const auto changed = [&](std::span<const Index> rows) {
-      const std::vector<Rgb> found = in_own_frame(*matrix, f, rows, acting);
+      const std::vector<Rgb> found = sums_at(*matrix, rows, carried, estimate_.spent);
       std::vector<bool> said(rows.size());
       for (std::size_t a = 0; a < rows.size(); ++a) {
-        Rgb& carried = carried_[f][rows[a]];
+        Rgb& there = carried_[f][rows[a]];
         float difference = 0;
-        for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(found[a][c] - carried[c]));
+        for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(found[a][c] - there[c]));
         const float light = max_component(own_[f][rows[a]] + found[a]);
         said[a] = difference > static_cast<float>(settings_.max_change) * (light + unseen);
-        carried = found[a];
+        there = found[a];
       }
       return said;
     };

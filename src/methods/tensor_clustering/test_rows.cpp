@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "methods/tensor_clustering/slice_columns.h"
+
 namespace lumirank::methods {
 namespace {
 
@@ -48,20 +50,15 @@ double TestRows::error(std::span<const ClusterColumn> clusters, const FrameMappi
         for (Index& i : at) i = mappings.to_later[step - 1].from[i];
       for (std::uint32_t step = f; step < k; ++step)
         for (Index& i : at) i = mappings.to_earlier[step].from[i];
-      std::vector<Index> columns;
-      std::vector<Rgb> scales;
+      std::vector<matrix::ScaledColumn> columns;
       for (const ClusterColumn* c : of_frame[k])
         if (f >= c->of->begin && f < c->of->end)
-          columns.push_back(c->column), scales.push_back(c->scale[f - c->of->begin]);
-      std::vector<Rgb> values(at.size() * columns.size());
-      spent += matrix->block(at, columns, values, matrix::Part::value);
+          columns.push_back({c->column, c->scale[f - c->of->begin], 0});
+      const std::vector<Rgb> sums = sums_at(*matrix, at, columns, spent);
       const auto there_matrix = tensor_.frame(f);
       const matrix::RowFeatures there = there_matrix->row_features();
-      for (std::size_t a = 0; a < at.size(); ++a) {
-        Rgb sum(0);
-        for (std::size_t b = 0; b < columns.size(); ++b) sum += scales[b] * values[a * columns.size() + b];
-        estimates[f][a] += relight(sum, albedo_of(here, at[a]), albedo_of(there, frames_[f].rows[a]));
-      }
+      for (std::size_t a = 0; a < at.size(); ++a)
+        estimates[f][a] += relight(sums[a], albedo_of(here, at[a]), albedo_of(there, frames_[f].rows[a]));
     }
   }
   double difference = 0, all = 0;
