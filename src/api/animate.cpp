@@ -15,6 +15,7 @@
 #include "api/shot_chunks.h"
 #include "base/error.h"
 #include "base/hash_text.h"
+#include "base/timer.h"
 #include "image/atomic_file.h"
 
 namespace lumirank {
@@ -128,10 +129,12 @@ class Shot {
   // one before it is there.
   bool render_chunk(const api::ShotChunks& chunks, const api::Chunk& chunk, const std::vector<int>& wanted,
                     const Sinks& sinks) const {
+    const Timer timer;
     std::vector<Scene> scenes;
     for (int frame = chunk.first; frame <= chunk.tail_last; ++frame)
       scenes.push_back(
           scene_.at(frame / settings_.frames_per_second, frame == chunk.first ? sinks : Sinks{}));
+    const double read_seconds = timer.seconds() / chunk.size();
     auto results = api::render_tensor(scenes, settings_.render, *settings_.tensor, sinks);
     if (results.empty()) return false;
     for (int frame = chunk.last + 1; frame <= chunk.tail_last; ++frame)
@@ -144,6 +147,7 @@ class Shot {
       const api::TailPicture tail(folder_, frame);
       if (part < 1) tail.blend_into(result.picture, part);
       result.report.numbers["chunk.part"] = part;
+      result.report.seconds["read"] = read_seconds;
       write(frame, result.picture, result.report);
       tail.remove();
     }

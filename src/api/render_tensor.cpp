@@ -148,6 +148,7 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
   std::vector<RenderResult> results;
   pipeline::within_memory(pipeline::kSmallerPicture, [&] {
     with_threads(settings.threads, [&] {
+      const Timer timer;
       std::vector<pipeline::SharedWorld> worlds;
       std::vector<pipeline::View> views;
       Sinks silent;
@@ -160,6 +161,7 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
               bytes_of_frame(*worlds[0], views[0], settings, tensor) * static_cast<double>(scenes.size()),
               "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
       }
+      const double build_seconds = timer.seconds() / static_cast<double>(scenes.size());
       pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
       recipe.row_albedo = true;
       if (recipe.lights.placement == LightPlacement::automatic)
@@ -196,6 +198,7 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
                                      pipeline::seen_rows(frame.receivers(), frame.traced), fits);
           if (rest_plan.piloted) result.report.numbers["rest.share"] = rest_plan.pilot.share;
           result.report.numbers["rest.paths"] = rest.paths();
+          result.report.seconds["build"] = build_seconds;
           result.report.seconds["rest"] = rest.seconds();
           result.report.numbers["lights.in_all_frames"] = shot.common_share();
           results.push_back(std::move(result));

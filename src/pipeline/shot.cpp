@@ -3,6 +3,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "matrix/renumbered_columns.h"
 #include "transport/lights/gather_lights.h"
 
@@ -68,12 +69,16 @@ std::vector<SharedPrepared> prepare_shot(const std::vector<SharedWorld>& worlds,
                                          const std::vector<View>& views, const Recipe& recipe,
                                          std::size_t count, const Sinks& sinks) {
   if (worlds.empty()) return {};
+  Timer timer;
   const ShotSurvey common = survey_shot(worlds, views, recipe, count, sinks);
+  const double survey_seconds = timer.seconds();
   std::vector<SharedPrepared> frames;
   for (std::size_t k = 0; k < worlds.size(); ++k) {
     std::map<std::string, double> seconds;
     TracedRows made = trace_rows_and_light(*worlds[k], views[k], recipe, sinks, seconds);
+    const Timer lights_timer;
     Columns columns = trace_columns(*worlds[k], recipe, *common.guide, count, sinks, &common.plan);
+    seconds["lights"] = lights_timer.seconds() + survey_seconds / static_cast<double>(worlds.size());
     made.traced.near = trace_near(*worlds[k], *made.rows, columns, recipe, sinks);
     frames.push_back(join(worlds[k], views[k], recipe, std::move(made.rows), std::move(columns),
                           std::move(made.traced), std::move(seconds)));

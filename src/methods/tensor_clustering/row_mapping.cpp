@@ -90,14 +90,16 @@ RowMapping RowMapping::then(const RowMapping& next) const {
   RowMapping both;
   both.from.resize(next.from.size());
   both.distance.resize(next.from.size());
-  for (std::size_t i = 0; i < next.from.size(); ++i) {
-    if (next.from[i] >= from.size()) {  // nothing is seen in between
-      both.distance[i] = std::numeric_limits<float>::infinity();
-      continue;
+  parallel_for(next.from.size(), kRowsInTurn, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (next.from[i] >= from.size()) {  // nothing is seen in between
+        both.distance[i] = std::numeric_limits<float>::infinity();
+        continue;
+      }
+      both.from[i] = from[next.from[i]];
+      both.distance[i] = std::max(next.distance[i], distance[next.from[i]]);
     }
-    both.from[i] = from[next.from[i]];
-    both.distance[i] = std::max(next.distance[i], distance[next.from[i]]);
-  }
+  });
   return both;
 }
 

@@ -59,6 +59,8 @@ constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
 // What is too dark to be seen may change: this part of a frame's mean light.
 constexpr float kUnseen = 0.05f;
 
+constexpr std::size_t kCarriedAtOnce = 1 << 12;
+
 class TensorRun {
  public:
   TensorRun(const matrix::LightingTensor& tensor, const TensorClusteringSettings& settings,
@@ -302,16 +304,21 @@ class TensorRun {
     const auto target = tensor_.frame(f);
     const auto here = source.row_features().albedo, there = target->row_features().albedo;
     const bool relit = !here.empty() && !there.empty();
-    std::vector<Index> hidden;
-    for (std::size_t i = 0; i < mapping.from.size(); ++i) {
-      const Index at = mapping.from[i];
+    const auto reaches = [&](std::size_t i) {
       const float distance = mapping.distance[i];
-      if (!std::isfinite(distance) ||
-          (settings_.max_distance > 0 && static_cast<double>(distance) > settings_.max_distance))
-        hidden.push_back(static_cast<Index>(i));
-      else
+      return std::isfinite(distance) &&
+             (settings_.max_distance == 0 || static_cast<double>(distance) <= settings_.max_distance);
+    };
+    parallel_for(mapping.from.size(), kCarriedAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!reaches(i)) continue;
+        const Index at = mapping.from[i];
         carried_[f][i] += relit ? relight(sums[at], here[at], there[i]) : sums[at];
-    }
+      }
+    });
+    std::vector<Index> hidden;
+    for (std::size_t i = 0; i < mapping.from.size(); ++i)
+      if (!reaches(i)) hidden.push_back(static_cast<Index>(i));
     if (!hidden.empty()) {
       const std::vector<Rgb> found =
           sums_at(*target, hidden, in_own_frame(f, [&](const ClusterColumn& c) { return c.frame == from; }),
