@@ -24,8 +24,17 @@ using scatter::Closure;
 constexpr std::size_t kSamplesAtOnce = 256, kPhotonsAtOnce = 1024;
 // Shadow rays of each sample; it is one of very many lights.
 constexpr std::uint64_t kDirectRays = 8;
-// Samples that share a photon, and how many are asked for to find as many on its side of the surface.
-constexpr std::size_t kSharers = 4, kAsked = 32;
+// Samples that share a photon, and how many of the nearest are asked for to find as many on its side of the
+// surface; at last on any shape.
+constexpr std::size_t kSharers = 4;
+struct Asking {
+  std::size_t nearest;
+  bool enough_with_fewer;  // sharers than kSharers
+  bool same_shape, seen;
+};
+constexpr Asking kAskings[] = {
+    {8, false, true, true}, {32, true, true, true}, {512, true, true, true}, {512, true, false, false}};
+constexpr std::size_t kMostAsked = 512;
 constexpr float kSameSide = 0.5f;  // cosine between normals
 // Photon and sample see each other from so far above the surface, of their distance: a sample on the floor
 // beneath a cupboard takes nothing of the light beside it, where it would be lost.
@@ -237,26 +246,26 @@ class GatherLighting {
   Shares sharers(const Places& places, const PlaceTree& tree, const LightRecord& photon) const {
     Shares shares;
     std::size_t taken = 0;
-    for (std::size_t attempt = 0; attempt < 3 && taken == 0; ++attempt) {
-      const std::size_t asked = attempt == 0 ? kAsked : 16 * kAsked;
-      std::array<std::uint32_t, 16 * kAsked> near;
-      std::array<float, 16 * kAsked> squared;
+    float last = 0;
+    for (const Asking& asking : kAskings) {
+      std::array<std::uint32_t, kMostAsked> near;
+      std::array<float, kMostAsked> squared;
       const float from[3] = {photon.position.x, photon.position.y, photon.position.z};
-      const std::size_t found = tree.knnSearch(from, asked, near.data(), squared.data());
-      float last = 0;
+      const std::size_t found = tree.knnSearch(from, asking.nearest, near.data(), squared.data());
+      taken = 0;
       for (std::size_t i = 0; i < found && taken < kSharers; ++i) {
         std::size_t side;
         const std::uint32_t k = places.sample[near[i]];
-        if (!takes(placed_[k], photon, attempt < 2, side)) continue;
-        if (attempt < 2 && !open_between(photon, placed_[k])) continue;
+        if (!takes(placed_[k], photon, asking.same_shape, side)) continue;
+        if (asking.seen && !open_between(photon, placed_[k])) continue;
         shares[taken++] = {k, static_cast<std::uint8_t>(side), squared[i]};
         last = squared[i];
       }
-      // The farthest one gets little, so that shares change smoothly when the order does.
-      for (std::size_t i = 0; i < taken; ++i) {
-        shares[i].part = last > 0 ? std::max(0.02f, square(1 - shares[i].part / last)) : 1.0f;
-      }
+      if (taken == kSharers || (taken > 0 && asking.enough_with_fewer)) break;
     }
+    // The farthest one gets little, so that shares change smoothly when the order does.
+    for (std::size_t i = 0; i < taken; ++i)
+      shares[i].part = last > 0 ? std::max(0.02f, square(1 - shares[i].part / last)) : 1.0f;
     float all = 0;
     for (const Share& s : shares) all += s.part;
     for (Share& s : shares) s.part = all > 0 ? s.part / all : 0.0f;
