@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "api/render_in_shot.h"
 #include "api/render_tensor.h"
 #include "api/scene.h"
 #include "api/shot_chunks.h"
@@ -117,12 +118,18 @@ class Shot {
   }
 
   // False if it was interrupted.
-  bool render_frame(int frame, const Sinks& sinks) const {
+  bool render_frame(int frame, const std::shared_ptr<const pipeline::ShotLights>& lights,
+                    const Sinks& sinks) const {
     const Scene now = scene_.at(frame / settings_.frames_per_second, sinks);
-    const RenderResult result = render(now, settings_.render, sinks);
+    const RenderResult result = api::render_in_shot(now, settings_.render, lights, sinks);
     if (result.interrupted) return false;
     write(frame, result.picture, result.report);
     return true;
+  }
+
+  // What its frames share if they are rendered one by one.
+  std::shared_ptr<const pipeline::ShotLights> plan_lights(const Sinks& sinks) const {
+    return api::plan_lights_of_motion(scene_, settings_.render, sinks);
   }
 
   // A chunk and its tail by one clustering; writes those of its own frames that are wanted. The tail of the
@@ -215,9 +222,16 @@ void render_frames(const Shot& shot, const std::vector<int>& missing, AnimationR
                    const Sinks& sinks) {
   Sinks own = sinks;
   own.progress = [](const char*, double) {};
+  std::shared_ptr<const pipeline::ShotLights> lights;
+  try {
+    if (!missing.empty()) lights = shot.plan_lights(sinks);
+  } catch (const Cancelled&) {
+    result.interrupted = true;
+    return;
+  }
   for (std::size_t k = 0; k < missing.size(); ++k) {
     sinks.report("frames", static_cast<double>(k) / static_cast<double>(missing.size()));
-    if (sinks.cancelled() || !shot.render_frame(missing[k], own)) {
+    if (sinks.cancelled() || !shot.render_frame(missing[k], lights, own)) {
       result.interrupted = true;
       return;
     }

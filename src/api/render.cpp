@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/build_world.h"
+#include "api/render_in_shot.h"
 #include "api/scene.h"
 #include "api/shutter.h"
 #include "base/error.h"
@@ -46,10 +47,17 @@ std::string version() { return program_version(); }
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                     const PreviewCallback& on_preview) {
+  return api::render_in_shot(scene, settings, nullptr, sinks, on_preview);
+}
+
+RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& settings,
+                                 std::shared_ptr<const pipeline::ShotLights> lights, const Sinks& sinks,
+                                 const PreviewCallback& on_preview) {
   validate(settings);
   RenderResult result;
   within_memory_and_threads(settings, [&] {
     pipeline::RenderTask task;
+    task.shot_lights = std::move(lights);
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
     task.info = &pipeline::chosen_method(settings, &task.why);
     task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&

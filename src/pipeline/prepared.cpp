@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/timer.h"
+#include "pipeline/shot.h"
 #include "pipeline/traced_indirect.h"
 #include "transport/lights/sphere_lights.h"
 
@@ -112,12 +113,17 @@ pathtrace::CarriedByColumns even_areas(transport::VirtualLights& lights, const w
 
 }  // namespace
 
+SharedSurvey survey(const SharedWorld& world, const View& view, const Recipe& recipe, const Sinks& sinks) {
+  if (recipe.shot_lights) return recipe.shot_lights->guide;
+  return survey(*world, recipe, aim_at(*world, view, recipe.light_seed, sinks));
+}
+
 Columns trace_columns(const world::World& world, const Recipe& recipe, const transport::LightSurvey& survey,
-                      std::size_t count, const Sinks& sinks, const transport::GatherPlan* gather) {
+                      std::size_t count, const Sinks& sinks) {
   transport::LightSettings ls = light_settings(recipe);
   ls.count = count;
   ls.survey = &survey;
-  ls.gather = gather;
+  if (recipe.shot_lights && recipe.shot_lights->count == count) ls.gather = &recipe.shot_lights->plan;
   auto lights = std::make_shared<transport::VirtualLights>(transport::trace_virtual_lights(world, ls, sinks));
   Columns columns;
   columns.asked = count;
@@ -181,7 +187,8 @@ bool same_rows(const Recipe& a, const Recipe& b) {
 bool same_columns(const Recipe& a, const Recipe& b) {
   return a.light_seed == b.light_seed && a.only == b.only && a.traced_below == b.traced_below &&
          a.compensated == b.compensated && a.lights.type == b.lights.type &&
-         a.lights.placement == b.lights.placement && a.lights.radius_scale == b.lights.radius_scale &&
+         a.lights.placement == b.lights.placement && a.shot_lights == b.shot_lights &&
+         a.lights.radius_scale == b.lights.radius_scale &&
          (!a.compensated || a.lights.clamp == b.lights.clamp);
 }
 
@@ -209,9 +216,7 @@ SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe&
     columns = previous->columns;
   } else {
     const Timer timer;
-    columns =
-        trace_columns(*world, recipe, *survey(*world, recipe, aim_at(*world, view, recipe.light_seed, sinks)),
-                      count, sinks);
+    columns = trace_columns(*world, recipe, *survey(world, view, recipe, sinks), count, sinks);
     seconds["lights"] = timer.seconds();
   }
   if (!keeps_rows || !keeps_columns || previous->recipe.near_radii != recipe.near_radii) {

@@ -90,9 +90,10 @@ TracedRows trace_rows_and_light(const world::World& world, const View& view, con
 transport::Receivers aim_at(const world::World& world, const View& view, std::uint64_t seed,
                             const Sinks& sinks);
 SharedSurvey survey(const world::World& world, const Recipe& recipe, const transport::Receivers& aim);
-// `gather`: what moments share, for lights on gather samples (LightSettings::gather); may be nullptr.
+// What the recipe's shot shares, or one for this view.
+SharedSurvey survey(const SharedWorld& world, const View& view, const Recipe& recipe, const Sinks& sinks);
 Columns trace_columns(const world::World& world, const Recipe& recipe, const transport::LightSurvey& survey,
-                      std::size_t count, const Sinks& sinks, const transport::GatherPlan* gather = nullptr);
+                      std::size_t count, const Sinks& sinks);
 std::vector<Rgb> trace_near(const world::World& world, const transport::Receivers& rows,
                             const Columns& columns, const Recipe& recipe, const Sinks& sinks);
 

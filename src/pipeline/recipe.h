@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "lumirank/settings.h"
@@ -16,6 +17,7 @@
 namespace lumirank::pipeline {
 
 using world::View;
+struct ShotLights;
 
 // The view that settings ask for. Throws InputError for an unknown camera or a crop outside the film.
 View make_view(const scenedesc::SceneDesc& desc, const ViewSettings& settings);
@@ -43,6 +45,8 @@ struct Recipe {
   bool row_albedo = false;        // rows know their albedo, for methods that carry light between frames
   bool compensated = false;       // what clamping takes is given back by tracing
   int instants = 1, instant = 0;  // of an open shutter: rows are those of one instant of so many
+  // Of a shot whose frames have the same lights (shot.h); nullptr: each picture has lights of its own.
+  std::shared_ptr<const ShotLights> shot_lights;
 
   friend bool operator==(const Recipe&, const Recipe&) = default;
 };

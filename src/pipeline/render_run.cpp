@@ -48,6 +48,7 @@ class RenderRun {
         view_(task_.view),
         recipe_(make_recipe(asked, view_)),
         parts_(wanted_parts(asked.view.only)) {
+    recipe_.shot_lights = task_.shot_lights;
     seconds_["build"] = task_.build_seconds;
     if (!asked.choices.empty()) choices_ = methods::TimedChoices(asked.choices);
   }
@@ -167,7 +168,7 @@ class RenderRun {
   }
 
   void make_survey() {
-    survey_ = survey(*task_.world, recipe_, aim_at(*task_.world, view_, recipe_.light_seed, sinks_));
+    survey_ = survey(task_.world, view_, recipe_, sinks_);
   }
 
   // ------------------------------------------------------------ rows, columns, matrix

@@ -16,6 +16,7 @@ struct RenderTask {
   View view;
   const methods::MethodInfo* info = nullptr;
   std::unique_ptr<methods::Method> method;
+  std::shared_ptr<const ShotLights> shot_lights;  // see Recipe; may be nullptr
   std::string why;          // it is this method
   bool by_default = false;  // nobody asked for it: a short time may choose another
   double lumens_per_unit = 1;

@@ -32,55 +32,53 @@ double ShotTensor::common_share() const {
   return number_.empty() ? 1.0 : static_cast<double>(common_) / static_cast<double>(number_.size());
 }
 
-namespace {
-
-// Of what the chunk's first, middle and last frames see; the middle one's is `guide`.
-struct ShotSurvey {
-  SharedSurvey guide;
-  transport::GatherPlan plan;
-};
-
-ShotSurvey survey_shot(const std::vector<SharedWorld>& worlds, const std::vector<View>& views,
-                       const Recipe& recipe, std::size_t count, const Sinks& sinks) {
-  const std::size_t middle = worlds.size() / 2;
-  std::set<std::size_t> asked{middle};
+std::shared_ptr<const ShotLights> plan_shot_lights(const std::vector<ShotMoment>& moments,
+                                                   const Recipe& recipe, std::size_t count,
+                                                   const Sinks& sinks) {
   const bool gather = recipe.lights.placement == LightPlacement::gather;
-  if (gather) asked.insert({0, worlds.size() - 1});
+  auto lights = std::make_shared<ShotLights>();
+  lights->count = count;
   std::vector<SharedSurvey> surveys;
   std::vector<const world::World*> seen;
   std::vector<const transport::LightSurvey*> told;
-  ShotSurvey shot;
-  for (const std::size_t k : asked) {
-    surveys.push_back(survey(*worlds[k], recipe, aim_at(*worlds[k], views[k], recipe.light_seed, sinks)));
-    seen.push_back(worlds[k].get()), told.push_back(surveys.back().get());
-    if (k == middle) shot.guide = surveys.back();
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    const bool middle = k == moments.size() / 2;
+    if (!gather && !middle) continue;
+    const auto& [world, view] = moments[k];
+    surveys.push_back(survey(*world, recipe, aim_at(*world, view, recipe.light_seed, sinks)));
+    seen.push_back(world.get()), told.push_back(surveys.back().get());
+    if (middle) lights->guide = surveys.back();
   }
   if (gather) {
     transport::LightSettings ls = light_settings(recipe);
     ls.count = count;
-    shot.plan = transport::plan_gather(seen, told, ls);
+    lights->plan = transport::plan_gather(seen, told, ls);
   }
-  return shot;
+  return lights;
 }
-
-}  // namespace
 
 std::vector<SharedPrepared> prepare_shot(const std::vector<SharedWorld>& worlds,
                                          const std::vector<View>& views, const Recipe& recipe,
                                          std::size_t count, const Sinks& sinks) {
   if (worlds.empty()) return {};
   Timer timer;
-  const ShotSurvey common = survey_shot(worlds, views, recipe, count, sinks);
+  Recipe common = recipe;
+  {
+    std::vector<ShotMoment> moments;
+    for (const std::size_t k : std::set<std::size_t>{0, worlds.size() / 2, worlds.size() - 1})
+      moments.push_back({worlds[k], views[k]});
+    common.shot_lights = plan_shot_lights(moments, recipe, count, sinks);
+  }
   const double survey_seconds = timer.seconds();
   std::vector<SharedPrepared> frames;
   for (std::size_t k = 0; k < worlds.size(); ++k) {
     std::map<std::string, double> seconds;
-    TracedRows made = trace_rows_and_light(*worlds[k], views[k], recipe, sinks, seconds);
+    TracedRows made = trace_rows_and_light(*worlds[k], views[k], common, sinks, seconds);
     const Timer lights_timer;
-    Columns columns = trace_columns(*worlds[k], recipe, *common.guide, count, sinks, &common.plan);
+    Columns columns = trace_columns(*worlds[k], common, *common.shot_lights->guide, count, sinks);
     seconds["lights"] = lights_timer.seconds() + survey_seconds / static_cast<double>(worlds.size());
-    made.traced.near = trace_near(*worlds[k], *made.rows, columns, recipe, sinks);
-    frames.push_back(join(worlds[k], views[k], recipe, std::move(made.rows), std::move(columns),
+    made.traced.near = trace_near(*worlds[k], *made.rows, columns, common, sinks);
+    frames.push_back(join(worlds[k], views[k], common, std::move(made.rows), std::move(columns),
                           std::move(made.traced), std::move(seconds)));
     sinks.report("frames", static_cast<double>(k + 1) / static_cast<double>(worlds.size()));
   }

@@ -7,6 +7,7 @@
 
 #include "matrix/lighting_tensor.h"
 #include "pipeline/prepared.h"
+#include "transport/lights/gather_samples.h"
 
 namespace lumirank::pipeline {
 
@@ -29,8 +30,24 @@ class ShotTensor : public matrix::LightingTensor {
   std::size_t common_ = 0;
 };
 
-// What is prepared for every frame of a shot, with lights that are aimed at what the middle one sees, so that
-// particles start alike in all.
+// What makes the lights of a shot's frames the same lights: they are aimed at what some moments see.
+struct ShotLights {
+  SharedSurvey guide;          // the middle one's, so that particles start alike in all frames
+  transport::GatherPlan plan;  // of all moments, where lights stand on gather samples
+  std::size_t count = 0;       // of lights, for which it is made
+};
+
+// A moment of a shot.
+struct ShotMoment {
+  SharedWorld world;
+  View view;
+};
+// At least one moment.
+std::shared_ptr<const ShotLights> plan_shot_lights(const std::vector<ShotMoment>& moments,
+                                                   const Recipe& recipe, std::size_t count,
+                                                   const Sinks& sinks);
+
+// What is prepared for every frame of a shot. Lights are planned for the first, middle and last one.
 std::vector<SharedPrepared> prepare_shot(const std::vector<SharedWorld>& worlds,
                                          const std::vector<View>& views, const Recipe& recipe,
                                          std::size_t count, const Sinks& sinks);
