@@ -95,12 +95,16 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
       tensor.largest_representatives = value == "largest";
     else if (key == "representatives")
       throw InputError("'" + value + "' names no representatives", "give central or largest");
+    else if (key == "clusters" && (value == "on" || value == "off"))
+      tensor.write_clusters = value == "on";
+    else if (key == "clusters")
+      throw InputError("--set clusters is on or off, not '" + value + "'", "give on to have them written");
     else if (key == "bits")
       tensor.bits = read_count(option, value, 16, 32);
     else
       throw InputError("tensor-clustering has no parameter '" + key + "'",
                        "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, "
-                       "max-distance, max-change, representatives and bits");
+                       "max-distance, max-change, representatives, bits and clusters");
   }
   return tensor;
 }

@@ -86,7 +86,7 @@ class Shot:
         return self.of.shots.run(f"{self.name}_{what}", self.scene, first, self.last if last is None else last, [*self.common, *arguments])
 
     def clustered(self, columns):
-        return ["--method", OURS, "--set", f"columns={columns}", "--set", f"rows={self.of.rows}", "--set", f"chunk={self.of.frames}", *self.of.dump]
+        return ["--method", OURS, "--set", f"columns={columns}", "--set", f"rows={self.of.rows}", "--set", f"chunk={self.of.frames}", "--set", "overlap=0", "--set", "clusters=on"]
 
     def tensor(self):
         return self.once("tensor", lambda: self.render("tensor", self.clustered(self.of.columns)))
@@ -185,7 +185,6 @@ class Experiments:
         self.rows, self.columns, self.spp = args.rows, args.columns, args.spp
         count = args.lines or (2 if quick else 4)
         self.lines = [self.height * (2 * k + 1) // (2 * count) for k in range(count)]
-        self.dump = ["--set", "clusters=on"] if args.clusters else []
         self.shots = Shots(args.program.resolve(), args.out / "parts", args.threads)
         self.ffmpeg = args.ffmpeg or shutil.which("ffmpeg")
         names = args.shots or (["room"] if quick else list(OWN))
@@ -261,9 +260,6 @@ class Experiments:
         page.svg(plot("Effective number of clusters", "frame", "clusters", {s.name: [(k + 1, r["clusters.active"]) for k, r in enumerate(s.tensor()[1])] for s in self.of_scenes}, log_x=False))
         for shot in self.of_scenes:
             file = self.shots.folder / f"{shot.name}_tensor" / "clusters_0000.json"
-            if not file.exists():
-                page.say(f"{shot.name}: no picture of the clustering, since the program was not asked for it (--clusters).")
-                continue
             width, height, pixels = clustering_picture(json.loads(file.read_text()))
             page.raw(f"{shot.name}_clusters", width, height, pixels, f"{shot.name}: lights (down) × frames (across); a color is a cluster (Figure 3)")
 
@@ -308,7 +304,6 @@ def main():
     parser.add_argument("--rows", type=int, default=100)
     parser.add_argument("--columns", type=int, default=300, help="for a frame in the mean; default 300")
     parser.add_argument("--lines", type=int, help="scanlines with known truth; default 4")
-    parser.add_argument("--clusters", action="store_true", help="ask the program for its clusters (--set clusters=on), for Figure 3")
     parser.add_argument("--mitsuba-python", help="a Python with the packages mitsuba, pyoidn and numpy, for the denoised path tracer")
     parser.add_argument("--truth-paths", type=int, default=1024, help="paths per pixel of its own truth; default 1024")
     parser.add_argument("--ffmpeg", help="for videos; default: the one that is installed, if any")

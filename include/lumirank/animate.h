@@ -33,6 +33,9 @@ struct TensorSettings {
   // the cluster's mean, which are not biased towards lights close to the rows that are read.
   bool largest_representatives = false;
   int bits = 16;  // of the rows' entries in memory: 16 or 32
+  // Each chunk's clusters are written too, as clusters_0000.json by its first frame: the chunk's "frames"
+  // (first and last), the number of "lights", and "rectangles", each with its "frames" and "lights".
+  bool write_clusters = false;
 };
 
 struct AnimateSettings {

@@ -142,8 +142,10 @@ class Shot {
       scenes.push_back(
           scene_.at(frame / settings_.frames_per_second, frame == chunk.first ? sinks : Sinks{}));
     const double read_seconds = timer.seconds() / chunk.size();
-    auto results = api::render_tensor(scenes, settings_.render, *settings_.tensor, sinks);
+    api::TensorFrames made = api::render_tensor(scenes, settings_.render, *settings_.tensor, sinks);
+    std::vector<RenderResult>& results = made.frames;
     if (results.empty()) return false;
+    if (settings_.tensor->write_clusters) write_clusters(chunk, made);
     for (int frame = chunk.last + 1; frame <= chunk.tail_last; ++frame)
       if (!is_finished(frame))
         api::TailPicture(folder_, frame)
@@ -189,6 +191,20 @@ class Shot {
             {"overlap", t.overlap},
             {"memory", t.memory},
             {"bits", t.bits}};
+  }
+  void write_clusters(const api::Chunk& chunk, const api::TensorFrames& made) const {
+    Json rectangles = Json::array();
+    for (const auto& r : made.rectangles)
+      rectangles.push_back(
+          {{"frames", {chunk.first + static_cast<int>(r.begin), chunk.first + static_cast<int>(r.end) - 1}},
+           {"lights", r.lights}});
+    char name[32];
+    std::snprintf(name, sizeof name, "clusters_%04d.json", chunk.first);
+    image::write_whole_file(path(name), Json{{"frames", {chunk.first, chunk.tail_last}},
+                                             {"lights", made.lights},
+                                             {"rectangles", std::move(rectangles)}}
+                                                .dump() +
+                                            "\n");
   }
   void write(int frame, const Picture& picture, const Report& report) const {
     image::FilesTogether together;

@@ -40,6 +40,7 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
   s.rows = static_cast<std::size_t>(t.rows), s.columns = static_cast<std::size_t>(t.columns);
   s.initial_clusters = static_cast<std::size_t>(t.initial_clusters);
   s.time_weight = t.time_weight, s.max_distance = t.max_distance, s.max_change = t.max_change;
+  s.keep_rectangles = t.write_clusters;
   if (t.largest_representatives) s.representatives = methods::Representatives::largest;
   s.precision =
       t.bits == 32 ? linalg::ReducedTensor::Precision::bits32 : linalg::ReducedTensor::Precision::bits16;
@@ -143,9 +144,10 @@ int frames_within_memory(const Scene& scene, const RenderSettings& settings, con
   return static_cast<int>(std::min<double>(t.chunk, length));
 }
 
-std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
-                                        const TensorSettings& tensor, const Sinks& sinks) {
-  std::vector<RenderResult> results;
+TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
+                           const TensorSettings& tensor, const Sinks& sinks) {
+  TensorFrames made;
+  std::vector<RenderResult>& results = made.frames;
   pipeline::within_memory(pipeline::kSmallerPicture, [&] {
     with_threads(settings.threads, [&] {
       const Timer timer;
@@ -175,9 +177,11 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
         options.sinks = sinks;
         methods::TensorClusteringSettings how = inner(tensor);
         how.target_error = settings.method.target_error;
-        const methods::TensorEstimate estimate =
+        methods::TensorEstimate estimate =
             tensor.columns == 0 ? all_columns(frames, sinks) : methods::estimate_tensor(shot, how, options);
         if (estimate.interrupted) return;
+        made.rectangles = std::move(estimate.rectangles);
+        made.lights = shot.columns();
         warn_of_error(how.target_error, estimate, sinks);
         // Whether the rest of the light matters is asked once, so that it does not come and go.
         const std::size_t middle = frames.size() / 2;
@@ -208,7 +212,7 @@ std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const 
       }
     });
   });
-  return results;
+  return made;
 }
 
 }  // namespace lumirank::api

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "linalg/rectangle_clustering.h"
 #include "lumirank/animate.h"
 
 namespace lumirank::api {
@@ -16,9 +17,16 @@ void check(const TensorSettings& tensor, const RenderSettings& settings);
 // frame is too many.
 int frames_within_memory(const Scene& scene, const RenderSettings& settings, const TensorSettings& tensor);
 
+struct TensorFrames {
+  std::vector<RenderResult> frames;
+  // If they are to be written: frames counted from 0.
+  std::vector<linalg::RectangleClustering::Rectangle> rectangles;
+  std::size_t lights = 0;
+};
+
 // One picture and report for each scene, which are one scene at moments one after the other; none if it was
 // cancelled. Throws InputError if they take more memory than there is.
-std::vector<RenderResult> render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
-                                        const TensorSettings& tensor, const Sinks& sinks);
+TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
+                           const TensorSettings& tensor, const Sinks& sinks);
 
 }  // namespace lumirank::api

@@ -78,6 +78,7 @@ class TensorRun {
       for (std::uint32_t k = c.of->begin; k < c.of->end; ++k) ++estimate_.active[k];
     estimate_.clusters = clusters_.size();
     estimate_.cost = clustering_->cost();
+    if (settings_.keep_rectangles) estimate_.rectangles = clustering_->rectangles();
     timed("clustering", [&] {
       const ClusterColumns columns_of(*reduced_, settings_.representatives);
       parallel_for(clusters_.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -43,6 +43,7 @@ struct TensorClusteringSettings {
   std::size_t max_columns = 2000, max_rows = 400;
   Representatives representatives = Representatives::central;
   linalg::ReducedTensor::Precision precision = linalg::ReducedTensor::Precision::bits16;
+  bool keep_rectangles = false;  // TensorEstimate::rectangles
 };
 
 struct TensorEstimate {
@@ -51,6 +52,7 @@ struct TensorEstimate {
   std::vector<std::size_t> active;  // clusters that contribute to each frame: the effective number
   double predicted_error = -1;      // with a target error: that of the test rows; below 0: not known
   double cost = 0;                  // of the clustering
+  std::vector<linalg::RectangleClustering::Rectangle> rectangles;  // the clusters, if they are to be kept
   matrix::Cost spent;
   Trace trace;
   bool interrupted = false;
