@@ -251,7 +251,9 @@ TEST(Animate, TensorClusteringOfNoColumnsSumsThemAll) {
   const Scene scene = Scene::load(moving_scene(folder));
   AnimateSettings settings = small_shot(1, 2);
   settings.render.lights.placement = LightPlacement::gather;  // as clusterings have it
-  animate(scene, settings, folder / "alone");
+  fs::create_directory(folder / "alone");
+  for (const int k : {1, 2})
+    write_picture(frame(folder / "alone", k), render(scene.at(k / 4.0), settings.render).picture);
   settings.tensor = TensorSettings{.chunk = 1, .overlap = 0, .columns = 0};
   animate(scene, settings, folder / "summed");
   const auto values = [&](const char* shot, int k) {
@@ -266,6 +268,41 @@ TEST(Animate, TensorClusteringOfNoColumnsSumsThemAll) {
     const float brightest = *std::max_element(want.begin(), want.end());
     EXPECT_GT(brightest, 0);
     for (std::size_t n = 0; n < want.size(); ++n) EXPECT_NEAR(have[n], want[n], 1e-5f * brightest) << n;
+  }
+}
+
+// Lights on gather samples are the same lights in every frame of a shot, planned for its whole motion: so one
+// frame is the same whichever others are asked for, and is not that of a still with a plan of its own.
+TEST(Animate, FramesOneByOneSharePlansOfGatherLights) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  AnimateSettings settings = small_shot(0, 2);
+  settings.render.lights.placement = LightPlacement::gather;
+  animate(scene, settings, folder / "some");
+  settings.first = settings.last = 2;
+  animate(scene, settings, folder / "one");
+  EXPECT_EQ(bytes_of(frame(folder / "some", 2)), bytes_of(frame(folder / "one", 2)));
+  write_picture(folder / "still.pfm", render(scene.at(0.5), settings.render).picture);
+  EXPECT_NE(bytes_of(folder / "still.pfm"), bytes_of(frame(folder / "one", 2)));
+}
+
+TEST(Animate, TensorClusteringWritesItsClusters) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  AnimateSettings settings = small_shot(0, 4);
+  settings.tensor =
+      TensorSettings{.chunk = 3, .overlap = 1, .rows = 20, .columns = 10, .write_clusters = true};
+  animate(scene, settings, folder / "shot");
+  for (const auto& [name, last] : {std::pair{"clusters_0000.json", 3}, {"clusters_0003.json", 4}}) {
+    const auto chunk = nlohmann::json::parse(bytes_of(folder / "shot/" + name));
+    EXPECT_EQ(chunk["frames"][1], last);
+    // Every light-frame pair is in one rectangle at most, and most are in one.
+    std::set<std::pair<int, int>> pairs;
+    for (const auto& r : chunk["rectangles"])
+      for (int k = r["frames"][0]; k <= r["frames"][1]; ++k)
+        for (const int light : r["lights"]) EXPECT_TRUE(pairs.insert({light, k}).second);
+    const int frames = last - chunk["frames"][0].get<int>() + 1;
+    EXPECT_GT(pairs.size(), 0.5 * frames * chunk["lights"].get<double>());
   }
 }
 
