@@ -37,7 +37,7 @@ struct BareScene {
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     for (const geometry::Placement& p : rays.placements()) {
       if (p.blocking == geometry::Blocking::attenuating) continue;
-      meshes.push_back(rays.meshes()[p.mesh]);
+      meshes.push_back(rays.mesh(p.mesh));
       for (Vec3f& v : meshes.back().positions) v = p.to_world.point(v);
       meshes.back().positions.reserve(meshes.back().positions.size() + 1);
     }

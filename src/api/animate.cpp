@@ -164,9 +164,11 @@ class Shot {
   }
 
   // Frames of a chunk: as many as are asked for, and fit into the memory that is given.
-  int frames_at_once(int first_key) const {
-    const TensorSettings& t = *settings_.tensor;
-    return api::frames_within_memory(scene_.at(first_key / settings_.frames_per_second), settings_.render, t);
+  int frames_at_once(int first_key, int last_key) const {
+    std::vector<Scene> first;
+    for (int frame = first_key; frame <= std::min(last_key, first_key + 2); ++frame)
+      first.push_back(scene_.at(frame / settings_.frames_per_second));
+    return api::frames_within_memory(first, settings_.render, *settings_.tensor);
   }
 
   // All tails that `wanted` frames of a chunk need are there.
@@ -258,7 +260,7 @@ void render_frames(const Shot& shot, const std::vector<int>& missing, AnimationR
 void render_chunks(const Shot& shot, const AnimateSettings& settings, const Range& frames,
                    const std::vector<int>& missing, AnimationResult& result, const Sinks& sinks) {
   if (missing.empty()) return;
-  const int length = shot.frames_at_once(frames.first_key);
+  const int length = shot.frames_at_once(frames.first_key, frames.last_key);
   const api::ShotChunks chunks(frames.first_key, std::max(frames.last_key, frames.last), length,
                                settings.tensor->overlap);
   const auto all = static_cast<double>(missing.size());

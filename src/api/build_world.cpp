@@ -25,18 +25,18 @@ void report_warnings(const Sinks& sinks, const std::vector<scenedesc::Warning>& 
 }
 
 std::shared_ptr<const world::World> build_world(const Scene& scene, const Sinks& sinks,
-                                                std::vector<scenedesc::Warning>* keep,
-                                                const world::Units* units) {
+                                                const BuildExtras& extras) {
   std::vector<scenedesc::Warning> warnings;
   world::BuildOptions options;
   options.strict = scene.impl().options.strict;
-  if (units) options.units = *units;
+  options.before = extras.before;
+  if (extras.before) options.units = extras.before->units();
   std::shared_ptr<const world::World> world;
   pipeline::within_memory("the scene is too large for this machine", [&] {
     world = std::make_shared<world::World>(world::World::build(scene.impl().desc, options, warnings, sinks));
   });
   report_warnings(sinks, warnings);
-  if (keep) *keep = std::move(warnings);
+  if (extras.warnings) *extras.warnings = std::move(warnings);
   return world;
 }
 

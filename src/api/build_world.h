@@ -16,9 +16,14 @@ std::string warning_text(const scenedesc::Warning& warning);
 // Warnings to where a person sees them, notes to where one may.
 void report_warnings(const Sinks& sinks, const std::vector<scenedesc::Warning>& warnings);
 
-// Reports its warnings; `keep` (may be nullptr) gets them as well. `units`: instead of its own, or nullptr.
+struct BuildExtras {
+  std::vector<scenedesc::Warning>* warnings = nullptr;  // gets them as well
+  // Of the same scene at another moment: it is built in the units of that, and shares what has not changed.
+  const world::World* before = nullptr;
+};
+
+// Reports its warnings.
 std::shared_ptr<const world::World> build_world(const Scene& scene, const Sinks& sinks,
-                                                std::vector<scenedesc::Warning>* keep = nullptr,
-                                                const world::Units* units = nullptr);
+                                                const BuildExtras& extras = {});
 
 }  // namespace lumirank::api

@@ -24,16 +24,21 @@ namespace {
 // that are shaded afresh.
 constexpr double kBytesOfRow = 90, kBytesOfLight = 100, kBytesOfProgram = 160e6;
 
-double bytes_of_frame(const world::World& world, const pipeline::View& view, const RenderSettings& settings,
-                      const TensorSettings& t) {
+// Of a frame, without its world.
+double bytes_of_frame(const pipeline::View& view, const RenderSettings& settings, const TensorSettings& t) {
   const double lights = static_cast<double>(settings.lights.count_or_default()),
                rows = static_cast<double>(view.width) * view.height * settings.view.spp_or_default();
   const double read = settings.method.target_error > 0
                           ? static_cast<double>(methods::TensorClusteringSettings{}.max_rows)
                           : t.rows;
-  return static_cast<double>(world.info().memory_bytes) + pipeline::memory_of_picture(rows, lights, false) +
-         kBytesOfRow * rows + (kBytesOfLight + read * t.bits / 8) * lights;
+  return pipeline::memory_of_picture(rows, lights, false) + kBytesOfRow * rows +
+         (kBytesOfLight + read * t.bits / 8) * lights;
 }
+
+double bytes_of(const world::World& world) { return static_cast<double>(world.info().memory_bytes); }
+
+// Later worlds share what does not move with those before them; by the third all that can be shared is.
+constexpr std::size_t kWorldsToKnow = 3;
 
 methods::TensorClusteringSettings inner(const TensorSettings& t) {
   methods::TensorClusteringSettings s;
@@ -128,19 +133,28 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   require(t.bits == 16 || t.bits == 32, "entries have 16 or 32 bits", "give one of them");
 }
 
-int frames_within_memory(const Scene& scene, const RenderSettings& settings, const TensorSettings& t) {
+int frames_within_memory(const std::vector<Scene>& first, const RenderSettings& settings,
+                         const TensorSettings& t) {
   if (!(t.memory > 0)) return t.chunk;
-  const double frame = bytes_of_frame(*build_world(scene, {}),
-                                      pipeline::make_view(scene.impl().desc, settings.view), settings, t);
-  const double fitting = std::floor((1e6 * t.memory - kBytesOfProgram) / frame), overlap = t.overlap;
+  std::vector<pipeline::SharedWorld> worlds;
+  double built = 0;
+  for (const Scene& scene : first) {
+    worlds.push_back(build_world(scene, {}, {.before = worlds.empty() ? nullptr : worlds.back().get()}));
+    built += bytes_of(*worlds.back());
+  }
+  const double later = bytes_of(*worlds.back());
+  const double frame =
+      bytes_of_frame(pipeline::make_view(first.front().impl().desc, settings.view), settings, t);
+  // built + later · (n − worlds) + frame · n = what is given.
+  const double once = kBytesOfProgram + built - later * static_cast<double>(worlds.size());
+  const double fitting = std::floor((1e6 * t.memory - once) / (later + frame)), overlap = t.overlap;
   // A chunk overlaps by no more frames than it has.
   const double length = fitting >= 2 * overlap ? fitting - overlap : std::floor(fitting / 2);
   if (length < 1)
-    throw InputError(
-        "tensor clustering takes about " +
-            std::to_string(std::lround((kBytesOfProgram + frame * (overlap > 0 ? 2 : 1)) / 1e6)) +
-            " MB for one frame and its overlap, more than the memory that is given",
-        "give more with --set memory=…, or fewer --lights, a smaller --size or a lower --spp");
+    throw InputError("tensor clustering takes about " +
+                         std::to_string(std::lround((once + (later + frame) * (overlap > 0 ? 2 : 1)) / 1e6)) +
+                         " MB for one frame and its overlap, more than the memory that is given",
+                     "give more with --set memory=…, or fewer --lights, a smaller --size or a lower --spp");
   return static_cast<int>(std::min<double>(t.chunk, length));
 }
 
@@ -156,12 +170,14 @@ TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSetting
       Sinks silent;
       silent.cancel = sinks.cancel;
       for (const Scene& scene : scenes) {
-        worlds.push_back(build_world(scene, worlds.empty() ? sinks : silent));
+        worlds.push_back(build_world(scene, worlds.empty() ? sinks : silent,
+                                     {.before = worlds.empty() ? nullptr : worlds.back().get()}));
         views.push_back(pipeline::make_view(scene.impl().desc, settings.view));
-        if (worlds.size() == 1)
-          pipeline::require_memory(
-              bytes_of_frame(*worlds[0], views[0], settings, tensor) * static_cast<double>(scenes.size()),
-              "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
+        if (worlds.size() != std::min(kWorldsToKnow, scenes.size())) continue;
+        pipeline::require_memory(
+            bytes_of(*worlds.back()) * static_cast<double>(scenes.size() - worlds.size()) +
+                bytes_of_frame(views[0], settings, tensor) * static_cast<double>(scenes.size()),
+            "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
       }
       const double build_seconds = timer.seconds() / static_cast<double>(scenes.size());
       pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());

@@ -13,9 +13,11 @@ namespace lumirank::api {
 void check(const TensorSettings& tensor, const RenderSettings& settings);
 
 // As many frames as a chunk may have, so that it takes no more memory than `tensor` allows, by estimates that
-// are the same on every machine; all that `tensor` wants where it names no memory. Throws InputError if one
+// are the same on every machine; all that `tensor` wants where it names no memory. `first`: the first frames
+// of the motion, three or fewer, since later ones share with those before them. Throws InputError if one
 // frame is too many.
-int frames_within_memory(const Scene& scene, const RenderSettings& settings, const TensorSettings& tensor);
+int frames_within_memory(const std::vector<Scene>& first, const RenderSettings& settings,
+                         const TensorSettings& tensor);
 
 struct TensorFrames {
   std::vector<RenderResult> frames;

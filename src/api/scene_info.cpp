@@ -28,7 +28,7 @@ std::array<double, 3> corner(const world::World& world, Vec3f own) {
 SceneInfo Scene::info(const Sinks& sinks) const {
   const scenedesc::SceneDesc& desc = impl_->desc;
   std::vector<scenedesc::Warning> warnings;
-  const std::shared_ptr<const world::World> world = api::build_world(*this, sinks, &warnings);
+  const std::shared_ptr<const world::World> world = api::build_world(*this, sinks, {.warnings = &warnings});
   const auto& built = world->info();
   SceneInfo info;
   info.file = desc.source_file, info.format = desc.format;

@@ -32,9 +32,8 @@ std::vector<pathtrace::Instant> open_shutter(const Scene& scene, const RenderSet
     if (found == made.end()) {
       const bool first = made.empty();
       const Scene now = scene.at(at, quiet);
-      world::Units units;
-      if (!first) units = instants.front().world->units();
-      auto world = build_world(now, first ? sinks : quiet, nullptr, first ? nullptr : &units);
+      auto world =
+          build_world(now, first ? sinks : quiet, {.before = first ? nullptr : instants.back().world.get()});
       found = made.emplace(at, pathtrace::Instant{std::move(world),
                                                   pipeline::make_view(now.impl().desc, settings.view)})
                   .first;

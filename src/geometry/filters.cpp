@@ -7,10 +7,9 @@ namespace lumirank::geometry {
 namespace {
 
 Hit hit_of(const RTCFilterFunctionNArguments& a, unsigned lane, const RayScene::Impl& scene) {
-  const unsigned instance = RTCHitN_instID(a.hit, a.N, lane, 0);
   Hit hit;
   hit.t = RTCRayN_tfar(a.ray, a.N, lane);
-  hit.instance = instance != RTC_INVALID_GEOMETRY_ID ? instance : RTCHitN_geomID(a.hit, a.N, lane);
+  hit.instance = scene.placement_of(RTCHitN_instID(a.hit, a.N, lane, 0), RTCHitN_geomID(a.hit, a.N, lane));
   hit.mesh = scene.placements[hit.instance].mesh;
   hit.triangle = RTCHitN_primID(a.hit, a.N, lane);
   hit.barycentric = {RTCHitN_u(a.hit, a.N, lane), RTCHitN_v(a.hit, a.N, lane)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/bounds.h"
@@ -26,5 +27,12 @@ struct TriangleMesh {
   Vec3f area_vector(std::size_t triangle) const;
   Bounds3f bounds() const;
 };
+
+// Same in every bit that tracing and shading read.
+bool same_mesh(const TriangleMesh& a, const TriangleMesh& b);
+
+// A mesh that several scenes may hold, with the room that Embree reads beyond its last vertex.
+using SharedMesh = std::shared_ptr<const TriangleMesh>;
+SharedMesh share_mesh(TriangleMesh mesh);
 
 }  // namespace lumirank::geometry

@@ -114,7 +114,7 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
     valid[k] = good ? packet.valid[k] : 0;
   }
   if (context.scene->run_up > 0) run_up(*context.scene, rays);
-  embree::occluded16(valid, scene, context.embree, rays, context.scene->parts.empty());
+  embree::occluded16(valid, scene, context.embree, rays, !context.scene->has_instances());
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k) visible |= (unsigned{valid[k] != 0} & unsigned{rays.tfar[k] >= 0}) << k;
   return static_cast<std::uint16_t>(visible);
@@ -125,20 +125,29 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
 RayScene::RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements,
                    PassageCallbacks callbacks, std::size_t flatten_limit)
     : impl_(std::make_unique<Impl>()) {
+  for (TriangleMesh& mesh : meshes) impl_->meshes.push_back(share_mesh(std::move(mesh)));
+  impl_->placements = std::move(placements);
+  impl_->callbacks = std::move(callbacks);
+  impl_->build(flatten_limit, nullptr, 0);
+}
+RayScene::RayScene(std::vector<SharedMesh> meshes, std::vector<Placement> placements,
+                   PassageCallbacks callbacks, const Sharing& sharing, std::size_t flatten_limit)
+    : impl_(std::make_unique<Impl>()) {
   impl_->meshes = std::move(meshes);
   impl_->placements = std::move(placements);
   impl_->callbacks = std::move(callbacks);
-  impl_->build(flatten_limit);
+  impl_->build(flatten_limit, sharing.before ? sharing.before->impl_.get() : nullptr, sharing.least);
 }
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-const std::vector<TriangleMesh>& RayScene::meshes() const { return impl_->meshes; }
+const TriangleMesh& RayScene::mesh(std::size_t k) const { return *impl_->meshes[k]; }
+const std::vector<SharedMesh>& RayScene::meshes() const { return impl_->meshes; }
 const std::vector<Placement>& RayScene::placements() const { return impl_->placements; }
 Bounds3f RayScene::bounds() const { return impl_->bounds; }
 bool RayScene::has_attenuating() const { return impl_->attenuating != nullptr; }
-std::size_t RayScene::memory_bytes() const { return static_cast<std::size_t>(impl_->bytes.load()); }
+std::size_t RayScene::memory_bytes() const { return static_cast<std::size_t>(impl_->own_bytes); }
 
 std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   RTCRayHit query;
@@ -146,16 +155,16 @@ std::optional<Hit> RayScene::intersect(const Ray& ray) const {
   query.ray = to_embree(ray, start);
   if (!can_trace(query.ray)) return std::nullopt;
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  closest(impl_->blocking.get(), query);
-  if (impl_->attenuating) closest(impl_->attenuating.get(), query);
+  closest(impl_->blocking->scene.get(), query);
+  if (impl_->attenuating) closest(impl_->attenuating->scene.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   Hit hit;
   hit.t = query.ray.tfar - start;
-  hit.instance = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
+  hit.instance = impl_->placement_of(query.hit.instID[0], query.hit.geomID);
   hit.mesh = impl_->placements[hit.instance].mesh;
   hit.triangle = query.hit.primID;
   hit.barycentric = {query.hit.u, query.hit.v};
-  const Fibers& fibers = impl_->meshes[hit.mesh].fibers;
+  const Fibers& fibers = impl_->meshes[hit.mesh]->fibers;
   if (!fibers.empty()) hit.barycentric.y = across(fibers, impl_->placements[hit.instance].to_world, hit, ray);
   return hit;
 }
@@ -165,14 +174,14 @@ bool RayScene::occluded(const Ray& ray, std::uint64_t key) const {
   context.key = key;
   RTCRay query = to_embree(ray, start_of(*impl_, ray.direction));
   if (!can_trace(query)) return true;
-  embree::occluded1(impl_->blocking.get(), context.embree, query);
+  embree::occluded1(impl_->blocking->scene.get(), context.embree, query);
   return query.tfar < 0;
 }
 
 std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
   QueryContext context = context_for(*impl_);
   context.packet = &packet;
-  return unblocked16(impl_->blocking.get(), packet, context);
+  return unblocked16(impl_->blocking->scene.get(), packet, context);
 }
 
 Rgb RayScene::transmittance(const Ray& ray) const {
@@ -184,7 +193,7 @@ Rgb RayScene::transmittance(const Ray& ray) const {
   context.crossed = &crossed;
   RTCRay query = to_embree(ray, start_of(*impl_, ray.direction));
   if (!can_trace(query)) return product;
-  embree::occluded1(impl_->attenuating.get(), context.embree, query);
+  embree::occluded1(impl_->attenuating->scene.get(), context.embree, query);
   // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.
   std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
     return std::tie(a.instance, a.t, a.triangle) < std::tie(b.instance, b.t, b.triangle);
@@ -204,7 +213,7 @@ void RayScene::transmittance16(const ShadowPacket& packet, Rgb out[16]) const {
   if (!impl_->attenuating) return;
   // Most segments meet no attenuating surface, and one packet tells which.
   QueryContext context = context_for(*impl_);
-  const unsigned clear = unblocked16(impl_->attenuating.get(), packet, context);
+  const unsigned clear = unblocked16(impl_->attenuating->scene.get(), packet, context);
   for (int k = 0; k < 16; ++k)
     if (packet.valid[k] && !(clear >> k & 1)) out[k] = transmittance(segment(packet, k));
 }

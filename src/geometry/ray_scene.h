@@ -82,11 +82,21 @@ class RayScene {
   // InputError when there is no triangle at all or a transform is not affine.
   RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> placements, PassageCallbacks callbacks,
            std::size_t flatten_limit = kFlattenLimit);
+  // What may be shared with a scene of another moment (nullptr: nothing). If all placements have the same
+  // meshes (the same objects) by the same transforms, that is everything; else what has not moved, if that
+  // has at least `least` primitives: fewer are built again sooner than an instance of them is traced.
+  struct Sharing {
+    const RayScene* before = nullptr;
+    std::size_t least = kFlattenLimit;
+  };
+  RayScene(std::vector<SharedMesh> meshes, std::vector<Placement> placements, PassageCallbacks callbacks,
+           const Sharing& sharing, std::size_t flatten_limit = kFlattenLimit);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  const std::vector<TriangleMesh>& meshes() const;
+  const TriangleMesh& mesh(std::size_t k) const;
+  const std::vector<SharedMesh>& meshes() const;
   const std::vector<Placement>& placements() const;  // Hit::instance indexes it
   Bounds3f bounds() const;
   bool has_attenuating() const;  // some placement attenuates
@@ -104,7 +114,7 @@ class RayScene {
   // Transmittance of the attenuating placements for 16 segments; only worth calling if has_attenuating().
   void transmittance16(const ShadowPacket& packet, Rgb out[16]) const;
 
-  std::size_t memory_bytes() const;  // of the acceleration structure
+  std::size_t memory_bytes() const;  // of the acceleration structure, without what it has from `before`
 
   struct Impl;
 

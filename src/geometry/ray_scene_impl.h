@@ -4,7 +4,10 @@
 
 #include <atomic>
 #include <deque>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/embree.h"
@@ -19,35 +22,68 @@ struct TracedFibers {
   const Fibers::Point* points;
 };
 
+// Shared by all scenes that share anything.
+struct TracingDevice {
+  std::atomic<long long> bytes{0};
+  std::string first_error;  // of Embree, if any
+  embree::Device handle;
+};
+
+// A committed scene of Embree and what it points to, which is released after it.
+struct TracedPart {
+  std::shared_ptr<TracingDevice> device;
+  std::vector<SharedMesh> meshes;
+  std::deque<TracedFibers> fibers;
+  std::vector<std::shared_ptr<const TracedPart>> instanced;
+  embree::Scene scene;
+
+  void add_mesh(const SharedMesh& mesh, const Transform* baked, Blocking blocking, unsigned id);
+  void add_instance(const std::shared_ptr<const TracedPart>& part, const Transform& to_world, unsigned id);
+  void commit();
+};
+using SharedPart = std::shared_ptr<const TracedPart>;
+
 struct RayScene::Impl {
-  std::vector<TriangleMesh> meshes;
+  std::vector<SharedMesh> meshes;
   std::vector<Placement> placements;
   PassageCallbacks callbacks;
 
-  std::deque<TracedFibers> traced;  // Embree holds pointers to them
-
-  std::atomic<long long> bytes{0};
-  std::string first_error;  // of Embree, if any
-  // Declared before the scenes, so released after them.
-  embree::Device device;
-  std::vector<embree::Scene> parts;     // scenes of the meshes that are instanced
-  embree::Scene blocking, attenuating;  // attenuating is null if no placement attenuates
+  std::shared_ptr<TracingDevice> device;
+  long long own_bytes = 0;
+  // Scenes of the meshes that are instanced.
+  std::map<std::pair<std::uint32_t, Blocking>, SharedPart> parts;
+  std::vector<bool> flat;            // by placement: traced in world space
+  SharedPart blocking, attenuating;  // attenuating is null if no placement attenuates
+  // What is shared with other moments because it does not move: placements that are in it, and the scenes,
+  // which are instances of `blocking` and `attenuating` by the number after the last placement.
+  struct Still {
+    std::vector<bool> holds;  // empty: there is none
+    SharedPart blocking, attenuating;
+  };
+  Still still;
   Bounds3f bounds;
   // Embree leaves out what a ray meets of fibers within two radii of its origin. So rays are handed to it
   // from so much farther behind: over twice the radius of the widest fiber, in world space. 0: there are
   // none.
   float run_up = 0;
 
-  void build(std::size_t flatten_limit);
+  // `before`: of another moment, may be nullptr.
+  void build(std::size_t flatten_limit, const Impl* before, std::size_t share_limit);
+  bool has_instances() const { return !parts.empty() || !still.holds.empty(); }
+  // The placement that a hit is on, by Embree's numbers.
+  std::uint32_t placement_of(unsigned instance, unsigned geometry) const {
+    return instance != RTC_INVALID_GEOMETRY_ID && instance < placements.size() ? instance : geometry;
+  }
 
  private:
-  void open_device();
-  embree::Scene new_scene();
-  void commit(RTCScene scene);
-  embree::Geometry triangles_of(const TriangleMesh& mesh, const Transform* baked);
-  embree::Geometry fibers_of(const Fibers& fibers, const Transform* baked);
-  embree::Geometry geometry_of(const TriangleMesh& mesh, const Transform* baked, Blocking blocking_kind);
-  embree::Scene build_part(std::uint32_t mesh, Blocking blocking_kind);
+  void check() const;
+  void choose_flat(std::size_t flatten_limit);
+  // Placements that are what they are in `before`; all false if the two do not correspond.
+  std::vector<bool> same_as(const Impl* before) const;
+  void share_still(const Impl* before, const std::vector<bool>& same, std::size_t share_limit);
+  std::shared_ptr<TracedPart> new_part() const;
+  void add_flat(TracedPart& to, std::size_t placement) const;
+  SharedPart instanced_part(std::uint32_t mesh, Blocking blocking_kind, const Impl* before);
 };
 
 // What a filter needs to know about the query that called it. Embree's context comes first: it is all that

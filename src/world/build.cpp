@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/hash_text.h"
+#include "base/parallel.h"
 #include "world/impl.h"
 #include "world/lights.h"
 #include "world/material_builder.h"
@@ -62,6 +63,7 @@ class World::Builder {
           const Sinks& sinks)
       : desc_(desc),
         given_units_(options.units),
+        before_(options.before),
         sinks_(sinks),
         notes_(warnings, options.strict),
         textures_(desc),
@@ -81,6 +83,7 @@ class World::Builder {
       if (geometry_.placed[i].shines) add_area_emitter(i);
     }
     add_other_lights();
+    share_meshes();
     count();
     step(0.7);
     make_rays();
@@ -187,6 +190,24 @@ class World::Builder {
     if (w_.emitters.empty()) notes_.warn(whole_scene(), "the scene has no light", "a black picture");
   }
 
+  // Meshes that are as they were before are the same objects.
+  void share_meshes() {
+    std::vector<geometry::SharedMesh> were(geometry_.meshes.size());
+    if (before_ && before_->placement_ids() == w_.placement_ids)
+      for (std::size_t i = 0; i < geometry_.placements.size(); ++i)
+        were[geometry_.placements[i].mesh] = before_->rays().meshes()[before_->rays().placements()[i].mesh];
+    meshes_.resize(were.size());
+    parallel_for(were.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t m = begin; m < end; ++m)
+        meshes_[m] = were[m] && geometry::same_mesh(*were[m], geometry_.meshes[m])
+                         ? were[m]
+                         : geometry::share_mesh(std::move(geometry_.meshes[m]));
+    });
+    for (std::size_t m = 0; m < were.size(); ++m)
+      if (meshes_[m] != were[m]) w_.info.memory_bytes += bytes_of(*meshes_[m]);
+    geometry_.meshes.clear();
+  }
+
   void count() {
     w_.info.instances = geometry_.placements.size();
     w_.info.triangles = geometry_.triangles;
@@ -195,8 +216,7 @@ class World::Builder {
     w_.info.textures = w_.materials.textures.textures.size();
     w_.info.materials = w_.materials.materials.size();
     w_.info.emitters = w_.emitters.size();
-    w_.info.memory_bytes = textures_.memory_bytes();
-    for (const auto& mesh : geometry_.meshes) w_.info.memory_bytes += bytes_of(mesh);
+    w_.info.memory_bytes += textures_.memory_bytes();
     for (const auto& emitter : w_.emitters) w_.info.memory_bytes += bytes_of(emitter);
   }
 
@@ -210,13 +230,15 @@ class World::Builder {
       const SurfaceHit at = w.surface(hit, direction);
       return w.materials.transmittance(at.material, at.point, normalize(direction));
     };
-    w.rays.emplace(std::move(geometry_.meshes), std::move(geometry_.placements), std::move(callbacks));
+    w.rays.emplace(std::move(meshes_), std::move(geometry_.placements), std::move(callbacks),
+                   geometry::RayScene::Sharing{before_ ? &before_->rays() : nullptr});
     w.bounds = w.rays->bounds();
     w.info.memory_bytes += w.rays->memory_bytes();
   }
 
   const sd::SceneDesc& desc_;
   std::optional<Units> given_units_;
+  const World* before_;
   const Sinks& sinks_;
   Notes notes_;
   MeshStore store_;
@@ -226,6 +248,7 @@ class World::Builder {
   std::map<std::string, int> named_;  // placements by the ids of their shapes
   std::vector<Placed> placed_;
   Geometry geometry_;
+  std::vector<geometry::SharedMesh> meshes_;
   std::vector<int> material_of_;                  // of each of geometry_.placed
   std::vector<scatter::ColorInput> radiance_of_;  // where it shines
   std::unique_ptr<Impl> impl_ = std::make_unique<Impl>();

@@ -18,7 +18,7 @@ Vec3f unit_or(Vec3f v, Vec3f fallback) {
 scatter::SurfacePoint World::Impl::fiber_surface(const geometry::Hit& hit, Vec3f ray_direction) const {
   const PlacementData& data = placements[hit.instance];
   geometry::FiberPoint at =
-      geometry::fiber_point(rays->meshes()[hit.mesh].fibers, hit.triangle, hit.barycentric.x);
+      geometry::fiber_point(rays->mesh(hit.mesh).fibers, hit.triangle, hit.barycentric.x);
   if (!data.identity) {
     at.axis = data.to_world.point(at.axis);
     at.along = unit_or(data.to_world.vector(at.along), at.along);

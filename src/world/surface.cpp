@@ -47,7 +47,7 @@ Vec3f outside_normal(const geometry::TriangleMesh& mesh, std::size_t triangle) {
 
 double primitive_area(const World& world, std::uint32_t placement, std::uint32_t primitive) {
   const geometry::Placement& placed = world.rays().placements()[placement];
-  const geometry::TriangleMesh& mesh = world.rays().meshes()[placed.mesh];
+  const geometry::TriangleMesh& mesh = world.rays().mesh(placed.mesh);
   const Transform& to_world = placed.to_world;
   if (!mesh.fibers.empty()) {
     const geometry::Fibers::Point* ends = &mesh.fibers.points[mesh.fibers.segments[primitive]];
@@ -75,18 +75,18 @@ scatter::SurfaceUv interpolate_uv(const geometry::TriangleMesh& mesh, std::uint3
 }
 
 scatter::SurfaceUv World::Impl::uv(const geometry::Hit& hit) const {
-  const geometry::Fibers& fibers = rays->meshes()[hit.mesh].fibers;
+  const geometry::Fibers& fibers = rays->mesh(hit.mesh).fibers;
   if (!fibers.empty()) {
     // Asked of every crossing, for its opacity: across the fiber nothing varies.
     scatter::SurfaceUv at;
     at.uv = {geometry::fiber_point(fibers, hit.triangle, hit.barycentric.x).parameter, 0.5f};
     return at;
   }
-  return interpolate_uv(rays->meshes()[hit.mesh], hit.triangle, hit.barycentric);
+  return interpolate_uv(rays->mesh(hit.mesh), hit.triangle, hit.barycentric);
 }
 
 SurfaceHit World::Impl::surface(const geometry::Hit& hit, Vec3f ray_direction) const {
-  const geometry::TriangleMesh& mesh = rays->meshes()[hit.mesh];
+  const geometry::TriangleMesh& mesh = rays->mesh(hit.mesh);
   const geometry::Placement& placement = rays->placements()[hit.instance];
   const PlacementData& data = placements[hit.instance];
 
@@ -146,7 +146,7 @@ Rgb World::Impl::emitted_at(int emitter, std::uint32_t triangle, Vec2f barycentr
   const auto& input = radiance[static_cast<std::size_t>(emitter)];
   if (input.texture < 0) return input.value;
   const auto& area = std::get<emitters::AreaEmitter>(emitters[static_cast<std::size_t>(emitter)].kind);
-  const auto& mesh = rays->meshes()[rays->placements()[area.placement].mesh];
+  const auto& mesh = rays->mesh(rays->placements()[area.placement].mesh);
   return materials.textures.lookup(input.texture, interpolate_uv(mesh, triangle, barycentric));
 }
 

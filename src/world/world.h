@@ -18,10 +18,14 @@
 
 namespace lumirank::world {
 
+class World;
+
 struct BuildOptions {
   bool strict = false;  // warnings become errors
   // Instead of its own: those of another moment of the same scene, so that places can be compared.
   std::optional<Units> units = {};
+  // The same scene at another moment: what has not changed since is shared with it.
+  const World* before = nullptr;
 };
 
 struct WorldInfo {
@@ -29,7 +33,8 @@ struct WorldInfo {
   std::size_t meshes_left_out = 0;  // without a triangle, or without their file; not among `meshes`
   std::size_t segments = 0;         // of fibers
   std::size_t textures = 0, materials = 0, emitters = 0;
-  std::size_t memory_bytes = 0;  // meshes, textures and acceleration structure
+  // Meshes, textures and acceleration structure, without what is shared with BuildOptions::before.
+  std::size_t memory_bytes = 0;
 };
 
 // A surface hit with everything that shading needs.

@@ -238,7 +238,8 @@ TEST(Animate, ChunksAreAsShortAsMemoryWants) {
   int before = 0;
   for (const double megabytes : {300, 600, 3000, 1'000'000}) {
     settings.tensor->memory = megabytes;
-    const int frames = api::frames_within_memory(scene.at(0), settings.render, *settings.tensor);
+    const int frames =
+        api::frames_within_memory({scene.at(0), scene.at(0.25)}, settings.render, *settings.tensor);
     EXPECT_GT(frames, before) << megabytes;
     before = frames;
   }

@@ -35,7 +35,7 @@ inline std::vector<Crossing> all_crossings(const RayScene& scene, Vec3f origin, 
   std::vector<Crossing> out;
   for (std::uint32_t i = 0; i < scene.placements().size(); ++i) {
     const Placement& p = scene.placements()[i];
-    const TriangleMesh& mesh = scene.meshes()[p.mesh];
+    const TriangleMesh& mesh = scene.mesh(p.mesh);
     for (std::uint32_t k = 0; k < mesh.triangle_count(); ++k) {
       const V a = transformed(p.to_world, mesh.positions[mesh.indices[3 * k]]);
       V e1 = transformed(p.to_world, mesh.positions[mesh.indices[3 * k + 1]]);

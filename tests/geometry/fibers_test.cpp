@@ -163,7 +163,7 @@ TEST(Fibers, TracesWhatTheDefinitionOfARibbonSays) {
 
 TEST(Fibers, RaysLeaveAndReachTheAxisUnhindered) {
   const RayScene scene = scene_of(straight({-1, 0.3f, 5}, {3, 0, 4}, 0.1f, 0.2f));
-  const Fibers& fibers = scene.meshes()[0].fibers;
+  const Fibers& fibers = scene.mesh(0).fibers;
   Rng rng(3, Stage::test);
   for (int k = 0; k < 4000; ++k) {
     const Vec3f axis = fiber_point(fibers, 0, rng.next_float()).axis, w = warp_sphere(rng.next_2d());

@@ -34,6 +34,38 @@ void expect_refused(const sd::SceneDesc& desc, int line, const std::string& says
   }
 }
 
+// Shapes that stay are the same meshes at both moments, whatever was read anew.
+TEST(Build, SharesWhatDoesNotMove) {
+  const auto at = [](double x) {
+    auto desc = lit_rectangle();
+    add_shape(desc, sd::SphereDesc{{0, 0, 0}, 1}, Transform::translate(x, 0, 3), 6);
+    desc.shapes[0].id = "floor", desc.shapes[1].id = "ball";
+    return desc;
+  };
+  std::vector<sd::Warning> warnings;
+  const World first = World::build(at(0), {}, warnings), own = World::build(at(1), {}, warnings);
+  BuildOptions options;
+  options.before = &first;
+  const World moved = World::build(at(1), options, warnings), same = World::build(at(0), options, warnings);
+  const auto mesh_of = [](const World& world, std::size_t shape) {
+    return world.rays().meshes()[world.rays().placements()[shape].mesh];
+  };
+  EXPECT_EQ(mesh_of(moved, 0), mesh_of(first, 0));
+  EXPECT_NE(mesh_of(moved, 1), mesh_of(first, 1));
+  EXPECT_EQ(mesh_of(same, 1), mesh_of(first, 1));
+  EXPECT_LT(same.info().memory_bytes, moved.info().memory_bytes);
+  EXPECT_LT(moved.info().memory_bytes, own.info().memory_bytes);
+  for (int k = 0; k < 200; ++k) {
+    geometry::Ray ray;
+    ray.origin = {-3, 0, 6}, ray.direction = {0.03f * static_cast<float>(k), 0.01f, -6};
+    const auto a = moved.intersect(ray), b = own.intersect(ray);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (a) {
+      EXPECT_EQ(a->hit.t, b->hit.t);
+    }
+  }
+}
+
 TEST(Build, RefusesWhatMakesNoScene) {
   auto empty = empty_scene();
   expect_refused(empty, 0, "no geometry");

@@ -134,7 +134,7 @@ class GatherLighting {
       const auto found = known.find(samples_.shapes[s].id);
       if (found == known.end()) continue;
       const auto mesh = world_.rays().placements()[found->second].mesh;
-      if (world_.rays().meshes()[mesh].primitive_count() == samples_.shapes[s].primitives)
+      if (world_.rays().mesh(mesh).primitive_count() == samples_.shapes[s].primitives)
         placement[s] = static_cast<int>(found->second);
     }
     placed_.resize(samples_.samples.size());
@@ -151,7 +151,7 @@ class GatherLighting {
     const std::uint32_t mesh = world_.rays().placements()[instance].mesh;
     at.area = sample.part * static_cast<float>(world::primitive_area(world_, instance, sample.primitive));
     if (!(at.area > 0)) return;
-    at.fiber = !world_.rays().meshes()[mesh].fibers.empty();
+    at.fiber = !world_.rays().mesh(mesh).fibers.empty();
     at.hit = {0, instance, mesh, sample.primitive,
               at.fiber ? Vec2f{sample.at.x, 2 * sample.at.y - 1} : sample.at};
     const world::SurfaceHit hit = world_.surface(at.hit, {0, 0, 1});

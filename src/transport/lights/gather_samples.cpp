@@ -89,7 +89,7 @@ class GatherPlacer {
     for (std::size_t m = 0; m < moments_.size(); ++m) {
       const world::World& world = *moments_[m].world;
       for (std::size_t i = 0; i < world.placement_ids().size(); ++i) {
-        const geometry::TriangleMesh& mesh = world.rays().meshes()[world.rays().placements()[i].mesh];
+        const geometry::TriangleMesh& mesh = world.rays().mesh(world.rays().placements()[i].mesh);
         const auto [found, fresh] = known.try_emplace(world.placement_ids()[i], shapes_.size());
         if (fresh)
           shapes_.push_back({world.placement_ids()[i], mesh.primitive_count(), !mesh.fibers.empty(),
