@@ -6,7 +6,8 @@
 Needs the packages mitsuba, pyoidn and numpy, and for its LLVM variant a libLLVM that it knows (DRJIT_LIBLLVM_PATH). The scenes are what `lumirank convert --frame K` writes.
 Of the variants (--variants) the one that is faster on the first frame is used. Paths per pixel are as many as fit into the seconds less those of the denoiser, measured there when
 everything is compiled; loading and compiling are not counted, which is in its favor. The same seed is used in every frame. Denoised with albedo and normals, rendered along.
-OUT gets frame_0000.pfm (denoised), noisy_0000.pfm, with --lines truth_0000.pfm (those scanlines alone, one below the other, with --truth paths per pixel), and shot.json.
+OUT gets frame_0000.pfm (denoised), noisy_0000.pfm, with --lines truth_0000.pfm and other_truth_0000.pfm (those scanlines alone, one below the other, each with half of
+--truth paths per pixel), and shot.json.
 """
 import argparse
 import json
@@ -100,8 +101,10 @@ def main():
         write_pfm(args.out / f"frame_{k:04d}.pfm", clean)
         write_pfm(args.out / f"noisy_{k:04d}.pfm", noisy[..., :3])
         if args.lines:
-            lines = [render(*load(file, size, (0, int(y), size[0], 1)), plain, args.truth, 1001) for y in args.lines.split(",")]
-            write_pfm(args.out / f"truth_{k:04d}.pfm", np.concatenate([line[..., :3] for line in lines]))
+            # Two independent halves: what is measured against both is free of their noise (shot_measures.py).
+            for name, seed in (("truth", 1001), ("other_truth", 500_001)):
+                lines = [render(*load(file, size, (0, int(y), size[0], 1)), plain, max(1, args.truth // 2), seed) for y in args.lines.split(",")]
+                write_pfm(args.out / f"{name}_{k:04d}.pfm", np.concatenate([line[..., :3] for line in lines]))
     (args.out / "shot.json").write_text(json.dumps({"paths": paths, "seconds": seconds, "denoiser": of_denoiser, "paces": paces, "mitsuba": mi.__version__}))
 
 

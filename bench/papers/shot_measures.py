@@ -27,8 +27,11 @@ class Frames:
 class Lines:
     """The truth of a shot: scanlines of all frames, each in a folder of its own; or all lines of a frame in one picture."""
 
-    def __init__(self, frames):
-        self.values = [[v for picture in of_frame for v in picture[2]] for of_frame in frames]
+    def __init__(self, frames, again=None):
+        """`again`: the same once more, of independent noise. Squares of differences are then products of those to the one and to the other, in which noise cancels in the mean."""
+        flat = [[[v for picture in of_frame for v in picture[2]] for of_frame in half] for half in (frames, again or frames)]
+        self.halves = list(zip(*flat))
+        self.values = [[(a + b) / 2 for a, b in zip(*both)] for both in self.halves]
 
     @staticmethod
     def of_folders(folders, count):
@@ -36,21 +39,23 @@ class Lines:
 
     @staticmethod
     def of_pictures(folder, count):
-        return Lines([[read_pfm(pathlib.Path(folder) / f"truth_{k:04d}.pfm")] for k in range(count)])
+        return Lines(*([[read_pfm(pathlib.Path(folder) / f"{name}_{k:04d}.pfm")] for k in range(count)] for name in ("truth", "other_truth")))
 
     def measure(self, frames, lines):
-        """Relative L2 and L1 of each frame, flicker of each step, and bias over all: of `frames` on `lines` against this truth."""
+        """Relative L2 and L1 of each frame, flicker of each step, and bias over all: of `frames` on `lines` against this truth. Where it is noisy, relative L1 holds its noise."""
         have = [frames.lines(k, lines) for k in range(len(self.values))]
         l2, l1, flicker, sums = [], [], [], [0.0, 0.0]
         for k, (i, r) in enumerate(zip(have, self.values)):
             if len(i) != len(r):
                 raise ValueError(f"{frames.folder}: {len(i)} numbers against {len(r)} of the truth")
-            square, total = sum(b * b for b in r), sum(r)
-            l2.append(math.sqrt(sum((a - b) ** 2 for a, b in zip(i, r)) / square))
+            one, other = self.halves[k]
+            square, total = sum(a * b for a, b in zip(one, other)), sum(r)
+            l2.append(math.sqrt(max(0.0, sum((a - b) * (a - c) for a, b, c in zip(i, one, other))) / square))
             l1.append(sum(abs(a - b) for a, b in zip(i, r)) / total)
             sums = [sums[0] + sum(i) - total, sums[1] + total]
             if k + 1 < len(have):
-                flicker.append(math.sqrt(sum((d - c - b + a) ** 2 for a, b, c, d in zip(r, self.values[k + 1], i, have[k + 1])) / square))
+                steps = [[(d - c) - (b - a) for a, b, c, d in zip(half, later, i, have[k + 1])] for half, later in zip(self.halves[k], self.halves[k + 1])]
+                flicker.append(math.sqrt(max(0.0, sum(a * b for a, b in zip(*steps))) / square))
         return {"l2": l2, "l1": l1, "flicker": flicker, "bias": sums[0] / sums[1]}
 
     def interval(self, frames, lines, width, parts=8):

@@ -12,6 +12,7 @@ The truth is known on some scanlines, evenly spaced over the picture (--lines): 
 clustered), so the pictures can be larger than brute force would allow. What is rendered frame by frame has the same lights in every frame too (--light-placement gather), planned for
 the whole motion instead of a chunk: it is measured against all of those as well as against the chunk's. The denoised path tracer carries all paths and is filtered over pixels:
 it is measured against itself converged, and against the chunk's truth too. Flicker: mean over frames of ‖(I′ − I) − (R′ − R)‖ / ‖R‖.
+The path tracer's truth comes in two independent halves, so that its own noise counts neither as error nor as flicker.
 Table 2 has few columns (--columns), what is compared at equal time more (--equal-columns).
 Equal time: seconds of tensor clustering's whole process, loading and writing included, divided by the frames; the others' settings are found by trials on two frames.
 OUT gets index.html, tables.md, images/ and parts/. What is finished with the same settings is not run again. --quick: small sizes, minutes instead of hours; its numbers show
