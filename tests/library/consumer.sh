@@ -16,7 +16,8 @@ run methods_on_one_matrix
 run own_estimate "$work/own.exr"
 run relight "$work/relit.exr"
 run compare_methods "$work/comparison"
-test -s "$work/comparison/index.html"
+run render_shot "$source/examples/moving-box.xml" "$work/shot"
+test -s "$work/comparison/index.html" -a -s "$work/shot/frame_0005.png"
 for picture in box.png memory.exr own.exr relit.exr; do test -s "$work/$picture"; done
 # pkg-config and a compiler alone.
 export PKG_CONFIG_PATH=$(dirname "$(find "$work/installed" -name lumirank.pc)")
