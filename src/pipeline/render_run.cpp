@@ -167,9 +167,7 @@ class RenderRun {
     choices_.expect("method." + task_.info->name, 1);
   }
 
-  void make_survey() {
-    survey_ = survey(task_.world, view_, recipe_, sinks_);
-  }
+  void make_survey() { survey_ = survey(task_.world, view_, recipe_, sinks_); }
 
   // ------------------------------------------------------------ rows, columns, matrix
 
