@@ -17,8 +17,8 @@ struct RenderTask {
   const methods::MethodInfo* info = nullptr;
   std::unique_ptr<methods::Method> method;
   std::shared_ptr<const ShotLights> shot_lights;  // see Recipe; may be nullptr
-  std::string why;          // it is this method
-  bool by_default = false;  // nobody asked for it: a short time may choose another
+  std::string why;                                // it is this method
+  bool by_default = false;                        // nobody asked for it: a short time may choose another
   double lumens_per_unit = 1;
   Timer timer;  // since the scene was loaded
   double build_seconds = 0;
