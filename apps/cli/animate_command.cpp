@@ -91,6 +91,8 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
       tensor.max_change = read_number(option, value, {0, 1e9});
     else if (key == "max-distance")
       tensor.max_distance = read_number(option, value, {0, 1e9});
+    else if (key == "filter")
+      tensor.filter = read_count(option, value, 0, 100);
     else if (key == "representatives" && (value == "central" || value == "largest"))
       tensor.largest_representatives = value == "largest";
     else if (key == "representatives")
@@ -104,7 +106,7 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
     else
       throw InputError("tensor-clustering has no parameter '" + key + "'",
                        "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, "
-                       "max-distance, max-change, representatives, bits and clusters");
+                       "max-distance, max-change, filter, representatives, bits and clusters");
   }
   return tensor;
 }

@@ -4,7 +4,7 @@
     denoised_path_tracer.py OUT SCENE_0000.xml [SCENE_0001.xml …] --size 320x240 --seconds 2.5 [--lines 24,72,120] [--truth 1024]
 
 Needs the packages mitsuba, pyoidn and numpy, and for its LLVM variant a libLLVM that it knows (DRJIT_LIBLLVM_PATH). The scenes are what `lumirank convert --frame K` writes.
-Of the variants (--variants) the one that is faster on the first frame is used. Paths per pixel are as many as fit into the seconds less those of the denoiser, measured there when
+Of the variants (--variants) the one that is faster on the first frame is used. Paths per pixel are as many as take the seconds together with the denoiser, found by trials there when
 everything is compiled; loading and compiling are not counted, which is in its favor. The same seed is used in every frame. Denoised with albedo and normals, rendered along.
 OUT gets frame_0000.pfm (denoised), noisy_0000.pfm, with --lines truth_0000.pfm and other_truth_0000.pfm (those scanlines alone, one below the other, each with half of
 --truth paths per pixel), and shot.json.
@@ -32,6 +32,9 @@ def load(path, size, crop=None):
     """The scene with a film of that size; crop: (x, y, width, height)."""
     scene = mi.load_file(str(path))
     sensor = scene.sensors()[0]
+    width, height = sensor.film().size()
+    if abs(size[0] * height - size[1] * width) > max(width, height, *size):
+        raise SystemExit(f"{path} is {width}x{height}, and {size[0]}x{size[1]} would show another part of the scene: give a --size of the same shape")
     film = {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"}, "component_format": "float32"}
     if crop:
         film |= {"crop_offset_x": crop[0], "crop_offset_y": crop[1], "crop_width": crop[2], "crop_height": crop[3]}
@@ -66,6 +69,25 @@ def pace(file, size):
     return each, image
 
 
+def fitting_paths(file, size, seconds, first):
+    """How many paths for each pixel take the seconds, with the denoiser: a path among few costs more than one among many, so what was found is tried."""
+    integrator, paths = mi.load_dict(FEATURES), max(1, round(first))
+    for _ in range(3):
+        scene, sensor = load(file, size)
+        render(scene, sensor, integrator, 1, 1)
+        render(scene, sensor, integrator, paths, 2)
+        start = time.monotonic()
+        image = render(scene, sensor, integrator, paths, 1)
+        rendered = time.monotonic() - start
+        denoise(image)
+        denoised = time.monotonic() - start - rendered
+        fitting = max(1, round(paths * (seconds - denoised) / rendered))
+        if abs(fitting - paths) <= 0.05 * paths:
+            break
+        paths = fitting
+    return paths
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
@@ -89,7 +111,7 @@ def main():
     start = time.monotonic()
     denoise(noisy)
     of_denoiser = time.monotonic() - start
-    paths = max(1, int((args.seconds - of_denoiser) / paces[variant]))
+    paths = fitting_paths(args.scenes[0], size, args.seconds, (args.seconds - of_denoiser) / paces[variant])
     seconds = []
     for k, file in enumerate(args.scenes):
         scene, sensor = load(file, size)

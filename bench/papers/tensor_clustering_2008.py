@@ -217,6 +217,7 @@ class Experiments:
         for shot in self.of_scenes:
             frames, reports, total = shot.tensor()
             stage = {s: mean(r.get(f"seconds.{s}", 0) for r in reports) for s in ("lights", "receivers", "mappings", "rows", "clustering", "columns", "changes")}
+            stage["changes"] += mean(r.get("seconds.filter", 0) for r in reports)
             rest = total - sum(stage.values())
             receivers = self.width * self.height * self.spp
             part = [r["seconds.columns"] for run in shot.line_runs("all", shot.clustered(0)) for r in run[1]]
@@ -228,7 +229,7 @@ class Experiments:
                          f"{mean(r['rows'] for r in reports):.0f} / {self.columns}", f"{min(active):.0f}–{max(active):.0f}", f"{mean(r['rays.shadow'] for r in reports) / 1e6:.2f} M",
                          f"{rest:.2f}", *(f"{stage[s]:.2f}" for s in stage), f"{total:.2f}", f"{brute + total - method:.0f}",
                          f"{(brute + total - method) / total:.0f}×", f"{brute / method:.0f}×", f"{percent(error)} ± {100 * half:.1f}"))
-        page.table(("scene", "triangles", "rows / columns for a frame", "clusters that act", "shadow rays", "scene, files", "lights", "receivers", "mappings", "rows", "clustering", "columns", "changed rows",
+        page.table(("scene", "triangles", "rows / columns for a frame", "clusters that act", "shadow rays", "scene, files", "lights", "receivers", "mappings", "rows", "clustering", "columns", "changed rows, filter",
                     "total", "brute force", "ratio", "of the matrix", "relative L2"), rows)
 
     def error(self, shot):

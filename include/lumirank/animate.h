@@ -29,6 +29,10 @@ struct TensorSettings {
   // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
   // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.
   double max_change = 0.1;
+  // Frames on either side that light is averaged over where it changes evenly, so that errors do not flicker;
+  // no farther than `max_distance`, by no more than `max_change` or the error that is asked for. 0: none, as
+  // in the paper.
+  int filter = 1;
   // The lights that stand for their clusters: those of the largest norm, as in the paper, or those nearest to
   // the cluster's mean, which are not biased towards lights close to the rows that are read.
   bool largest_representatives = false;

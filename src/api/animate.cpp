@@ -189,6 +189,7 @@ class Shot {
             {"time_weight", t.time_weight},
             {"max_distance", t.max_distance},
             {"max_change", t.max_change},
+            {"filter", t.filter},
             {"largest_representatives", t.largest_representatives},
             {"overlap", t.overlap},
             {"memory", t.memory},

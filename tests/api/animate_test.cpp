@@ -147,6 +147,8 @@ TEST(Animate, TensorClusteringSaysWhatItDoesNot) {
   EXPECT_NE(with([](auto& s) { s.tensor->overlap = -1; }).find("negative number of frames"),
             std::string::npos);
   EXPECT_NE(with([](auto& s) { s.tensor->max_change = -1; }).find("change of light"), std::string::npos);
+  EXPECT_NE(with([](auto& s) { s.tensor->filter = -1; }).find("negative number of frames"),
+            std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "none"));
 }
 

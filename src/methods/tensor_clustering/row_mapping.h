@@ -27,6 +27,12 @@ struct RowMapping {
   static RowMapping identity(std::size_t rows);
 };
 
+// Mappings of all frames' rows, both ways between neighbors.
+struct FrameMappings {
+  std::vector<RowMapping> to_later;    // [k]: rows of frame k + 1 to those of frame k
+  std::vector<RowMapping> to_earlier;  // [k]: rows of frame k to those of frame k + 1
+};
+
 // The rows of one frame, to be looked for and to look from. Distances are of 9-vectors: place, normal times
 // an eighth of `scale`, reflectance times a 64th of `scale`; `scale` is the diagonal of the scene. (Weights
 // are ours, the paper states none. Reflectance counts for less, since light is divided by it: relight()

@@ -13,6 +13,7 @@
 #include "methods/tensor_clustering/cluster_columns.h"
 #include "methods/tensor_clustering/row_mapping.h"
 #include "methods/tensor_clustering/slice_columns.h"
+#include "methods/tensor_clustering/temporal_filter.h"
 #include "methods/tensor_clustering/test_rows.h"
 
 namespace lumirank::methods {
@@ -61,6 +62,12 @@ constexpr float kUnseen = 0.05f;
 
 constexpr std::size_t kCarriedAtOnce = 1 << 12;
 
+float unseen(std::span<const Rgb> sums) {
+  double all = 0;
+  for (const Rgb& light : sums) all += static_cast<double>(max_component(light));
+  return kUnseen * static_cast<float>(all / static_cast<double>(std::max<std::size_t>(1, sums.size())));
+}
+
 class TensorRun {
  public:
   TensorRun(const matrix::LightingTensor& tensor, const TensorClusteringSettings& settings,
@@ -88,6 +95,7 @@ class TensorRun {
     });
     if (!timed("columns", [&] { return compute_columns(); })) return interrupted();
     if (!timed("changes", [&] { return shade_changes(); })) return interrupted();
+    if (!timed("filter", [&] { return filter(); })) return interrupted();
     auto& numbers = estimate_.trace.numbers;
     double all = 0;
     for (const std::size_t rows : rows_) all += static_cast<double>(rows);
@@ -361,11 +369,9 @@ class TensorRun {
         in_own_frame(f, [&](const ClusterColumn& c) { return c.frame != f; });
     if (carried.empty()) return;
     const auto matrix = tensor_.frame(f);
-    double all = 0;
-    for (std::size_t i = 0; i < rows_[f]; ++i)
-      all += static_cast<double>(max_component(own_[f][i] + carried_[f][i]));
-    const float unseen =
-        kUnseen * static_cast<float>(all / static_cast<double>(std::max<std::size_t>(1, rows_[f])));
+    std::vector<Rgb> both = own_[f];
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] += carried_[f][i];
+    const float too_dark = unseen(both);
     const auto changed = [&](std::span<const Index> rows) {
       const std::vector<Rgb> found = sums_at(*matrix, rows, carried, estimate_.spent);
       std::vector<bool> said(rows.size());
@@ -374,13 +380,32 @@ class TensorRun {
         float difference = 0;
         for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(found[a][c] - there[c]));
         const float light = max_component(own_[f][rows[a]] + found[a]);
-        said[a] = difference > static_cast<float>(settings_.max_change) * (light + unseen);
+        said[a] = difference > static_cast<float>(settings_.max_change) * (light + too_dark);
         there = found[a];
       }
       return said;
     };
     changed_rows_ +=
         static_cast<double>(ask_for_changes(matrix->row_features().pixel, rows_[f], changed).size());
+  }
+
+  // --------------------------------------------------------------------------------------------- filter
+
+  bool filter() {
+    if (settings_.filter == 0) return true;
+    std::vector<std::shared_ptr<const matrix::LightingMatrix>> matrices;
+    FilteredShot shot{estimate_.sums, mappings_, {}, {}};
+    for (std::size_t k = 0; k < tensor_.frames(); ++k) {
+      matrices.push_back(tensor_.frame(k));
+      shot.albedo.push_back(matrices.back()->row_features().albedo);
+      shot.unseen.push_back(unseen(estimate_.sums[k]));
+    }
+    // Nor may it leave more than an error that was asked for.
+    const bool finer = settings_.target_error > 0 &&
+                       !(settings_.max_change > 0 && settings_.max_change < settings_.target_error);
+    const double bound = finer ? settings_.target_error : settings_.max_change;
+    estimate_.sums = filter_in_time(shot, {settings_.filter, settings_.max_distance, bound});
+    return true;
   }
 
   const matrix::LightingTensor& tensor_;

@@ -11,7 +11,8 @@
 // Ours: columns of one frame that are carried to the same other frame are added up before they are carried,
 // since that is linear, so each pair of frames is mapped once. Light is divided by the diffuse reflectance on
 // the way. What must not be carried is shaded afresh: rows that were hidden, and rows whose light has changed
-// (changed_rows.h). Rows that no clustering knows tell the error (test_rows.h).
+// (changed_rows.h). At last each frame is averaged with its neighbors where light changes evenly
+// (temporal_filter.h). Rows that no clustering knows tell the error (test_rows.h).
 #pragma once
 
 #include <cstddef>
@@ -37,6 +38,9 @@ struct TensorClusteringSettings {
   // By how large a part of a row's light that which is carried may differ from what is found in its own
   // frame; else the row and those around it are shaded afresh. Ours; 0: mappings carry everything.
   double max_change = 0.1;
+  // Frames on either side over which light is averaged along the mappings, so that errors do not flicker
+  // (temporal_filter.h). Ours; 0: none.
+  std::size_t filter = 1;
   // Relative error of the rows that no clustering knows, over all frames: the number of columns (up to
   // `max_columns` for each frame) and of rows (up to `max_rows`) is found for it. 0: as given.
   double target_error = 0;

@@ -13,12 +13,6 @@
 
 namespace lumirank::methods {
 
-// Mappings of all frames' rows, both ways between neighbors.
-struct FrameMappings {
-  std::vector<RowMapping> to_later;    // [k]: rows of frame k + 1 to those of frame k
-  std::vector<RowMapping> to_earlier;  // [k]: rows of frame k to those of frame k + 1
-};
-
 class TestRows {
  public:
   explicit TestRows(const matrix::LightingTensor& tensor) : tensor_(tensor), frames_(tensor.frames()) {}
