@@ -1,5 +1,6 @@
 #include "methods/tensor_clustering/row_mapping.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,6 +23,10 @@ constexpr float kLeastSpacing = 1e-6f;  // of the scene's diagonal
 constexpr float kTiniest = 1e-30f;
 // Of the scene's diagonal: what a unit of normal and of reflectance counts.
 constexpr float kNormalScale = 0.125f, kAlbedoScale = 1.0f / 64;
+
+// Of the mean square distance: what is added to the products of differences, so that weights stay small.
+constexpr float kBlendStiffness = 0.01f;
+constexpr float kMaxBlendWeight = 3;
 
 using MappingPoint = std::array<float, kMappingDimensions>;
 
@@ -109,11 +114,8 @@ struct FrameRows::Impl {
   MappingPoints points;
   MappingTree tree;
 
-  Impl(const matrix::LightingMatrix& matrix, float scale_)
-      : rows(matrix.rows()),
-        scale(scale_),
-        points(matrix.row_features(), scale_),
-        tree(kMappingDimensions, points, {16}) {}
+  Impl(const matrix::RowFeatures& features, std::size_t rows_, float scale_)
+      : rows(rows_), scale(scale_), points(features, scale_), tree(kMappingDimensions, points, {16}) {}
 
   // To the nearest of its neighbors by number that does not coincide with it (receivers of one film sample
   // can).
@@ -129,7 +131,9 @@ struct FrameRows::Impl {
 };
 
 FrameRows::FrameRows(const matrix::LightingMatrix& matrix, float scale)
-    : impl_(std::make_unique<const Impl>(matrix, scale)) {}
+    : FrameRows(matrix.row_features(), matrix.rows(), scale) {}
+FrameRows::FrameRows(const matrix::RowFeatures& features, std::size_t rows, float scale)
+    : impl_(std::make_unique<const Impl>(features, rows, scale)) {}
 FrameRows::~FrameRows() = default;
 
 RowMapping FrameRows::nearest(const FrameRows& to) const {
@@ -165,9 +169,37 @@ RowMapping FrameRows::nearest(const FrameRows& to) const {
   return m;
 }
 
-float diagonal_of_rows(const matrix::LightingMatrix& matrix) {
+RowBlend FrameRows::blend(std::size_t row, const FrameRows& to) const {
+  constexpr std::size_t n = RowBlend::kRows;
+  const auto& from = to.impl_->points.points;
+  const MappingPoint& wanted = impl_->points.points[row];
+  RowBlend out;
+  std::array<float, n> squared{};
+  const std::size_t found =
+      to.impl_->tree.knnSearch(wanted.data(), std::min(n, from.size()), out.from.data(), squared.data());
+  if (found < n || squared[0] == 0) return out;
+  // Least |wanted − Σ w x|² with Σ w = 1: weights in proportion to C⁻¹·1, C the products of the differences.
+  std::array<MappingPoint, n> difference;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t d = 0; d < kMappingDimensions; ++d) difference[a][d] = from[out.from[a]][d] - wanted[d];
+  Eigen::Matrix4f products;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b)
+      products(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+          std::inner_product(difference[a].begin(), difference[a].end(), difference[b].begin(), 0.0f);
+  products.diagonal().array() += kBlendStiffness * products.trace() / static_cast<float>(n);
+  const Eigen::Vector4f weight = products.llt().solve(Eigen::Vector4f::Ones());
+  const float sum = weight.sum();
+  // Where they cannot be found the nearest stands for all.
+  if (!(sum > kTiniest) || !weight.allFinite() || weight.cwiseAbs().maxCoeff() > kMaxBlendWeight * sum)
+    return out;
+  for (std::size_t a = 0; a < n; ++a) out.weight[a] = weight[static_cast<Eigen::Index>(a)] / sum;
+  return out;
+}
+
+float diagonal_of_rows(const matrix::RowFeatures& features) {
   Bounds3f box;
-  for (const Vec3f p : matrix.row_features().position) box.extend(p);
+  for (const Vec3f p : features.position) box.extend(p);
   return box.empty() ? 0.0f : length(box.diagonal());
 }
 

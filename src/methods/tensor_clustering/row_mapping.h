@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,6 +34,14 @@ struct FrameMappings {
   std::vector<RowMapping> to_earlier;  // [k]: rows of frame k to those of frame k + 1
 };
 
+// What a row shows as a mixture of what rows of another frame show (ours): weights sum to 1, some may be
+// negative. Of one row alone where it shows the very same place.
+struct RowBlend {
+  static constexpr std::size_t kRows = 4;
+  std::array<matrix::Index, kRows> from{};
+  std::array<float, kRows> weight{1};
+};
+
 // The rows of one frame, to be looked for and to look from. Distances are of 9-vectors: place, normal times
 // an eighth of `scale`, reflectance times a 64th of `scale`; `scale` is the diagonal of the scene. (Weights
 // are ours, the paper states none. Reflectance counts for less, since light is divided by it: relight()
@@ -41,11 +50,17 @@ struct FrameMappings {
 class FrameRows {
  public:
   FrameRows(const matrix::LightingMatrix& matrix, float scale);
+  FrameRows(const matrix::RowFeatures& features, std::size_t rows, float scale);
   ~FrameRows();
 
   // For each row of this frame the nearest of `to`, exactly. Fast where rows that are neighbors by number are
   // neighbors in space, and rows of one number in both frames are near each other.
   RowMapping nearest(const FrameRows& to) const;
+  // What a row that shows another place than all rows of `to` is made of: its nearest ones there, with the
+  // weights by which their 9-vectors sum up to its own as well as they can (the local weights of Roweis and
+  // Saul 2000, Locally Linear Embedding, equation 2), so that light that changes evenly in between comes out
+  // right. Both frames have places.
+  RowBlend blend(std::size_t row, const FrameRows& to) const;
 
  private:
   struct Impl;
@@ -67,6 +82,6 @@ inline Rgb relight(const Rgb& light, const Rgb& from, const Rgb& to) {
 }
 
 // The diagonal of the box of all places of a frame's rows; 0 where they are unknown.
-float diagonal_of_rows(const matrix::LightingMatrix& matrix);
+float diagonal_of_rows(const matrix::RowFeatures& features);
 
 }  // namespace lumirank::methods

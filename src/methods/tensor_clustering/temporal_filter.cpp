@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "base/parallel.h"
 
@@ -10,72 +11,91 @@ namespace {
 
 using matrix::Index;
 
-constexpr std::size_t kFilteredAtOnce = 1 << 12;
+constexpr std::size_t kFilteredAtOnce = 1 << 10;
+constexpr float kNoWeight = 3;  // times max_change
 
-// One frame of the shot: looks along the mappings to both sides of it.
+// A frame between two others, and how its rows look to both sides.
 class FilteredFrame {
  public:
-  FilteredFrame(const FilteredShot& shot, const TemporalFilter& filter, std::size_t frame)
-      : shot_(shot),
-        filter_(filter),
-        frame_(frame),
-        radius_(std::min({filter.radius, frame, shot.sums.size() - 1 - frame})) {}
+  struct Side {
+    std::size_t frame;
+    const RowMapping& mapping;
+    const FrameRows& rows;
+  };
+  FilteredFrame(const FilteredShot& shot, const TemporalFilter& filter, std::size_t frame,
+                const FrameRows& rows)
+      : shot_(shot), filter_(filter), frame_(frame), rows_(rows) {}
 
-  Rgb at(Index row) const {
+  Rgb at(Index row, const Side& earlier, const Side& later) const {
     const Rgb own = shot_.sums[frame_][row];
-    Index earlier = row, later = row;
-    Rgb change(0);
-    std::size_t pairs = 0;
-    for (std::size_t j = 1; j <= radius_; ++j) {
-      if (!step(shot_.mappings.to_later[frame_ - j], earlier) ||
-          !step(shot_.mappings.to_earlier[frame_ + j - 1], later))
-        break;
-      const Rgb mean = 0.5f * (seen(frame_ - j, earlier, row) + seen(frame_ + j, later, row));
-      if (!close(mean, own)) break;
-      change += 2.0f * (mean - own), ++pairs;
-    }
+    if (!reaches(earlier.mapping.distance[row]) || !reaches(later.mapping.distance[row])) return own;
+    const Rgb change = 0.5f * (seen(earlier, row) + seen(later, row)) - own;
     // As a change, so that where nothing changes light stays as it is to the last bit.
-    return own + change / static_cast<float>(2 * pairs + 1);
+    return own + weight(change, own) * (2.0f / 3) * change;
   }
 
  private:
-  bool step(const RowMapping& mapping, Index& row) const {
-    const float distance = mapping.distance[row];
-    if (!std::isfinite(distance)) return false;
-    if (filter_.max_distance > 0 && static_cast<double>(distance) > filter_.max_distance) return false;
-    row = mapping.from[row];
-    return true;
+  bool reaches(float distance) const {
+    return std::isfinite(distance) &&
+           (filter_.max_distance == 0 || static_cast<double>(distance) <= filter_.max_distance);
   }
-  bool close(const Rgb& mean, const Rgb& own) const {
-    if (!(filter_.max_change > 0)) return true;
-    float difference = 0;
-    for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(mean[c] - own[c]));
-    return difference <= static_cast<float>(filter_.max_change) * (max_component(own) + shot_.unseen[frame_]);
+  float weight(const Rgb& change, const Rgb& own) const {
+    if (!(filter_.max_change > 0)) return 1;
+    const float most =
+        kNoWeight * static_cast<float>(filter_.max_change) * (max_component(own) + shot_.unseen[frame_]);
+    const float by = std::max({std::abs(change.r), std::abs(change.g), std::abs(change.b)});
+    if (by >= most) return 0;
+    const float left = 1 - (by / most) * (by / most);
+    return left * left;
   }
-  // The light of a row of another frame, at `row` of this one.
-  Rgb seen(std::size_t frame, Index there, Index row) const {
-    const Rgb light = shot_.sums[frame][there];
-    const auto from = shot_.albedo[frame], to = shot_.albedo[frame_];
+  // The light of the other frame where it shows what `row` shows here.
+  Rgb seen(const Side& side, Index row) const {
+    if (side.mapping.distance[row] == 0) return relit(side, side.mapping.from[row], row);
+    const RowBlend blend = rows_.blend(row, side.rows);
+    Rgb sum(0);
+    for (std::size_t a = 0; a < RowBlend::kRows; ++a)
+      if (blend.weight[a] != 0) sum += blend.weight[a] * relit(side, blend.from[a], row);
+    return {std::max(sum.r, 0.0f), std::max(sum.g, 0.0f), std::max(sum.b, 0.0f)};
+  }
+  Rgb relit(const Side& side, Index there, Index row) const {
+    const Rgb light = shot_.sums[side.frame][there];
+    const auto from = shot_.features[side.frame].albedo, to = shot_.features[frame_].albedo;
     return from.empty() || to.empty() ? light : relight(light, from[there], to[row]);
   }
 
   const FilteredShot& shot_;
   const TemporalFilter& filter_;
-  std::size_t frame_, radius_;  // as many frames as there are on both sides
+  std::size_t frame_;
+  const FrameRows& rows_;
 };
+
+std::vector<std::vector<Rgb>> filtered_once(const FilteredShot& shot, const TemporalFilter& filter) {
+  const std::size_t frames = shot.sums.size();
+  const auto rows_of = [&](std::size_t k) {
+    return std::make_unique<const FrameRows>(shot.features[k], shot.sums[k].size(), shot.scale);
+  };
+  std::vector<std::vector<Rgb>> filtered = shot.sums;  // the first and the last frame stay
+  std::unique_ptr<const FrameRows> before = rows_of(0), now = rows_of(1);
+  for (std::size_t k = 1; k + 1 < frames; ++k) {
+    auto after = rows_of(k + 1);
+    const FilteredFrame frame(shot, filter, k, *now);
+    const FilteredFrame::Side earlier{k - 1, shot.mappings.to_later[k - 1], *before},
+        later{k + 1, shot.mappings.to_earlier[k], *after};
+    parallel_for(filtered[k].size(), kFilteredAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        filtered[k][i] = frame.at(static_cast<Index>(i), earlier, later);
+    });
+    before = std::move(now), now = std::move(after);
+  }
+  return filtered;
+}
 
 }  // namespace
 
-std::vector<std::vector<Rgb>> filter_in_time(const FilteredShot& shot, const TemporalFilter& filter) {
-  std::vector<std::vector<Rgb>> filtered(shot.sums.size());
-  for (std::size_t k = 0; k < shot.sums.size(); ++k) {
-    filtered[k].resize(shot.sums[k].size());
-    const FilteredFrame frame(shot, filter, k);
-    parallel_for(filtered[k].size(), kFilteredAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) filtered[k][i] = frame.at(static_cast<Index>(i));
-    });
-  }
-  return filtered;
+std::vector<std::vector<Rgb>> filter_in_time(FilteredShot shot, const TemporalFilter& filter) {
+  if (shot.sums.size() < 3) return std::move(shot.sums);
+  for (std::size_t pass = 0; pass < filter.passes; ++pass) shot.sums = filtered_once(shot, filter);
+  return std::move(shot.sums);
 }
 
 }  // namespace lumirank::methods

@@ -232,13 +232,12 @@ class TensorRun {
   // Both ways between neighboring frames.
   bool make_mappings() {
     std::unique_ptr<const FrameRows> before;
-    float scale = 0;
     for (std::size_t k = 0; k < tensor_.frames(); ++k) {
       if (options_.sinks.cancelled()) return false;
       const auto matrix = tensor_.frame(k);
       rows_.push_back(matrix->rows());
-      if (k == 0) scale = diagonal_of_rows(*matrix);
-      auto now = std::make_unique<const FrameRows>(*matrix, scale);
+      if (k == 0) scale_ = diagonal_of_rows(matrix->row_features());
+      auto now = std::make_unique<const FrameRows>(*matrix, scale_);
       if (before) {
         mappings_.to_later.push_back(now->nearest(*before));
         mappings_.to_earlier.push_back(before->nearest(*now));
@@ -394,17 +393,18 @@ class TensorRun {
   bool filter() {
     if (settings_.filter == 0) return true;
     std::vector<std::shared_ptr<const matrix::LightingMatrix>> matrices;
-    FilteredShot shot{estimate_.sums, mappings_, {}, {}};
+    FilteredShot shot{{}, mappings_, {}, {}, scale_};
     for (std::size_t k = 0; k < tensor_.frames(); ++k) {
       matrices.push_back(tensor_.frame(k));
-      shot.albedo.push_back(matrices.back()->row_features().albedo);
+      shot.features.push_back(matrices.back()->row_features());
       shot.unseen.push_back(unseen(estimate_.sums[k]));
     }
+    shot.sums = std::move(estimate_.sums);
     // Nor may it leave more than an error that was asked for.
     const bool finer = settings_.target_error > 0 &&
                        !(settings_.max_change > 0 && settings_.max_change < settings_.target_error);
     const double bound = finer ? settings_.target_error : settings_.max_change;
-    estimate_.sums = filter_in_time(shot, {settings_.filter, settings_.max_distance, bound});
+    estimate_.sums = filter_in_time(std::move(shot), {settings_.filter, settings_.max_distance, bound});
     return true;
   }
 
@@ -418,6 +418,7 @@ class TensorRun {
   std::unique_ptr<RectangleClustering> clustering_;
   std::vector<ClusterColumn> clusters_;
   FrameMappings mappings_;
+  float scale_ = 0;                              // of the mappings
   std::vector<std::size_t> rows_;                // of each frame
   std::vector<std::vector<Rgb>> own_, carried_;  // sums: of columns computed in the frame, and in others
   double fresh_rows_ = 0, carried_rows_ = 0, changed_rows_ = 0;

@@ -13,9 +13,14 @@ double energy(const Lane3& e, int lane) {
 }  // namespace
 
 double PairBlock::visible_energy() const {
-  double sum = 0;
+  // Lane by lane: a block has too few groups for floats to lose anything.
+  const Lane zero{};
+  Lane3 sums{zero, zero, zero};
   for (std::size_t g = 0; g < groups_; ++g)
-    for (std::uint32_t b = lanes_.visible[g]; b != 0; b &= b - 1) sum += energy(e(g), __builtin_ctz(b));
+    if (lanes_.visible[g] != 0)
+      sums = sums + select(mask_from_bits(lanes_.visible[g]), e(g), Lane3{zero, zero, zero});
+  double sum = 0;
+  for (int k = 0; k < static_cast<int>(kLanes); ++k) sum += energy(sums, k);
   return sum;
 }
 
