@@ -99,7 +99,7 @@ TEST(TemporalFilter, StopsWhereAMappingDoesNotReach) {
     mappings.to_later[1].distance[0] = distance;  // what frame 2 shows was hidden in frame 1
     const auto filter = [&](double max_distance) {
       std::vector<matrix::RowFeatures> features(5);
-      const std::vector<Vec3f> place{Vec3f(0, 0, 0)};
+      const std::vector<Vec3f> place{Vec3f{0, 0, 0}};
       for (auto& f : features) f.position = place;
       return filter_in_time({light, mappings, features, std::vector<float>(5, 0), 1.0f},
                             {1, max_distance, 0})[2][0]
@@ -120,11 +120,11 @@ TEST(TemporalFilter, InterpolatesBetweenRows) {
   const float scale = 10;
   Light light(kFrames);
   std::vector<std::vector<Vec3f>> places(kFrames);
-  const std::vector<Vec3f> up(kSide * kSide, Vec3f(0, 0, 1));
+  const std::vector<Vec3f> up(kSide * kSide, Vec3f{0, 0, 1});
   for (std::size_t k = 0; k < kFrames; ++k)
     for (std::size_t i = 0; i < kSide * kSide; ++i) {
       const auto t = static_cast<float>(k);
-      const Vec3f at(static_cast<float>(i % kSide) + 0.37f * t, static_cast<float>(i / kSide) - 0.21f * t, 0);
+      const Vec3f at{static_cast<float>(i % kSide) + 0.37f * t, static_cast<float>(i / kSide) - 0.21f * t, 0};
       places[k].push_back(at);
       light[k].push_back(Rgb(1 + 0.03f * at.x, 1 + 0.02f * at.y + 1, 1));
     }
