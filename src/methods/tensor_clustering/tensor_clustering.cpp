@@ -13,6 +13,7 @@
 #include "methods/tensor_clustering/cluster_columns.h"
 #include "methods/tensor_clustering/row_mapping.h"
 #include "methods/tensor_clustering/slice_columns.h"
+#include "methods/tensor_clustering/spread_changes.h"
 #include "methods/tensor_clustering/temporal_filter.h"
 #include "methods/tensor_clustering/test_rows.h"
 
@@ -60,6 +61,9 @@ constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
 // What is too dark to be seen may change: this part of a frame's mean light.
 constexpr float kUnseen = 0.05f;
 
+// A filtered pair of frames loses a fifth of its weight where it differs by this times what may be carried
+// unchanged: what passes evenly through three frames errs less than what is carried through many.
+constexpr double kFilteredChange = 2;
 constexpr std::size_t kCarriedAtOnce = 1 << 12;
 
 float unseen(std::span<const Rgb> sums) {
@@ -371,21 +375,28 @@ class TensorRun {
     std::vector<Rgb> both = own_[f];
     for (std::size_t i = 0; i < both.size(); ++i) both[i] += carried_[f][i];
     const float too_dark = unseen(both);
+    std::vector<bool> known(rows_[f], false);
+    FoundChanges slight;  // of rows that have not changed by as much as counts
     const auto changed = [&](std::span<const Index> rows) {
       const std::vector<Rgb> found = sums_at(*matrix, rows, carried, estimate_.spent);
       std::vector<bool> said(rows.size());
       for (std::size_t a = 0; a < rows.size(); ++a) {
         Rgb& there = carried_[f][rows[a]];
-        float difference = 0;
-        for (int c = 0; c < 3; ++c) difference = std::max(difference, std::abs(found[a][c] - there[c]));
+        const Rgb change = found[a] - there;
+        const float difference = std::max({std::abs(change.r), std::abs(change.g), std::abs(change.b)});
         const float light = max_component(own_[f][rows[a]] + found[a]);
         said[a] = difference > static_cast<float>(settings_.max_change) * (light + too_dark);
+        known[rows[a]] = true;
+        if (!said[a]) slight.rows.push_back(rows[a]), slight.change.push_back(change);
         there = found[a];
       }
       return said;
     };
-    changed_rows_ +=
-        static_cast<double>(ask_for_changes(matrix->row_features().pixel, rows_[f], changed).size());
+    const auto features = matrix->row_features();
+    changed_rows_ += static_cast<double>(ask_for_changes(features.pixel, rows_[f], changed).size());
+    const std::vector<Rgb> spread = spread_changes(features, slight, known);
+    for (std::size_t i = 0; i < spread.size(); ++i)
+      for (int c = 0; c < 3; ++c) carried_[f][i][c] = std::max(carried_[f][i][c] + spread[i][c], 0.0f);
   }
 
   // --------------------------------------------------------------------------------------------- filter
@@ -400,10 +411,10 @@ class TensorRun {
       shot.unseen.push_back(unseen(estimate_.sums[k]));
     }
     shot.sums = std::move(estimate_.sums);
+    double bound = kFilteredChange * settings_.max_change;
     // Nor may it leave more than an error that was asked for.
-    const bool finer = settings_.target_error > 0 &&
-                       !(settings_.max_change > 0 && settings_.max_change < settings_.target_error);
-    const double bound = finer ? settings_.target_error : settings_.max_change;
+    if (settings_.target_error > 0 && !(bound > 0 && bound < settings_.target_error))
+      bound = settings_.target_error;
     estimate_.sums = filter_in_time(std::move(shot), {settings_.filter, settings_.max_distance, bound});
     return true;
   }
