@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <memory>
 
 #include "commands.h"
@@ -68,10 +69,9 @@ void make_video(const AnimateOptions& options, Streams streams) {
 }
 
 // `--method tensor-clustering`: its parameters are given with --set as those of the other methods.
-TensorSettings read_tensor(const std::vector<std::string>& parameters) {
+TensorSettings read_tensor(const std::map<std::string, std::string>& parameters) {
   TensorSettings tensor;
-  for (const std::string& text : parameters) {
-    const auto [key, value] = split_assignment(text, "--set");
+  for (const auto& [key, value] : parameters) {
     const std::string option = "--set " + key;
     if (key == "chunk")
       tensor.chunk = read_count(option, value, 1, 1000);
@@ -113,12 +113,11 @@ TensorSettings read_tensor(const std::vector<std::string>& parameters) {
 
 int run_animate(AnimateOptions& options, Streams streams) {
   AnimateSettings& settings = options.settings;
-  if (const auto method = options.common.fields.find("method");
-      method != options.common.fields.end() && method->second == "tensor-clustering") {
-    settings.tensor = read_tensor(options.common.method_settings);
-    options.common.fields.erase(method), options.common.method_settings.clear();
-  }
   settings.render = options.common.render_settings();
+  if (MethodSettings& method = settings.render.method; method.name == "tensor-clustering") {
+    settings.tensor = read_tensor(method.parameters);
+    method.name = MethodSettings{}.name, method.parameters.clear();
+  }
   settings.frames_per_second = options.common.fps;
   if (!options.frames.empty()) read_frames(options.frames, settings);
   settings.endings.clear();
@@ -131,6 +130,7 @@ int run_animate(AnimateOptions& options, Streams streams) {
     throw InputError("a film is made of PNG frames", "add png to --format");
   Console console(options.common.verbosity(), streams.err);
   const Scene scene = Scene::load(options.common.scene, options.common.load_options(), console.sinks());
+  choose_shot_method(scene, settings);
   const AnimationResult result = animate(scene, settings, options.folder, console.sinks());
   console.clear();
   if (!options.common.quiet || result.interrupted)
@@ -152,6 +152,9 @@ void add_animate(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->folder, "folder for frame_0000.exr, frame_0000.png, …")
       ->required();
   add_setting_options(*command, options->common, {});
+  CLI::Option* const method = command->get_option("--method");
+  method->description(method->get_description() +
+                      "; also tensor-clustering, which is auto's choice where something moves");
   command->add_option("--frames", options->frames,
                       "FIRST:LAST, counted from 0 at second 0 (default: the whole motion)");
   add_number(*command, "--fps", options->common.fps, {0, 1000, true, "frames per second"},

@@ -120,36 +120,30 @@ class Shot:
         each = mean(r["seconds.total"] for r in reports)
         return each + len(reports) * (seconds - each) / self.of.frames
 
-    def fitted(self, what, settings, low, high, most):
-        """The number between `low` / 8 and `most` with which a frame takes as long as tensor clustering's: by secants, at most five trials."""
-        wanted = self.rival()[2]
-        times = {}
-        x, y = low, high
-        for n in range(5):
-            for v in (x, y):
-                if v not in times:
-                    times[v] = self.trial(f"{what}_{v:.6g}", settings(v))
-            best = min(times, key=lambda v: abs(times[v] - wanted))
-            if abs(times[best] / wanted - 1) < 0.03 or len(times) > 4:
-                break
-            slope = max((times[y] - times[x]) / (y - x), 1e-9)
-            following = min(most, max(low / 8, best + (wanted - times[best]) / slope))
-            x, y = sorted((best, round(following) if low >= 1 else following))
-            if x == y:
-                break
-        return best
+    def fitted(self, what, settings, first, most):
+        """The number with which a frame takes as long as tensor clustering's, by a line through the seconds of trials: at first of `first`, then of what the line says."""
+        wanted, times = self.rival()[2], {}
+        for value in first:
+            times[value] = self.trial(f"{what}_{value:.6g}", settings(value))
+        for n in range(2):
+            x, y = mean(times), mean(times.values())
+            slope = sum((v - x) * (t - y) for v, t in times.items()) / sum((v - x) ** 2 for v in times)
+            value = min(most, max(min(first) / 8, x + (wanted - y) / max(slope, 1e-9)))
+            if n == 0:
+                times[value] = self.trial(f"{what}_{value:.6g}", settings(value))
+        return value
 
     def row_column(self):
         def make():
             settings = lambda c: [*SAME_LIGHTS, "--method", "row-column-sampling", "--set", f"rows={self.of.rows}", "--set", f"columns={round(c)}"]
-            columns = self.fitted("row_column", settings, 200, 800, self.of.lights // 2)
+            columns = self.fitted("row_column", settings, (200, 800), self.of.lights // 2)
             return (*self.render("row_column", settings(columns)), f"{self.of.rows} rows, {round(columns)} columns")
         return self.once("row-column", make)
 
     def slice_cuts(self):
         def make():
             settings = lambda q: [*SAME_LIGHTS, "--method", "slice-cuts", "--set", f"initial-columns={max(20, round(500 * q))}", "--set", f"alpha={min(1, 0.003 / q):.6g}"]
-            quality = self.fitted("slice_cuts", settings, 0.25, 1, 8)
+            quality = self.fitted("slice_cuts", settings, (0.25, 1), 8)
             return (*self.render("slice_cuts", settings(quality)), f"initial-columns {max(20, round(500 * quality))}, alpha {0.003 / quality:.3g}")
         return self.once("slice-cuts", make)
 

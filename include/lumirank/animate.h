@@ -1,6 +1,7 @@
 // A scene that moves, as numbered pictures.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,10 +29,10 @@ struct TensorSettings {
   double max_distance = 10;
   // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
   // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.
-  double max_change = 0.1;
-  // Frames on either side that light is averaged over where it changes evenly, so that errors do not flicker;
-  // no farther than `max_distance`, by no more than `max_change` or the error that is asked for. 0: none, as
-  // in the paper.
+  double max_change = 0.05;
+  // How often light is averaged with one frame on either side where it changes evenly, so that errors do not
+  // flicker; no farther than `max_distance`, each time by no more than 1.2 of `max_change`, or 0.6 of
+  // the error that is asked for. 0: not at all, as in the paper.
   int filter = 1;
   // The lights that stand for their clusters: those of the largest norm, as in the paper, or those nearest to
   // the cluster's mean, which are not biased towards lights close to the rows that are read.
@@ -42,6 +43,9 @@ struct TensorSettings {
   bool write_clusters = false;
 };
 
+// As `--set` of `lumirank animate --method tensor-clustering` takes them, all of them; reports have them so.
+LUMIRANK_API std::map<std::string, std::string> parameters_of(const TensorSettings& settings);
+
 struct AnimateSettings {
   RenderSettings render;  // of every frame: with the same seed, so the same random numbers, in each
   double frames_per_second = 24;
@@ -49,9 +53,18 @@ struct AnimateSettings {
       last = -1;  // frame k is the moment k / frames_per_second; last -1: the last one of the motion
   std::vector<std::string> endings = {".exr", ".png"};  // of each frame's pictures
   DisplaySettings display;
-  // Instead of the method of `render`, for columns; light that columns cannot carry is left out then.
+  // Instead of the method of `render`, for columns.
   std::optional<TensorSettings> tensor = {};
 };
+
+// What `lumirank animate` does where no method is named: tensor clustering with kShotColumns (or as many as
+// the error takes that is asked for) and chunks that fit into kShotMemory, where the scene moves and nothing
+// is asked for that it refuses (a time budget, layers, an open shutter, compensation); else settings are left
+// as they are, and frames are rendered one by one. Call it with settings whose method is "auto"; others are
+// left alone.
+inline constexpr int kShotColumns = 500;     // for each frame: what a still's default takes, about
+inline constexpr double kShotMemory = 6000;  // MB, on every machine, so that all make the same frames
+LUMIRANK_API void choose_shot_method(const Scene& scene, AnimateSettings& settings);
 
 struct AnimationResult {
   int rendered = 0, kept = 0;  // frames: made now, and found finished

@@ -18,6 +18,7 @@
 #include "base/hash_text.h"
 #include "base/timer.h"
 #include "image/atomic_file.h"
+#include "settings/rows.h"
 
 namespace lumirank {
 namespace {
@@ -286,6 +287,38 @@ void render_chunks(const Shot& shot, const AnimateSettings& settings, const Rang
 }
 
 }  // namespace
+
+std::map<std::string, std::string> parameters_of(const TensorSettings& t) {
+  using settings::format_number;
+  return {{"chunk", std::to_string(t.chunk)},
+          {"overlap", std::to_string(t.overlap)},
+          {"memory", format_number(t.memory)},
+          {"rows", std::to_string(t.rows)},
+          {"columns", std::to_string(t.columns)},
+          {"initial-clusters", std::to_string(t.initial_clusters)},
+          {"time-weight", format_number(t.time_weight)},
+          {"max-distance", format_number(t.max_distance)},
+          {"max-change", format_number(t.max_change)},
+          {"filter", std::to_string(t.filter)},
+          {"representatives", t.largest_representatives ? "largest" : "central"},
+          {"bits", std::to_string(t.bits)},
+          {"clusters", t.write_clusters ? "on" : "off"}};
+}
+
+void choose_shot_method(const Scene& scene, AnimateSettings& settings) {
+  const scenedesc::Motion& motion = scene.impl().desc.motion;
+  if (settings.tensor || settings.render.method.name != "auto" ||
+      !settings.render.method.parameters.empty() || !(motion.end > motion.begin))
+    return;
+  TensorSettings tensor;
+  tensor.columns = kShotColumns, tensor.memory = kShotMemory;
+  try {
+    api::check(tensor, settings.render);
+  } catch (const InputError&) {  // something that it refuses is asked for
+    return;
+  }
+  settings.tensor = tensor;
+}
 
 AnimationResult animate(const Scene& scene, const AnimateSettings& settings, const std::string& folder,
                         const Sinks& sinks) {

@@ -81,12 +81,14 @@ void warn_of_error(double target, const methods::TensorEstimate& estimate, const
 }
 
 Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate& estimate, std::size_t k,
-                 std::size_t frames, const RenderSettings& settings) {
+                 std::size_t frames, const RenderSettings& settings, const TensorSettings& tensor) {
   Report report;
-  report.method = "tensor-clustering";
+  report.method = methods::kMethodOfShots;
   report.version = program_version();
   report.seed = settings.seed;
   report.settings = settings;
+  report.settings.method.name = report.method;
+  report.settings.method.parameters = parameters_of(tensor);
   report.seconds = frame.seconds;
   // Of the chunk, a frame's part of it.
   const auto part = static_cast<double>(frames);
@@ -156,7 +158,8 @@ int frames_within_memory(const std::vector<Scene>& first, const RenderSettings& 
     throw InputError("tensor clustering takes about " +
                          std::to_string(std::lround((once + (later + frame) * (overlap > 0 ? 2 : 1)) / 1e6)) +
                          " MB for one frame and its overlap, more than the memory that is given",
-                     "give more with --set memory=…, or fewer --lights, a smaller --size or a lower --spp");
+                     "give more with --method tensor-clustering --set memory=…, or fewer --lights, a smaller "
+                     "--size or a lower --spp");
   return static_cast<int>(std::min<double>(t.chunk, length));
 }
 
@@ -215,7 +218,7 @@ TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSetting
           if (!rest.trace_all(frame.view, silent)) throw Cancelled();
           rest.add_to(image);
           result.picture = pipeline::to_picture(image);
-          result.report = report_of(frame, estimate, k, frames.size(), settings);
+          result.report = report_of(frame, estimate, k, frames.size(), settings, tensor);
           pipeline::add_film_numbers(result.report.numbers, recipe,
                                      pipeline::seen_rows(frame.receivers(), frame.traced), fits);
           if (rest_plan.piloted) result.report.numbers["rest.share"] = rest_plan.pilot.share;

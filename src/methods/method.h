@@ -84,6 +84,8 @@ struct MethodInfo {
 // The list: adding a method here enrols it in the command line, the documentation and the tests that all
 // methods must pass.
 const std::vector<MethodInfo>& all_methods();
+// Not among them: it takes all frames of a shot (methods/tensor_clustering/).
+inline constexpr const char* kMethodOfShots = "tensor-clustering";
 // Throws InputError naming the valid methods.
 const MethodInfo& find_method(const std::string& name);
 // Throws InputError if the method needs something that a matrix with these capabilities does not tell, naming

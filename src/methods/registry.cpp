@@ -50,6 +50,9 @@ const std::vector<MethodInfo>& all_methods() {
 }
 
 const MethodInfo& find_method(const std::string& name) {
+  if (name == kMethodOfShots)
+    throw InputError(name + " makes the frames of a shot together, and no single picture",
+                     "use it with `lumirank animate`, or choose another method");
   std::string list;
   for (const MethodInfo& m : all_methods()) {
     if (m.name == name) return m;

@@ -10,7 +10,8 @@ Row method_row() {
   for (const auto& m : methods::all_methods()) field.range += "|" + m.name;
   return {field,
           [](RenderSettings& s, const std::string& text) {
-            if (text != "auto") methods::find_method(text);  // throws with the list
+            // That of shots is refused where one picture is made. Throws with the list.
+            if (text != "auto" && text != methods::kMethodOfShots) methods::find_method(text);
             s.method.name = text;
           },
           [](const RenderSettings& s) { return s.method.name; }};

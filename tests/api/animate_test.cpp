@@ -152,6 +152,33 @@ TEST(Animate, TensorClusteringSaysWhatItDoesNot) {
   EXPECT_FALSE(fs::exists(folder / "none"));
 }
 
+// By default a shot is made by tensor clustering, unless that cannot be or another method is named.
+TEST(Animate, ByDefaultTensorClusteringWhereSomethingMoves) {
+  const TemporaryFolder folder;
+  const Scene moving = Scene::load(moving_scene(folder));
+  const auto chosen = [](const Scene& scene, const auto& change) {
+    AnimateSettings settings = small_shot(0, 1);
+    settings.render.method.name = "auto";
+    change(settings);
+    choose_shot_method(scene, settings);
+    return settings;
+  };
+  const AnimateSettings usual = chosen(moving, [](auto&) {});
+  ASSERT_TRUE(usual.tensor);
+  EXPECT_EQ(usual.tensor->columns, kShotColumns);
+  EXPECT_EQ(usual.tensor->memory, kShotMemory);
+  EXPECT_EQ(usual.render.method.target_error, 0);
+  EXPECT_TRUE(chosen(moving, [](auto& s) { s.render.method.target_error = 0.1; }).tensor);
+  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.method.name = "slice-cuts"; }).tensor);
+  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.method.parameters["columns"] = "300"; }).tensor);
+  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.time = 1; }).tensor);
+  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.layers = {"direct"}; }).tensor);
+  const std::string still = folder / "still.xml";
+  std::ofstream(still) << "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><shape type=\"rectangle\"/>"
+                       << kLamp << "</scene>";
+  EXPECT_FALSE(chosen(Scene::load(still), [](auto&) {}).tensor);
+}
+
 // Light that columns cannot carry (here a mirror's caustics) is traced beside them, and is what a still has.
 TEST(Animate, TensorClusteringTracesTheRestOfTheLight) {
   const TemporaryFolder folder;
