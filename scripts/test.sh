@@ -53,7 +53,7 @@ quiet_build tsan $(printf -- '-t test_%s ' "${threaded[@]}")
 step "Threaded tests under the thread sanitizer"
 # Without those that repeat one run over many seeds to judge its statistics: they are half of the time and no new loop.
 statistical=(Halves.OfParticlesAreIndependent 'Rules/SphericalPairs.*' Automatic.ReachesItsTargetAndSaysSo
-  SamplingRecovery.TestsTellWhatPredictionsAreWorth VirtualLights.AimingKeepsTheEnergyBalance
+  SamplingRecovery.TestsTellWhatPredictionsAreWorth SamplingRecovery.StepsAreWorthWhatTheyWere VirtualLights.AimingKeepsTheEnergyBalance
   VirtualLights.LightBehindAWindowIsUnbiased VirtualLights.AreAimedAtWhatReceiversSee
   VirtualLights.EmitterSamplesFollowWhatColumnsCarry 'VirtualLights.DiffuseOnlyKeepsThePlaces*')
 export GTEST_FILTER; GTEST_FILTER=-$(IFS=:; echo "${statistical[*]}")
