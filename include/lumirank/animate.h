@@ -57,13 +57,13 @@ struct AnimateSettings {
   std::optional<TensorSettings> tensor = {};
 };
 
-// What `lumirank animate` does where no method is named: tensor clustering with kShotColumns (or as many as
-// the error takes that is asked for) and chunks that fit into kShotMemory, where the scene moves and nothing
-// is asked for that it refuses (a time budget, layers, an open shutter, compensation); else settings are left
-// as they are, and frames are rendered one by one. Call it with settings whose method is "auto"; others are
-// left alone.
-inline constexpr int kShotColumns = 500;     // for each frame: what a still's default takes, about
+inline constexpr int kShotColumns = 500;     // for each frame: as long as a still by default, about
 inline constexpr double kShotMemory = 6000;  // MB, on every machine, so that all make the same frames
+
+// What `lumirank animate` does where no method is named, that is, where it is "auto" without parameters:
+// tensor clustering with kShotColumns (or as many as the error takes that is asked for) and chunks that fit
+// into kShotMemory, if the scene moves and nothing is asked for that it refuses (a time budget, layers, an
+// open shutter, compensation). All other settings are left as they are: frames are rendered one by one.
 LUMIRANK_API void choose_shot_method(const Scene& scene, AnimateSettings& settings);
 
 struct AnimationResult {

@@ -28,15 +28,17 @@ TEST_F(AnimateCommand, ByDefaultTensorClusteringAndItsReportsAreReplayed) {
   EXPECT_EQ(report["method"], "tensor-clustering");
   EXPECT_EQ(report["parameters"]["method"], "tensor-clustering");
   EXPECT_EQ(report["parameters"]["set"]["columns"], "500");
-  EXPECT_SUCCESS(lumirank(shot_of("again", {"--replay", folder_ / "a/frame_0001.json"})));
-  EXPECT_EQ(read_text(folder_ / "again/frame_0001.pfm"), read_text(folder_ / "a/frame_0001.pfm"));
 
-  // --set beside it wins, and the other parameters stay.
-  EXPECT_SUCCESS(lumirank(shot_of(folder_ / "b", {"--replay", folder_ / "a/frame_0001.json", "--set",
-                                                  "columns=20", "--set", "chunk=4"})));
-  const auto other = read_json(folder_ / "b/frame_0000.json")["parameters"]["set"];
-  EXPECT_EQ(other["columns"], "20");
-  EXPECT_EQ(other["memory"], "6000");
+  // --set beside a report wins, and its other parameters stay.
+  const std::string few = folder_ / "few", again = folder_ / "again";
+  EXPECT_SUCCESS(lumirank(
+      shot_of("few", {"--replay", folder_ / "a/frame_0001.json", "--set", "columns=3", "--set", "rows=5"})));
+  const auto set = read_json(few + "/frame_0001.json")["parameters"]["set"];
+  EXPECT_EQ(set["columns"], "3");
+  EXPECT_EQ(set["memory"], "6000");
+  EXPECT_SUCCESS(lumirank(shot_of("again", {"--replay", few + "/frame_0001.json"})));
+  EXPECT_EQ(read_text(again + "/frame_0001.pfm"), read_text(few + "/frame_0001.pfm"));
+  EXPECT_NE(read_text(again + "/frame_0001.pfm"), read_text(folder_ / "a/frame_0001.pfm"));
 }
 
 TEST_F(AnimateCommand, OneByOneWhereAMethodIsNamed) {

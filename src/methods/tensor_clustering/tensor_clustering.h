@@ -38,7 +38,7 @@ struct TensorClusteringSettings {
   // By how large a part of a row's light that which is carried may differ from what is found in its own
   // frame; else the row and those around it are shaded afresh. Ours; 0: mappings carry everything.
   double max_change = 0.05;
-  // Frames on either side over which light is averaged along the mappings, so that errors do not flicker
+  // Passes that average light with one frame on either side along the mappings, so that errors do not flicker
   // (temporal_filter.h). Ours; 0: none.
   std::size_t filter = 1;
   // Relative error of the rows that no clustering knows, over all frames: the number of columns (up to
