@@ -89,6 +89,8 @@ TensorSettings read_tensor(const std::map<std::string, std::string>& parameters)
       tensor.memory = read_number(option, value, {0, 1e9});
     else if (key == "max-change")
       tensor.max_change = read_number(option, value, {0, 1e9});
+    else if (key == "max-peak")
+      tensor.max_peak = read_number(option, value, {0, 1e9});
     else if (key == "max-distance")
       tensor.max_distance = read_number(option, value, {0, 1e9});
     else if (key == "filter")
@@ -106,7 +108,7 @@ TensorSettings read_tensor(const std::map<std::string, std::string>& parameters)
     else
       throw InputError("tensor-clustering has no parameter '" + key + "'",
                        "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, "
-                       "max-distance, max-change, filter, representatives, bits and clusters");
+                       "max-distance, max-change, max-peak, filter, representatives, bits and clusters");
   }
   return tensor;
 }

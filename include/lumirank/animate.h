@@ -30,6 +30,10 @@ struct TensorSettings {
   // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
   // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.
   double max_change = 0.05;
+  // A cluster's lights are summed one by one where what stands for them is so large a part of the mean light,
+  // and ten times as bright as at the places that were read, in the quadratic mean: it would be a spot there
+  // (in what shines, and in corners). 0: nowhere, as in the paper.
+  double max_peak = 0.05;
   // How often light is averaged with one frame on either side where it changes evenly, so that errors do not
   // flicker; no farther than `max_distance`, each time by no more than 1.2 of `max_change`, or 0.6 of
   // the error that is asked for. 0: not at all, as in the paper.

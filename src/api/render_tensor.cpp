@@ -45,6 +45,7 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
   s.rows = static_cast<std::size_t>(t.rows), s.columns = static_cast<std::size_t>(t.columns);
   s.initial_clusters = static_cast<std::size_t>(t.initial_clusters);
   s.time_weight = t.time_weight, s.max_distance = t.max_distance, s.max_change = t.max_change;
+  s.max_peak = t.max_peak;
   s.filter = static_cast<std::size_t>(t.filter);
   s.keep_rectangles = t.write_clusters;
   if (t.largest_representatives) s.representatives = methods::Representatives::largest;
@@ -132,6 +133,7 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   require(t.initial_clusters >= 1, "there are no initial clusters", "give 1 or more");
   require(t.time_weight >= 0, "the weight of time is negative", "give 0 or more");
   require(t.max_change >= 0, "the greatest change of light is negative", "give 0 or more");
+  require(t.max_peak >= 0, "the greatest peak of a cluster's light is negative", "give 0 or more");
   require(t.filter >= 0, "it filters over a negative number of frames", "give 0 or more");
   require(t.max_distance >= 0, "the greatest distance of a mapping is negative", "give 0 or more");
   require(t.bits == 16 || t.bits == 32, "entries have 16 or 32 bits", "give one of them");

@@ -113,44 +113,75 @@ TEST(TemporalFilter, StopsWhereAMappingDoesNotReach) {
   }
 }
 
-// A view that moves by parts of the distance of rows over a surface with light that changes evenly: rows of
-// no frame show the same places, and still nothing is blurred.
-TEST(TemporalFilter, InterpolatesBetweenRows) {
-  constexpr std::size_t kFrames = 6, kSide = 24;
-  const float scale = 10;
-  Light light(kFrames);
-  std::vector<std::vector<Vec3f>> places(kFrames);
-  const std::vector<Vec3f> up(kSide * kSide, Vec3f{0, 0, 1});
-  for (std::size_t k = 0; k < kFrames; ++k)
-    for (std::size_t i = 0; i < kSide * kSide; ++i) {
+// A view that moves by parts of the distance of rows over a surface whose light is `of` its places: rows of
+// no frame show the same ones.
+class MovedView {
+ public:
+  static constexpr std::size_t kFrames = 6, kSide = 24;
+
+  template <typename Of>
+  explicit MovedView(const Of& of) {
+    std::vector<std::unique_ptr<const FrameRows>> rows;
+    for (std::size_t k = 0; k < kFrames; ++k) {
       const auto t = static_cast<float>(k);
-      const Vec3f at{static_cast<float>(i % kSide) + 0.37f * t, static_cast<float>(i / kSide) - 0.21f * t, 0};
-      places[k].push_back(at);
-      light[k].push_back(Rgb(1 + 0.03f * at.x, 1 + 0.02f * at.y + 1, 1));
+      for (std::size_t i = 0; i < kSide * kSide; ++i) {
+        const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
+        places_[k].push_back({x + 0.37f * t, y - 0.21f * t, 0});
+        light[k].push_back(of(places_[k].back()));
+      }
+      features_[k].position = places_[k], features_[k].normal = up_;
+      rows.push_back(std::make_unique<const FrameRows>(features_[k], light[k].size(), kScale));
+      if (k == 0) continue;
+      mappings.to_later.push_back(rows[k]->nearest(*rows[k - 1]));
+      mappings.to_earlier.push_back(rows[k - 1]->nearest(*rows[k]));
     }
-  FrameMappings mappings;
-  std::vector<matrix::RowFeatures> features(kFrames);
-  std::vector<std::unique_ptr<const FrameRows>> rows;
-  for (std::size_t k = 0; k < kFrames; ++k) {
-    features[k].position = places[k], features[k].normal = up;
-    rows.push_back(std::make_unique<const FrameRows>(features[k], light[k].size(), scale));
-    if (k == 0) continue;
-    mappings.to_later.push_back(rows[k]->nearest(*rows[k - 1]));
-    mappings.to_earlier.push_back(rows[k - 1]->nearest(*rows[k]));
   }
-  const Light out =
-      filter_in_time({light, mappings, features, std::vector<float>(kFrames, 0.0f), scale}, {1, 10, 0});
+  Light filtered(const TemporalFilter& filter) const {
+    return filter_in_time({light, mappings, features_, std::vector<float>(kFrames, 0.0f), kScale}, filter);
+  }
+  // body(frame, row) of those around which everything is seen in the frames before and after too.
+  template <typename Body>
+  void inside(const Body& body) const {
+    for (std::size_t k = 1; k + 1 < kFrames; ++k)
+      for (std::size_t y = 3; y + 3 < kSide; ++y)
+        for (std::size_t x = 3; x + 3 < kSide; ++x) body(k, y * kSide + x);
+  }
+
+  Light light = Light(kFrames);
+  FrameMappings mappings;
+
+ private:
+  static constexpr float kScale = 10;
+  std::vector<std::vector<Vec3f>> places_{kFrames};
+  std::vector<Vec3f> up_ = std::vector<Vec3f>(kSide * kSide, Vec3f{0, 0, 1});
+  std::vector<matrix::RowFeatures> features_{kFrames};
+};
+
+TEST(TemporalFilter, InterpolatesBetweenRows) {
+  const MovedView view([](Vec3f at) { return Rgb(1 + 0.03f * at.x, 2 + 0.02f * at.y, 1); });
+  const Light out = view.filtered({1, 10, 0});
   float worst = 0, worst_of_nearest = 0;
-  for (std::size_t k = 1; k + 1 < kFrames; ++k)
-    for (std::size_t i = 0; i < light[k].size(); ++i) {
-      const std::size_t x = i % kSide, y = i / kSide;
-      if (x < 3 || y < 3 || x + 3 >= kSide || y + 3 >= kSide) continue;
-      worst = std::max(worst, std::abs(out[k][i].r - light[k][i].r));
-      worst_of_nearest = std::max(worst_of_nearest,
-                                  std::abs(light[k - 1][mappings.to_later[k - 1].from[i]].r - light[k][i].r));
-    }
+  view.inside([&](std::size_t k, std::size_t i) {
+    worst = std::max(worst, std::abs(out[k][i].r - view.light[k][i].r));
+    const Rgb nearest = view.light[k - 1][view.mappings.to_later[k - 1].from[i]];
+    worst_of_nearest = std::max(worst_of_nearest, std::abs(nearest.r - view.light[k][i].r));
+  });
   EXPECT_LT(worst, 0.001f);
   EXPECT_GT(worst_of_nearest, 0.01f);  // or there was nothing to interpolate
+}
+
+// Stripes as wide as the distance of rows: there is nothing to interpolate between, and they stay as sharp.
+TEST(TemporalFilter, LeavesDetailAlone) {
+  const MovedView view([](Vec3f at) { return Rgb(std::fmod(at.x + 100, 2.0f) < 1 ? 1.0f : 0.6f); });
+  const Light sharp = view.filtered({1, 10, 0.1}), blurred = view.filtered({1, 10, 0});
+  std::size_t as_they_were = 0, blurry = 0, all = 0;
+  view.inside([&](std::size_t k, std::size_t i) {
+    ++all;
+    as_they_were += sharp[k][i] == view.light[k][i];
+    blurry += std::abs(blurred[k][i].r - view.light[k][i].r) > 0.02f;
+  });
+  EXPECT_EQ(as_they_were, all);
+  EXPECT_GT(blurry, all / 4);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "matrix/dense_matrix.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
+#include "methods/tensor_clustering/cluster_reader.h"
 #include "methods/tensor_clustering/row_mapping.h"
 
 namespace lumirank::methods {
@@ -196,6 +197,77 @@ TEST(TensorClustering, AShadowThatMovesDoesNotGhost) {
   EXPECT_GT(worst_error(tensor, carried), 0.1);
   EXPECT_GT(followed.trace.numbers.at("rows.changed"), 0);
   EXPECT_LT(followed.trace.numbers.at("rows.changed"), 0.5);
+}
+
+// Lights of one kind, each of which is a bright spot at a row of its own that no clustering reads. The one
+// that stands for them would make its spot as bright as all of them together.
+TEST(TensorClustering, AClusterIsSummedWhereItsRepresentativeStandsTooClose) {
+  constexpr std::size_t kRows = 640, kLights = 20, kFrames = 2;
+  constexpr float kSpot = 60;
+  const auto spot_of = [](std::size_t j) { return 32 * j + 9; };
+  std::vector<std::shared_ptr<const DenseMatrix>> made;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    std::vector<Rgb> entries(kRows * kLights, Rgb(1, 0.5f, 0));
+    for (std::size_t j = 0; j < kLights; ++j) {
+      entries[spot_of(j) * kLights + j] = Rgb(kSpot);
+      entries[(spot_of(j) + 1) * kLights + j] = Rgb(8);  // no peak by itself, but next to one
+    }
+    made.push_back(std::make_shared<const DenseMatrix>(kRows, kLights, std::move(entries)));
+  }
+  const DenseTensor tensor(std::move(made));
+  TensorClusteringSettings settings = settings_of(1);
+  settings.initial_clusters = 1;
+  const auto brightest = [&](double max_peak) {
+    settings.max_peak = max_peak;
+    const TensorEstimate e = estimate_tensor(tensor, settings, {});
+    EXPECT_EQ(e.clusters, 1u);
+    EXPECT_EQ(e.sums[0], e.sums[1]);
+    return static_cast<std::size_t>(std::max_element(e.sums[0].begin(), e.sums[0].end(),
+                                                     [](const Rgb& a, const Rgb& b) { return a.r < b.r; }) -
+                                    e.sums[0].begin());
+  };
+  const std::size_t spot = brightest(0);
+  const TensorEstimate as_it_is = estimate_tensor(tensor, settings, {});
+  ASSERT_EQ(spot % 32, 9u);
+  EXPECT_NEAR(as_it_is.sums[0][spot].r, kSpot * kLights, 1);
+  EXPECT_EQ(brightest(0.05), spot);
+  const TensorEstimate summed = estimate_tensor(tensor, settings, {});
+  for (const std::size_t row : {spot, spot + 1})
+    EXPECT_NEAR(summed.sums[0][row].r, tensor.exact(0)[row].r, 1e-3f) << row;
+  EXPECT_EQ(summed.sums[0][spot + 2], as_it_is.sums[0][spot + 2]);
+}
+
+// What a cluster is at a row is the same whichever rows are asked for beside it.
+TEST(ClusterReader, DoesNotDependOnTheOtherRows) {
+  constexpr std::size_t kRows = 200, kLights = 6;
+  std::vector<Rgb> entries(kRows * kLights);
+  Rng rng(7, Stage::method);
+  for (Rgb& e : entries) e = Rgb(std::pow(rng.next_float(), 8.0f));
+  const DenseMatrix matrix(kRows, kLights, std::move(entries));
+  const std::vector<std::uint32_t> lights{0, 1, 2, 3, 4, 5};
+  const ClusterLight cluster{3, Rgb(5), Rgb(5), lights, 3.5f};
+  const auto read = [&](const std::vector<matrix::Index>& rows) {
+    const auto reader = matrix.reader();
+    reader->set_rows(rows);
+    std::vector<Rgb> column(rows.size());
+    ClusterReader(*reader, rows, kRows).read(cluster, column);
+    return column;
+  };
+  std::vector<matrix::Index> all(kRows);
+  std::iota(all.begin(), all.end(), matrix::Index{0});
+  const std::vector<Rgb> whole = read(all), exact = matrix.exact_sums();
+  std::vector<Rgb> plain(kRows);
+  matrix.column(3, plain);
+  std::size_t summed = 0;
+  for (const matrix::Index i : all) {
+    EXPECT_EQ(read({i})[0], whole[i]) << i;
+    if (whole[i] == plain[i]) continue;
+    ++summed;
+    EXPECT_NEAR(whole[i].g * 5, exact[i].g, 1e-5f);
+  }
+  EXPECT_GT(summed, 5u);
+  EXPECT_LT(summed, kRows / 2);
+  EXPECT_EQ(read({150, 7, 151, 8}), (std::vector<Rgb>{whole[150], whole[7], whole[151], whole[8]}));
 }
 
 // A plane with a texture, seen a third of a pixel farther in every frame: light is divided by the reflectance

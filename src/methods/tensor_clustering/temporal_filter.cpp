@@ -29,33 +29,45 @@ class FilteredFrame {
   Rgb at(Index row, const Side& earlier, const Side& later) const {
     const Rgb own = shot_.sums[frame_][row];
     if (!reaches(earlier.mapping.distance[row]) || !reaches(later.mapping.distance[row])) return own;
-    const Rgb change = 0.5f * (seen(earlier, row) + seen(later, row)) - own;
+    const Seen before = seen(earlier, row), after = seen(later, row);
+    const Rgb change = 0.5f * (before.light + after.light) - own;
     // As a change, so that where nothing changes light stays as it is to the last bit.
-    return own + weight(change, own) * (2.0f / 3) * change;
+    return own + weight(change, std::max(before.spread, after.spread), own) * (2.0f / 3) * change;
   }
 
  private:
+  struct Seen {
+    Rgb light;
+    float spread = 0;  // by how much the rows differ that it is interpolated between
+  };
+
   bool reaches(float distance) const {
     return std::isfinite(distance) &&
            (filter_.max_distance == 0 || static_cast<double>(distance) <= filter_.max_distance);
   }
-  float weight(const Rgb& change, const Rgb& own) const {
+  float weight(const Rgb& change, float spread, const Rgb& own) const {
     if (!(filter_.max_change > 0)) return 1;
     const float most =
         kNoWeight * static_cast<float>(filter_.max_change) * (max_component(own) + shot_.unseen[frame_]);
-    const float by = std::max({std::abs(change.r), std::abs(change.g), std::abs(change.b)});
+    const float by = std::max({std::abs(change.r), std::abs(change.g), std::abs(change.b), spread});
     if (by >= most) return 0;
     const float left = 1 - (by / most) * (by / most);
     return left * left;
   }
   // The light of the other frame where it shows what `row` shows here.
-  Rgb seen(const Side& side, Index row) const {
-    if (side.mapping.distance[row] == 0) return relit(side, side.mapping.from[row], row);
+  Seen seen(const Side& side, Index row) const {
+    if (side.mapping.distance[row] == 0) return {relit(side, side.mapping.from[row], row)};
     const RowBlend blend = rows_.blend(row, side.rows);
-    Rgb sum(0);
-    for (std::size_t a = 0; a < RowBlend::kRows; ++a)
-      if (blend.weight[a] != 0) sum += blend.weight[a] * relit(side, blend.from[a], row);
-    return {std::max(sum.r, 0.0f), std::max(sum.g, 0.0f), std::max(sum.b, 0.0f)};
+    Rgb sum(0), least(kInfinity), most(0);
+    for (std::size_t a = 0; a < RowBlend::kRows; ++a) {
+      if (blend.weight[a] == 0) continue;
+      const Rgb light = relit(side, blend.from[a], row);
+      sum += blend.weight[a] * light;
+      for (int c = 0; c < 3; ++c)
+        least[c] = std::min(least[c], light[c]), most[c] = std::max(most[c], light[c]);
+    }
+    return {{std::max(sum.r, 0.0f), std::max(sum.g, 0.0f), std::max(sum.b, 0.0f)},
+            max_component(most - least)};
   }
   Rgb relit(const Side& side, Index there, Index row) const {
     const Rgb light = shot_.sums[side.frame][there];

@@ -5,7 +5,8 @@
 // is; what is averaged out is what goes up and down. A pair counts the less the farther its mean is from what
 // the row has (Tukey's biweight), and not at all where a mapping does not reach: there something has moved
 // past. Between the rows of the other frames light is interpolated, or what moves would be jittered by up to
-// half the distance of rows.
+// half the distance of rows; where those rows differ much there is detail that this would blur, so a pair
+// counts the less for that as well.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,8 @@ namespace lumirank::methods {
 struct TemporalFilter {
   std::size_t passes = 0;   // each averages over one frame on either side; 0: none
   double max_distance = 0;  // of a mapping, in distances of neighboring rows; 0: any
-  // Of a pair's mean from a row's light, as a part of this and `unseen`: there a pair has lost a fifth of its
+  // Of a pair's mean from a row's light, and of the rows that it is interpolated from among each other, as a
+  // part of the row's light and `unseen`: there a pair has lost a fifth of its
   // weight, and at three times as much all of it. So a pass changes light by at most 0.6 of it. 0: any
   double max_change = 0;
 };

@@ -11,6 +11,7 @@
 #include "linalg/column_sketch.h"
 #include "methods/tensor_clustering/changed_rows.h"
 #include "methods/tensor_clustering/cluster_columns.h"
+#include "methods/tensor_clustering/cluster_reader.h"
 #include "methods/tensor_clustering/row_mapping.h"
 #include "methods/tensor_clustering/slice_columns.h"
 #include "methods/tensor_clustering/spread_changes.h"
@@ -70,6 +71,19 @@ float unseen(std::span<const Rgb> sums) {
   double all = 0;
   for (const Rgb& light : sums) all += static_cast<double>(max_component(light));
   return kUnseen * static_cast<float>(all / static_cast<double>(std::max<std::size_t>(1, sums.size())));
+}
+
+// Of so many rows of entries.
+float mean_light_of(std::span<const Rgb> entries, std::size_t rows) {
+  if (rows == 0) return 0;
+  const std::size_t columns = entries.size() / rows;
+  double all = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    Rgb sum(0);
+    for (const Rgb& entry : entries.subspan(i * columns, columns)) sum += entry;
+    all += static_cast<double>(max_component(sum));
+  }
+  return static_cast<float>(all / static_cast<double>(rows));
 }
 
 class TensorRun {
@@ -148,7 +162,7 @@ class TensorRun {
         columns = std::min(columns, limit);
         timed("clustering", [&] {
           split_to(static_cast<std::size_t>(columns));
-          estimate_.predicted_error = test_.error(clusters_, mappings_, estimate_.spent);
+          estimate_.predicted_error = test_.error(clusters_, mappings_, *peaks_, estimate_.spent);
           return true;
         });
         if (options_.sinks.cancelled()) return false;
@@ -180,6 +194,7 @@ class TensorRun {
     }
     reduced_ = std::make_unique<linalg::ReducedTensor>(
         linalg::ReducedTensor::Shape{max_rows, columns, frames, settings_.precision});
+    std::vector<float> mean_light;
     const std::size_t all = max_rows * frames;
     const bool projected = settings_.projection > 0 && all > settings_.projection;
     sketch_ = std::make_unique<linalg::ColumnSketch>(
@@ -195,8 +210,10 @@ class TensorRun {
         sketch_->add_row(k * max_rows + i, 1, {&row[0][0], 3 * columns});
       }
       reduced_->set_frame(k, entries);
+      mean_light.push_back(mean_light_of(std::span(entries).first(rows[k].size() * columns), rows[k].size()));
       options_.sinks.report("rows", static_cast<double>(k + 1) / static_cast<double>(frames));
     }
+    peaks_ = std::make_unique<const ClusterPeaks>(*reduced_, std::move(mean_light), settings_.max_peak);
     estimate_.trace.numbers["rows"] = static_cast<double>(max_rows);
     estimate_.trace.numbers["memory.tensor_bytes"] = static_cast<double>(reduced_->memory_bytes());
     return true;
@@ -283,12 +300,16 @@ class TensorRun {
       for (std::uint32_t f = c->of->begin; f < c->of->end; ++f) sums_of(f).resize(matrix->rows(), Rgb(0));
     std::vector<Index> rows(matrix->rows());
     std::iota(rows.begin(), rows.end(), Index{0});
+    std::vector<ClusterLight> lights;
+    for (const ClusterColumn* c : clusters) lights.push_back(peaks_->light(*c));
     estimate_.spent +=
         each_slice(*matrix, rows, [&](matrix::EntryReader& reader, std::size_t begin, std::size_t end) {
           matrix::Cost cost;
+          ClusterReader read_clusters(reader, std::span(rows).subspan(begin, end - begin), rows.size());
           std::vector<Rgb> column(end - begin);
-          for (const ClusterColumn* c : clusters) {
-            cost += reader.column(c->column, column);
+          for (std::size_t n = 0; n < clusters.size(); ++n) {
+            const ClusterColumn* const c = clusters[n];
+            cost += read_clusters.read(lights[n], column);
             for (std::uint32_t f = c->of->begin; f < c->of->end; ++f) {
               const Rgb scale = c->scale[f - c->of->begin];
               Rgb* const sums = sums_of(f).data() + begin;
@@ -345,12 +366,12 @@ class TensorRun {
 
   // Of the clusters that act in frame f and are wanted: what they are in that very frame.
   template <typename Wanted>
-  std::vector<matrix::ScaledColumn> in_own_frame(std::uint32_t f, const Wanted& wanted) const {
-    std::vector<matrix::ScaledColumn> out;
+  std::vector<ClusterLight> in_own_frame(std::uint32_t f, const Wanted& wanted) const {
+    std::vector<ClusterLight> out;
     for (const ClusterColumn& c : clusters_) {
       if (f < c.of->begin || f >= c.of->end || !wanted(c)) continue;
       const matrix::ScaledColumn& own = c.in_frame[f - c.of->begin];
-      if (!is_black(own.scale)) out.push_back(own);
+      if (!is_black(own.scale)) out.push_back(peaks_->light(c, own, f, own.scale));
     }
     return out;
   }
@@ -368,7 +389,7 @@ class TensorRun {
   }
 
   void shade_changes(std::uint32_t f) {
-    const std::vector<matrix::ScaledColumn> carried =
+    const std::vector<ClusterLight> carried =
         in_own_frame(f, [&](const ClusterColumn& c) { return c.frame != f; });
     if (carried.empty()) return;
     const auto matrix = tensor_.frame(f);
@@ -425,6 +446,7 @@ class TensorRun {
   TensorEstimate estimate_;
   TestRows test_;
   std::unique_ptr<linalg::ReducedTensor> reduced_;
+  std::unique_ptr<const ClusterPeaks> peaks_;
   std::unique_ptr<linalg::ColumnSketch> sketch_;
   std::unique_ptr<RectangleClustering> clustering_;
   std::vector<ClusterColumn> clusters_;

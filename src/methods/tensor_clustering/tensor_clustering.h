@@ -11,7 +11,8 @@
 // Ours: columns of one frame that are carried to the same other frame are added up before they are carried,
 // since that is linear, so each pair of frames is mapped once. Light is divided by the diffuse reflectance on
 // the way. What must not be carried is shaded afresh: rows that were hidden, and rows whose light has changed
-// (changed_rows.h). At last each frame is averaged with its neighbors where light changes evenly
+// (changed_rows.h). Where a representative stands too close, its cluster's lights are summed one by one
+// (cluster_reader.h). At last each frame is averaged with its neighbors where light changes evenly
 // (temporal_filter.h). Rows that no clustering knows tell the error (test_rows.h).
 #pragma once
 
@@ -38,6 +39,9 @@ struct TensorClusteringSettings {
   // By how large a part of a row's light that which is carried may differ from what is found in its own
   // frame; else the row and those around it are shaded afresh. Ours; 0: mappings carry everything.
   double max_change = 0.05;
+  // Beyond which part of a frame's mean light a cluster is summed light by light, where it is a peak
+  // (cluster_reader.h). Ours; 0: nowhere.
+  double max_peak = 0.05;
   // Passes that average light with one frame on either side along the mappings, so that errors do not flicker
   // (temporal_filter.h). Ours; 0: none.
   std::size_t filter = 1;

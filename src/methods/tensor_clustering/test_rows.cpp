@@ -29,7 +29,7 @@ void TestRows::read(std::size_t frame, std::vector<Index> rows, matrix::Cost& sp
 }
 
 double TestRows::error(std::span<const ClusterColumn> clusters, const FrameMappings& mappings,
-                       matrix::Cost& spent) const {
+                       const ClusterPeaks& peaks, matrix::Cost& spent) const {
   const std::size_t frames = frames_.size();
   std::vector<std::vector<const ClusterColumn*>> of_frame(frames);
   for (const ClusterColumn& c : clusters) of_frame[c.frame].push_back(&c);
@@ -50,11 +50,13 @@ double TestRows::error(std::span<const ClusterColumn> clusters, const FrameMappi
         for (Index& i : at) i = mappings.to_later[step - 1].from[i];
       for (std::uint32_t step = f; step < k; ++step)
         for (Index& i : at) i = mappings.to_earlier[step].from[i];
-      std::vector<matrix::ScaledColumn> columns;
+      std::vector<ClusterLight> lights;
       for (const ClusterColumn* c : of_frame[k])
-        if (f >= c->of->begin && f < c->of->end)
-          columns.push_back({c->column, c->scale[f - c->of->begin], 0});
-      const std::vector<Rgb> sums = sums_at(*matrix, at, columns, spent);
+        if (f >= c->of->begin && f < c->of->end) {
+          lights.push_back(peaks.light(*c));
+          lights.back().scale = c->scale[f - c->of->begin];
+        }
+      const std::vector<Rgb> sums = sums_at(*matrix, at, lights, spent);
       const auto there_matrix = tensor_.frame(f);
       const matrix::RowFeatures there = there_matrix->row_features();
       for (std::size_t a = 0; a < at.size(); ++a)

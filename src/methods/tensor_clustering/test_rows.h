@@ -23,7 +23,7 @@ class TestRows {
   // ‖estimate − truth‖ / ‖truth‖ over all frames, if clusters were carried as `mappings` say and nothing were
   // shaded afresh. Entries that are read are added to `spent`.
   double error(std::span<const ClusterColumn> clusters, const FrameMappings& mappings,
-               matrix::Cost& spent) const;
+               const ClusterPeaks& peaks, matrix::Cost& spent) const;
 
  private:
   struct Frame {
