@@ -301,6 +301,7 @@ class TensorRun {
     std::vector<Index> rows(matrix->rows());
     std::iota(rows.begin(), rows.end(), Index{0});
     std::vector<ClusterLight> lights;
+    lights.reserve(clusters.size());
     for (const ClusterColumn* c : clusters) lights.push_back(peaks_->light(*c));
     estimate_.spent +=
         each_slice(*matrix, rows, [&](matrix::EntryReader& reader, std::size_t begin, std::size_t end) {
