@@ -9,7 +9,7 @@ namespace lumirank::methods {
 namespace {
 
 // Over the root mean square at the rows that were read. If these are like the others one row in kPeak² at
-// most is so bright (Chebyshev), so peaks cost a hundredth of brute force at most.
+// most is so bright (Chebyshev); rows near peaks come on top of that.
 constexpr float kPeak = 10;
 // Rows with numbers next to each other lie next to each other: around a peak, so many have the same answer
 // as long as they are not dimmer than this part of what makes a peak.
