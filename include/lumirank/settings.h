@@ -76,7 +76,10 @@ struct VirtualLightSettings {
   std::optional<std::uint64_t> count = {};  // unset: 100,000, or what a time budget holds
   LightType type = LightType::point;
   LightPlacement placement = LightPlacement::automatic;
-  double clamp = 0.03;      // X of docs/conventions.md; 0: off
+  double clamp = 0.03;  // X of docs/conventions.md; 0: off
+  // Of point lights: sharper lobes shine as if they had it; 0: as they are; unset: 0.1, on gather samples
+  // 0.3.
+  std::optional<double> roughness = {};
   double radius_scale = 0;  // spheres: radius over the distance to the 10th nearest; 0: automatic
   SphereIndicator sphere_indicator = SphereIndicator::disc;
   SphereStrategies sphere_strategies = SphereStrategies::all;

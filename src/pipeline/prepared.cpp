@@ -129,7 +129,7 @@ Columns trace_columns(const world::World& world, const Recipe& recipe, const tra
   columns.asked = count;
   if (recipe.compensated) {
     columns.carried = even_areas(*lights, world, recipe.lights.clamp, count);
-    columns.carried.diffuse_only = ls.diffuse_only;
+    columns.carried.diffuse_only = ls.lobes.diffuse_only;
   }
   if (recipe.lights.type == LightType::sphere)
     columns.radius_scale =
@@ -188,8 +188,8 @@ bool same_columns(const Recipe& a, const Recipe& b) {
   return a.light_seed == b.light_seed && a.only == b.only && a.traced_below == b.traced_below &&
          a.compensated == b.compensated && a.lights.type == b.lights.type &&
          a.lights.placement == b.lights.placement && a.shot_lights == b.shot_lights &&
-         a.lights.radius_scale == b.lights.radius_scale &&
-         (!a.compensated || a.lights.clamp == b.lights.clamp);
+         a.lights.radius_scale == b.lights.radius_scale && a.lights.roughness == b.lights.roughness &&
+         (a.local_paths > 0) == (b.local_paths > 0) && (!a.compensated || a.lights.clamp == b.lights.clamp);
 }
 
 }  // namespace

@@ -37,6 +37,14 @@ float roughness_traced(const RenderSettings& settings, float sharp_below) {
   return std::max(0.15f, sharp_below);
 }
 
+// Spheres are wide enough by themselves, and what paths make whole may not be blurred. With 0.1 pictures are
+// nearest to the path tracer's; with 0.3 their caustics flicker half as much.
+float least_roughness(const Recipe& recipe) {
+  if (recipe.lights.type != LightType::point || recipe.compensated || recipe.local_paths > 0) return 0;
+  const double unset = recipe.lights.placement == LightPlacement::gather ? 0.3 : 0.1;
+  return static_cast<float>(recipe.lights.roughness.value_or(unset));
+}
+
 }  // namespace
 
 Recipe make_recipe(const RenderSettings& settings, const View& view) {
@@ -86,7 +94,8 @@ transport::LightSettings light_settings(const Recipe& recipe) {
   ls.max_depth = recipe.max_depth;
   ls.direct = recipe.only != LightPart::indirect;
   ls.indirect = recipe.only != LightPart::direct;
-  ls.diffuse_only = recipe.lights.type == LightType::diffuse_point;
+  ls.lobes.diffuse_only = recipe.lights.type == LightType::diffuse_point;
+  ls.lobes.least_roughness = least_roughness(recipe);
   ls.traced_direct_below = recipe.traced_below;
   ls.on_gather_samples = recipe.lights.placement == LightPlacement::gather;
   return ls;

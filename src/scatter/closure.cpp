@@ -1,5 +1,7 @@
 #include "scatter/closure.h"
 
+#include <span>
+
 #include "base/error.h"
 #include "scatter/lobe.h"
 #include "scatter/lobes/family.h"
@@ -186,6 +188,34 @@ Closure part(const Closure& closure, float limit, bool sharp) {
 
 Closure sharp_part(const Closure& closure, float limit) { return part(closure, limit, true); }
 Closure broad_part(const Closure& closure, float limit) { return part(closure, limit, false); }
+
+Closure widened(const Closure& closure, Vec3f wo, float least) {
+  // At a slant albedos are small and their ratios of no use.
+  constexpr float kMostScaling = 2;
+  const Incident in = incident(closure, wo);
+  Closure wide = closure;
+  for (Lobe& lobe : std::span(wide.lobes, static_cast<std::size_t>(wide.count))) {
+    const float roughness = lobe_roughness(lobe);
+    if (is_delta(lobe.kind) || !(roughness < least)) continue;
+    const LobeFamily& family = family_of(lobe.kind);
+    const Lobe sharp = lobe;
+    // Widths add up as variances do. A coat widens what comes from under it by itself.
+    const float own = family.roughness(lobe), wanted = own * least / std::max(roughness, 1e-6f);
+    const Widening by{lobe.distribution, std::sqrt(2 * std::max(0.0f, square(wanted) - square(own)))};
+    if (family.two_widths || lobe.kind == LobeKind::microfacet_transmit)
+      lobe.alpha_u = by(lobe.alpha_u), lobe.alpha_v = by(lobe.alpha_v);
+    else if (family.widen)
+      family.widen(lobe, by);
+    else
+      continue;
+    if (!in.valid) continue;
+    const Rgb before = lobe_albedo(view_from(sharp, in.side > 0), in.wo),
+              after = lobe_albedo(view_from(lobe, in.side > 0), in.wo);
+    for (int c = 0; c < 3; ++c)
+      if (after[c] > 0) lobe.color[c] *= std::clamp(before[c] / after[c], 1 / kMostScaling, kMostScaling);
+  }
+  return wide;
+}
 
 Rgb eval_f(const Closure& closure, Vec3f wo, Vec3f wi, bool adjoint) {
   if (adjoint) std::swap(wo, wi);

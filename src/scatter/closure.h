@@ -177,6 +177,10 @@ struct Closure {
 // The non-delta lobes with roughness below `limit` (sharp) or the other non-delta ones (broad).
 Closure sharp_part(const Closure& closure, float limit);
 Closure broad_part(const Closure& closure, float limit);
+// With its non-delta lobes of a roughness below `least` widened to that (regularized, as in Kaplanyan and
+// Dachsbacher 2013, section 4), and scaled so that of what arrives from wo as much is scattered. Tables of
+// measurements, clear coats and fibers stay as they are.
+Closure widened(const Closure& closure, Vec3f wo, float least);
 
 // Which half of the closure a caller wants.
 enum class Lobes : std::uint8_t { non_delta, delta, all };

@@ -17,6 +17,25 @@ Row method_row() {
           [](const RenderSettings& s) { return s.method.name; }};
 }
 
+// What it is where it is not given depends on where the lights stand.
+Row light_roughness_row() {
+  return {{"light-roughness", "text", "auto", "auto, or 0 … 1", "",
+           "point lights: lobes of their surfaces that are less rough than this shine as if they were so "
+           "rough, so that caustics are blurred instead of spotted; 0: as they are; auto: 0.1, on gather "
+           "samples 0.3"},
+          [](RenderSettings& s, const std::string& text) {
+            s.lights.roughness.reset();
+            if (text == "auto") return;
+            const double value = parse_number<double>("light-roughness", text);
+            if (value < 0 || value > 1)
+              throw InputError("'light-roughness' is " + text + "; it must be auto or lie in 0 … 1");
+            s.lights.roughness = value;
+          },
+          [](const RenderSettings& s) {
+            return s.lights.roughness ? format_number(*s.lights.roughness) : std::string("auto");
+          }};
+}
+
 }  // namespace
 
 void add_light_rows(std::vector<Row>& t) {
@@ -32,6 +51,7 @@ void add_light_rows(std::vector<Row>& t) {
               "where indirect virtual lights stand: where particles land, or on gather samples tied to "
               "the surfaces, the same lights in every frame; auto: gather for tensor clustering"},
              At<&S::lights, &VirtualLightSettings::placement>{}));
+  t.push_back(light_roughness_row());
   t.push_back(number({"radius-scale", "", "0", "0 … 1000", "",
                       "spherical lights: radius over the distance to the 10th nearest light; 0: by the "
                       "number of lights"},

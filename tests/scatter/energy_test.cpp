@@ -54,6 +54,36 @@ TEST_P(EveryBsdfEnergy, AlbedoIsAtMostOne) {
   }
 }
 
+// Widened lobes shine wider, not more nor less.
+TEST_P(EveryBsdfEnergy, StaysWhenLobesAreWidened) {
+  constexpr float kLeast = 0.3f;
+  const BsdfCase& c = bsdf_list()[static_cast<std::size_t>(GetParam())];
+  const SurfacePoint at = point_with_normal(normalize({-0.2f, 0.9f, 0.3f}));
+  for (const float cos_theta : {1.0f, 0.7f}) {
+    const Vec3f wo = at.shading.to_world(at_angle(cos_theta, 0.7f));
+    const Closure closure = c.set.closure(c.material, at, wo), wide = widened(closure, wo, kLeast);
+    ASSERT_EQ(wide.count, closure.count);
+    for (int k = 0; k < wide.count; ++k) {
+      const LobeKind kind = wide.lobes[k].kind;
+      EXPECT_EQ(kind, closure.lobes[k].kind);
+      const bool stays =
+          is_delta(kind) || is_hair(kind) || kind == LobeKind::clearcoat || kind == LobeKind::measured;
+      const float was = lobe_roughness(closure.lobes[k]);
+      EXPECT_NEAR(lobe_roughness(wide.lobes[k]), stays ? was : std::max(was, kLeast), 1e-4f) << c.name;
+    }
+    const Closure sharp = broad_part(closure, 0), blurred = broad_part(wide, 0);
+    if (sharp.empty()) continue;
+    const Rgb before = albedo(sharp, wo), after = albedo(blurred, wo);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(after[k], before[k], 1e-3f) << c.name << " at " << cos_theta;
+    // A lobe that was sharp is dimmer in its middle now.
+    if (closure.roughness() < 0.2f && wide.roughness() > 0.29f) {
+      EXPECT_LT(max_component(eval(wide, wo, reflect(wo, closure.frame.n))),
+                std::max(1e-3f, max_component(eval(closure, wo, reflect(wo, closure.frame.n)))))
+          << c.name;
+    }
+  }
+}
+
 std::string name_of(const testing::TestParamInfo<int>& info) {
   std::string name = bsdf_list()[static_cast<std::size_t>(info.param)].name;
   for (char& ch : name)

@@ -99,7 +99,7 @@ TEST(LightRoulette, KeepsTheEnergyBalanceOfAFurnace) {
   std::size_t split = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const ParticleTracer tracer(world, choice,
-                                {seed, Stage::particles, kPaths, kDepths, 0, nullptr, false, &roulette});
+                                {seed, Stage::particles, kPaths, kDepths, 0, nullptr, {}, &roulette});
     LightBatch batch;
     for (std::size_t path = 0; path < kPaths; ++path) {
       const std::size_t before = batch.lights.size();

@@ -300,7 +300,7 @@ TEST(VirtualLights, DiffuseOnlyKeepsThePlacesAndLeavesOutTheGlossyPart) {
   const auto world = scene.build();
   auto settings = settings_of(1, 3000);
   settings.direct = false;
-  settings.diffuse_only = true;
+  settings.lobes.diffuse_only = true;
   const auto lights = trace_virtual_lights(world, settings);
   ASSERT_GT(lights.size(), 1000u);
   for (std::size_t j = 0; j < lights.size(); ++j) {
@@ -315,7 +315,7 @@ TEST(VirtualLights, DiffuseOnlyKeepsThePlacesAndLeavesOutTheGlossyPart) {
     double sum = 0;
     for (const bool diffuse_only : {true, false}) {
       settings.seed = diffuse_only ? seed : seed + 100;
-      settings.diffuse_only = diffuse_only;
+      settings.lobes.diffuse_only = diffuse_only;
       const auto some = trace_virtual_lights(world, settings);
       for (std::size_t j = 0; j < some.size(); ++j)
         if (std::abs(some.position[j].z + 0.5f) < 1e-4f) sum += (diffuse_only ? 1 : -1) * some.power[j].r;
@@ -323,6 +323,37 @@ TEST(VirtualLights, DiffuseOnlyKeepsThePlacesAndLeavesOutTheGlossyPart) {
     difference.push_back(sum);
   }
   expect_mean(difference, 0, 1, "flux at the paint");
+}
+
+// The same lights with the same flux: only how sharply they shine on differs, on particles and on gather
+// samples.
+TEST(VirtualLights, ALeastRoughnessWidensWhatTheyShineAndNothingElse) {
+  SceneMaker scene;
+  scenedesc::ConductorDesc metal;
+  metal.alpha_u.value = metal.alpha_v.value = 0.05f;
+  scene.box_inside(1, scene.bsdf(metal));
+  scene.point_light({0.1f, 0.2f, 0.3f}, Rgb(1));
+  const auto world = scene.build();
+  for (const bool on_gather_samples : {false, true}) {
+    auto settings = settings_of(1, 1000);
+    settings.direct = false, settings.max_depth = 4, settings.on_gather_samples = on_gather_samples;
+    const auto sharp = trace_virtual_lights(world, settings);
+    settings.lobes.least_roughness = 0.3f;
+    const auto wide = trace_virtual_lights(world, settings);
+    ASSERT_GT(sharp.size(), 500u);
+    EXPECT_NEAR(static_cast<double>(wide.size()), static_cast<double>(sharp.size()),
+                0.05 * static_cast<double>(sharp.size()));
+    double sharp_flux = 0, wide_flux = 0;
+    for (std::size_t j = 0; j < sharp.size(); ++j) {
+      EXPECT_NEAR(sharp.closure_at(j).roughness(), 0.05f, 1e-5f);
+      sharp_flux += sharp.power[j].r;
+    }
+    for (std::size_t j = 0; j < wide.size(); ++j) {
+      EXPECT_NEAR(wide.closure_at(j).roughness(), 0.3f, 1e-5f);
+      wide_flux += wide.power[j].r;
+    }
+    EXPECT_NEAR(wide_flux, sharp_flux, 0.05 * sharp_flux);
+  }
 }
 
 TEST(VirtualLights, SortedByKindThenAlongACurve) {

@@ -99,8 +99,14 @@ class GatherLighting {
     std::vector<LightBatch> pieces((count + kPhotonsAtOnce - 1) / kPhotonsAtOnce);
     const EmitterChoice choice(world_);
     const ParticleTracer tracer(world_, choice,
-                                {settings_.seed, Stage::gather_samples, count, survey_.parts.deepest, 0,
-                                 &survey_.aim.guide, false, nullptr});
+                                {settings_.seed,
+                                 Stage::gather_samples,
+                                 count,
+                                 survey_.parts.deepest,
+                                 0,
+                                 &survey_.aim.guide,
+                                 {},
+                                 nullptr});
     parallel_for(count, kPhotonsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t path = begin; path < end; ++path) tracer.trace(path, pieces[begin / kPhotonsAtOnce]);
     });
@@ -299,7 +305,7 @@ class GatherLighting {
     const Vec3f incoming = arriving.direction;
     const world::SurfaceHit hit = world_.surface(at.hit, -incoming);
     const Closure whole = world_.materials().closure(hit.material, hit.point, incoming);
-    const Closure closure = settings_.diffuse_only ? scatter::broad_part(whole, 1) : whole;
+    const Closure closure = settings_.lobes.of(whole, incoming);
     if (!closure.has_non_delta() || !closure.sides_agree(incoming)) return;
     LightRecord light;
     light.kind = LightKind::surface;

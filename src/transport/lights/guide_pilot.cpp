@@ -123,7 +123,7 @@ Aim learn_aim(const world::World& world, const EmitterChoice& choice, const Ligh
     settings.seed = asked.seed, settings.stage = Stage::pilot;
     settings.paths = kPathsPerRound, settings.deepest = deepest;
     settings.first_id = static_cast<std::uint64_t>(round + 1) << 40;  // numbers of its own
-    settings.guide = &aim.guide, settings.diffuse_only = asked.diffuse_only;
+    settings.guide = &aim.guide, settings.lobes = asked.lobes;
     const Round found = run_round(world, choice, settings, relevance);
     seen.insert(seen.end(), found.seen.begin(), found.seen.end());
     places.insert(places.end(), found.places.begin(), found.places.end());

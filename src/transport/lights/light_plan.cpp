@@ -31,13 +31,9 @@ constexpr double kMinUse = 0.7, kMaxUse = 3, kLowShare = 0.25, kUnseenShare = 0.
                  kStrongUnseen = 16;
 
 ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey& survey) {
-  return {settings.seed,
-          Stage::pilot,
-          survey.aimed ? kRoulettePaths : kPilotPaths,
-          survey.parts.deepest,
-          0,
-          &survey.aim.guide,
-          settings.diffuse_only};
+  return {
+      settings.seed,     Stage::pilot,  survey.aimed ? kRoulettePaths : kPilotPaths, survey.parts.deepest, 0,
+      &survey.aim.guide, settings.lobes};
 }
 
 struct Pilot {

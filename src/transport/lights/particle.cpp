@@ -100,8 +100,8 @@ void ParticleTracer::step(const Branch& branch, Visit& visit) const {
   visit.first = false;
   const Vec3f incoming = -branch.ray.direction;
   const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
-  // Paths are those of the whole closure either way: what a light leaves out is only what it shines itself.
-  const Closure shining = settings_.diffuse_only ? scatter::broad_part(closure, 1) : closure;
+  // Paths are those of the whole closure either way: only what a light shines itself is another.
+  const Closure shining = settings_.lobes.of(closure, incoming);
   int copies = 1;
   if (shining.has_non_delta() && closure.sides_agree(incoming)) {
     LightRecord light = surface_light(hit->point.position, shining, incoming);

@@ -9,6 +9,7 @@
 #include "transport/lights/emitter_choice.h"
 #include "transport/lights/light_record.h"
 #include "transport/lights/light_roulette.h"
+#include "transport/lights/shining_lobes.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -20,7 +21,7 @@ struct ParticleSettings {
   int deepest = -1;                         // greatest depth of a light; -1: unlimited
   std::uint64_t first_id = 0;               // random numbers belong to first_id + path
   const EmissionGuide* guide = nullptr;     // not owned; nullptr: uniform
-  bool diffuse_only = false;                // as in LightSettings
+  ShiningLobes lobes = {};                  // of the lights; paths are those of all lobes
   const LightRoulette* roulette = nullptr;  // not owned; nullptr: all lights are kept
 };
 

@@ -80,7 +80,7 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
     const LightRoulette roulette(survey.aim.importance, plan.level);
     trace_particles(world, choice,
                     {settings.seed, Stage::particles, plan.paths, survey.parts.deepest, 0, &survey.aim.guide,
-                     settings.diffuse_only, &roulette},
+                     settings.lobes, &roulette},
                     std::span(batches).subspan(1), sinks);
   }
   VirtualLights lights = lay_out(batches);

@@ -12,6 +12,7 @@
 #include "emitters/profile.h"
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
+#include "transport/lights/shining_lobes.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -46,9 +47,7 @@ struct LightSettings {
   std::size_t count = 100000;  // target over all kinds
   int max_depth = -1;          // Mitsuba's count
   bool direct = true, indirect = true;
-  // Surface lights send on by the diffuse lobes of their surface alone (Hašan et al. 2009, section 2): the
-  // traditional approximation. Lights of surfaces without such a lobe are left out.
-  bool diffuse_only = false;
+  ShiningLobes lobes = {};
   // If given, particles are aimed so that their light reaches these receivers (an interior behind windows),
   // and lights are kept or left out at random so that all are of about equal use to them: see light_plan.h.
   // The result is unbiased for every receiver either way. Read during the call only.
