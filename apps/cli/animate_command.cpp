@@ -68,6 +68,15 @@ void make_video(const AnimateOptions& options, Streams streams) {
   if (!options.common.quiet) std::fprintf(streams.out, "wrote %s\n", options.video.c_str());
 }
 
+TensorSettings::Carrying read_carrying(const std::string& value) {
+  using enum TensorSettings::Carrying;
+  if (value == "auto") return automatic;
+  if (value == "on") return always;
+  if (value == "off") return never;
+  throw InputError("--set carry is auto, on or off, not '" + value + "'",
+                   "give off to have every frame computed by itself");
+}
+
 // `--method tensor-clustering`: its parameters are given with --set as those of the other methods.
 TensorSettings read_tensor(const std::map<std::string, std::string>& parameters) {
   TensorSettings tensor;
@@ -91,6 +100,8 @@ TensorSettings read_tensor(const std::map<std::string, std::string>& parameters)
       tensor.max_change = read_number(option, value, {0, 1e9});
     else if (key == "max-peak")
       tensor.max_peak = read_number(option, value, {0, 1e9});
+    else if (key == "carry")
+      tensor.carrying = read_carrying(value);
     else if (key == "max-distance")
       tensor.max_distance = read_number(option, value, {0, 1e9});
     else if (key == "filter")
@@ -107,7 +118,7 @@ TensorSettings read_tensor(const std::map<std::string, std::string>& parameters)
       tensor.bits = read_count(option, value, 16, 32);
     else
       throw InputError("tensor-clustering has no parameter '" + key + "'",
-                       "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, "
+                       "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, carry, "
                        "max-distance, max-change, max-peak, filter, representatives, bits and clusters");
   }
   return tensor;

@@ -22,8 +22,13 @@ struct TensorSettings {
   double memory = 0;  // MB that the process may take at about; chunks are as short as it takes; 0: any
   int rows = 100;     // of each frame, read whole
   int columns = 200;  // for each frame, in the mean; 0: all, the sum that clusterings approach
-  int initial_clusters = 100;  // of lights, before they are split in lights or in time
-  double time_weight = 1;      // a split in time is taken if it leaves less cost by this factor; 0: none
+  // Of lights, before they are split in lights or in time; at most a quarter of all.
+  int initial_clusters = 1000;
+  double time_weight = 1;  // a split in time is taken if it leaves less cost by this factor; 0: none
+  // Whether a cluster's column is carried to its other frames, or computed in each. Automatic: carried,
+  // unless clusters last for so few frames that it saves little, as where the camera moves among detail.
+  enum class Carrying { automatic, always, never };
+  Carrying carrying = Carrying::automatic;
   // Light of other frames is not carried to what is farther from all that they show than so many distances
   // between neighboring samples: it was hidden there, and is shaded afresh. 0: no bound, as in the paper.
   double max_distance = 10;
@@ -33,7 +38,7 @@ struct TensorSettings {
   // A cluster's lights are summed one by one where what stands for them is so large a part of the mean light,
   // and ten times as bright as at the places that were read, in the quadratic mean: it would be a spot there
   // (in what shines, and in corners). 0: nowhere, as in the paper.
-  double max_peak = 0.05;
+  double max_peak = 0.02;
   // How often light is averaged with one frame on either side where it changes evenly, so that errors do not
   // flicker; no farther than `max_distance`, each time by no more than 1.2 of `max_change`, or 0.6 of
   // the error that is asked for. 0: not at all, as in the paper.

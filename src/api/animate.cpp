@@ -23,6 +23,11 @@
 namespace lumirank {
 namespace {
 
+const char* carrying_name(const TensorSettings& t) {
+  using enum TensorSettings::Carrying;
+  return t.carrying == always ? "on" : t.carrying == never ? "off" : "auto";
+}
+
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
@@ -188,6 +193,7 @@ class Shot {
             {"columns", t.columns},
             {"initial_clusters", t.initial_clusters},
             {"time_weight", t.time_weight},
+            {"carrying", carrying_name(t)},
             {"max_distance", t.max_distance},
             {"max_change", t.max_change},
             {"max_peak", t.max_peak},
@@ -298,6 +304,7 @@ std::map<std::string, std::string> parameters_of(const TensorSettings& t) {
           {"columns", std::to_string(t.columns)},
           {"initial-clusters", std::to_string(t.initial_clusters)},
           {"time-weight", format_number(t.time_weight)},
+          {"carry", carrying_name(t)},
           {"max-distance", format_number(t.max_distance)},
           {"max-change", format_number(t.max_change)},
           {"max-peak", format_number(t.max_peak)},

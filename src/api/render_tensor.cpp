@@ -46,6 +46,9 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
   s.initial_clusters = static_cast<std::size_t>(t.initial_clusters);
   s.time_weight = t.time_weight, s.max_distance = t.max_distance, s.max_change = t.max_change;
   s.max_peak = t.max_peak;
+  s.carrying = t.carrying == TensorSettings::Carrying::always  ? methods::Carrying::always
+               : t.carrying == TensorSettings::Carrying::never ? methods::Carrying::never
+                                                               : methods::Carrying::automatic;
   s.filter = static_cast<std::size_t>(t.filter);
   s.keep_rectangles = t.write_clusters;
   if (t.largest_representatives) s.representatives = methods::Representatives::largest;
@@ -105,6 +108,7 @@ Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate&
                                                             static_cast<double>(frame.matrix->columns()));
   report.cost = cost;
   report.numbers["clusters"] = static_cast<double>(estimate.clusters) / part;
+  report.numbers["clusters.carried"] = estimate.carried ? 1 : 0;
   report.numbers["clusters.active"] = static_cast<double>(estimate.active[k]);
   if (estimate.predicted_error >= 0) report.numbers["error.predicted"] = estimate.predicted_error;
   report.memory.peak = pipeline::peak_memory_bytes();

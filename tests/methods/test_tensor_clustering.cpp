@@ -60,6 +60,7 @@ double worst_error(const DenseTensor& tensor, const TensorEstimate& estimate) {
 TensorClusteringSettings settings_of(std::size_t columns) {
   TensorClusteringSettings settings;
   settings.columns = columns, settings.rows = 40, settings.initial_clusters = 10;
+  settings.carrying = Carrying::always;
   return settings;
 }
 
@@ -96,6 +97,39 @@ TEST(TensorClustering, AStaticSceneIsTheSameInAllFrames) {
   for (std::size_t k = 1; k < 5; ++k) EXPECT_EQ(e.sums[k], e.sums[0]) << k;
   EXPECT_EQ(e.active[0], e.clusters);  // no cluster is cut in time
   EXPECT_LT(worst_error(tensor, e), 0.3);
+}
+
+// Frames that have nothing in common, between which nothing is worth carrying, and frames that are all the
+// same, where a column serves all of them.
+TEST(TensorClustering, CarriesLightWhereClustersLast) {
+  constexpr std::size_t kRows = 100, kLights = 80, kFrames = 6, kRank = 5;
+  const auto tensor_of = [&](bool still) {
+    std::vector<std::shared_ptr<const DenseMatrix>> frames;
+    for (std::size_t k = 0; k < kFrames; ++k)
+      frames.push_back(std::make_shared<const DenseMatrix>(
+          matrix::low_rank_matrix({kRows, kLights, kRank}, still ? 0 : k)));
+    return DenseTensor(std::move(frames));
+  };
+  TensorClusteringSettings settings = settings_of(10);
+  settings.carrying = Carrying::automatic;
+  EXPECT_TRUE(estimate_tensor(tensor_of(true), settings, {}).carried);
+  const DenseTensor tensor = tensor_of(false);
+  double before = 1;
+  for (const std::size_t columns : {10u, 30u, 80u}) {
+    settings.columns = columns;
+    const TensorEstimate estimate = estimate_tensor(tensor, settings, {});
+    EXPECT_FALSE(estimate.carried) << columns;
+    const double error = worst_error(tensor, estimate);
+    EXPECT_LT(error, before) << columns;
+    // Of every frame a part of the rows whole, and all rows of the clusters that act in it (but for those
+    // that are black there).
+    const double acting = std::accumulate(estimate.active.begin(), estimate.active.end(), 0.0);
+    const double computed = static_cast<double>(estimate.spent.entries) - kFrames * 40.0 * kLights;
+    EXPECT_LE(computed, acting * kRows);
+    EXPECT_GT(computed, 0.7 * acting * kRows);
+    before = error;
+  }
+  EXPECT_LT(before, 1e-6);  // every light in every frame
 }
 
 TEST(TensorClustering, SixteenAndThirtyTwoBitsAgree) {

@@ -205,6 +205,64 @@ TEST(GatherLights, OfWhatIsNotThereAreLeftOut) {
   EXPECT_GT(on_table(frames.lights[1]), 20u);
 }
 
+// A floor of brushed metal beneath two lamps.
+VirtualLights lights_of_metal_floor(Vec3f lamp, Vec3f other, float least_roughness) {
+  SceneMaker scene;
+  scenedesc::ConductorDesc metal;
+  metal.alpha_u.value = metal.alpha_v.value = 0.1f;
+  scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, scene.bsdf(metal));
+  scene.point_light(lamp, Rgb(1));
+  scene.point_light(other, Rgb(1));
+  const auto world = scene.build();
+  auto settings = gather_settings(3, 500);
+  settings.lobes.least_roughness = least_roughness;
+  return trace_virtual_lights(world, settings);
+}
+
+// By octants of space: lamps on either side of a sample leave a light each, towards that very lamp.
+TEST(GatherLights, OfWhatShinesAreKeptApartByDirection) {
+  const Vec3f lamps[] = {{2, 2, 1}, {-2, 2, 1}};
+  const VirtualLights lights = lights_of_metal_floor(lamps[0], lamps[1], 0.3f);
+  std::map<std::pair<float, float>, std::vector<std::size_t>> at;
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    if (lights.kind[j] != LightKind::surface) continue;
+    const Vec3f p = lights.position[j], lamp = lamps[lights.incoming[j].x > 0 ? 0 : 1];
+    EXPECT_GT(dot(lights.incoming[j], normalize(lamp - p)), 1 - 1e-5f);
+    at[{p.x, p.y}].push_back(j);
+  }
+  std::size_t both = 0;
+  for (const auto& [place, here] : at) {
+    EXPECT_LE(here.size(), 2u);
+    both += here.size() == 2;
+  }
+  EXPECT_GT(static_cast<double>(both), 0.9 * static_cast<double>(at.size()));
+  EXPECT_GT(at.size(), 150u);
+}
+
+// Lamps in one octant: the mean direction, between theirs; of lobes as they are one of the two, so that what
+// is mirrored is right in the mean.
+TEST(GatherLights, OfWhatShinesHaveTheMeanDirectionOfAnOctantWhereLobesAreWidened) {
+  const Vec3f lamps[] = {{4, 2, 2}, {2, 4, 2}};
+  for (const float least_roughness : {0.0f, 0.3f}) {
+    const VirtualLights lights = lights_of_metal_floor(lamps[0], lamps[1], least_roughness);
+    std::size_t between = 0, towards_one = 0;
+    for (std::size_t j = 0; j < lights.size(); ++j) {
+      if (lights.kind[j] != LightKind::surface) continue;
+      const Vec3f first = normalize(lamps[0] - lights.position[j]), d = lights.incoming[j];
+      const Vec3f second = normalize(lamps[1] - lights.position[j]);
+      const float apart = dot(first, second);
+      towards_one += std::max(dot(d, first), dot(d, second)) > 1 - 1e-5f;
+      between += std::min(dot(d, first), dot(d, second)) > apart + 1e-3f;
+      EXPECT_NEAR(dot(d, cross(first, second)), 0, 1e-5f);  // in their plane
+    }
+    if (least_roughness > 0)
+      EXPECT_GT(between, 9 * towards_one);
+    else
+      EXPECT_EQ(between, 0u);
+    EXPECT_GT(between + towards_one, 150u);
+  }
+}
+
 TEST(GatherSamples, StandForAllOfTheArea) {
   const auto world = room_with_table(0);
   const GatherMoment moment{&world, nullptr};

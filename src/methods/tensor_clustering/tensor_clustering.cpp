@@ -62,6 +62,10 @@ constexpr double kColumnGrowth = 1.4142, kTooFewRows = 0.9;
 // What is too dark to be seen may change: this part of a frame's mean light.
 constexpr float kUnseen = 0.05f;
 
+// Clusters that last for fewer frames on average (or for less than half of all there are) are not carried:
+// what that saves is spent on mappings, on the search for changes and on rows that are shaded afresh.
+constexpr double kWorthCarrying = 5;
+
 // A filtered pair of frames loses a fifth of its weight where it differs by this times what may be carried
 // unchanged: what passes evenly through three frames errs less than what is carried through many.
 constexpr double kFilteredChange = 2;
@@ -96,9 +100,14 @@ class TensorRun {
     estimate_.sums.resize(tensor_.frames());
     estimate_.active.assign(tensor_.frames(), 0);
     if (tensor_.frames() == 0) return std::move(estimate_);
-    if (!timed("mappings", [&] { return make_mappings(); })) return interrupted();
-    const bool found = settings_.target_error > 0 ? find_clusters() : make_clusters();
-    if (!found) return interrupted();
+    const bool by_error = settings_.target_error > 0;
+    const auto map_rows = [&] { return timed("mappings", [&] { return make_mappings(); }); };
+    if (by_error && !(map_rows() && find_clusters())) return interrupted();
+    if (!by_error) {
+      if (!make_clusters()) return interrupted();
+      estimate_.carried = carries();
+      if (estimate_.carried && !map_rows()) return interrupted();
+    }
     for (const ClusterColumn& c : clusters_)
       for (std::uint32_t k = c.of->begin; k < c.of->end; ++k) ++estimate_.active[k];
     estimate_.clusters = clusters_.size();
@@ -111,6 +120,11 @@ class TensorRun {
       });
       return true;
     });
+    if (!estimate_.carried) {
+      if (!timed("columns", [&] { return compute_frames(); })) return interrupted();
+      estimate_.trace.numbers["rows.afresh"] = 1;
+      return std::move(estimate_);
+    }
     if (!timed("columns", [&] { return compute_columns(); })) return interrupted();
     if (!timed("changes", [&] { return shade_changes(); })) return interrupted();
     if (!timed("filter", [&] { return filter(); })) return interrupted();
@@ -144,6 +158,14 @@ class TensorRun {
       split_to(settings_.columns);
       return true;
     });
+  }
+
+  bool carries() const {
+    if (settings_.carrying != Carrying::automatic) return settings_.carrying == Carrying::always;
+    double lasts = 0;
+    for (const ClusterColumn& c : clusters_) lasts += static_cast<double>(c.of->end - c.of->begin);
+    return lasts >= static_cast<double>(clusters_.size()) *
+                        std::min(kWorthCarrying, static_cast<double>(tensor_.frames()) / 2);
   }
 
   // As few columns as the test rows say that the error needs.
@@ -222,16 +244,16 @@ class TensorRun {
   void start_clusters() {
     const linalg::Points points = sketch_->points();
     const std::vector<double> norms = linalg::own_norms(points);
+    const std::size_t least = settings_.target_error > 0 ? kFirstColumns : settings_.columns;
     std::vector<std::uint32_t> lit;
     for (std::size_t j = 0; j < norms.size(); ++j)
       if (!sketch_->is_zero(j)) lit.push_back(static_cast<std::uint32_t>(j));
-    const std::size_t most = settings_.target_error > 0 ? kFirstColumns : settings_.columns;
     linalg::Partition start;
     if (!lit.empty()) {
-      const auto initial =
-          linalg::cluster(points, norms, lit, {},
-                          {linalg::ClusteringAlgorithm::sampling,
-                           std::min(settings_.initial_clusters, most * tensor_.frames()), options_.seed});
+      const std::size_t wanted =
+          std::min(settings_.initial_clusters, std::max<std::size_t>(1, least * tensor_.frames() / 4));
+      const auto initial = linalg::cluster(points, norms, lit, {},
+                                           {linalg::ClusteringAlgorithm::sampling, wanted, options_.seed});
       start = initial.partition();
     }
     clustering_ =
@@ -264,6 +286,20 @@ class TensorRun {
         mappings_.to_earlier.push_back(before->nearest(*now));
       }
       before = std::move(now);
+    }
+    return true;
+  }
+
+  // Each by all clusters that act in it, as they are in that very frame.
+  bool compute_frames() {
+    for (std::uint32_t f = 0; f < tensor_.frames(); ++f) {
+      if (options_.sinks.cancelled()) return false;
+      const auto matrix = tensor_.frame(f);
+      std::vector<Index> rows(matrix->rows());
+      std::iota(rows.begin(), rows.end(), Index{0});
+      estimate_.sums[f] =
+          sums_at(*matrix, rows, in_own_frame(f, [](const ClusterColumn&) { return true; }), estimate_.spent);
+      options_.sinks.report("columns", static_cast<double>(f + 1) / static_cast<double>(tensor_.frames()));
     }
     return true;
   }

@@ -27,12 +27,25 @@
 
 namespace lumirank::methods {
 
+// Whether a cluster is computed once, and its column carried to its other frames along the mappings (the
+// paper), or computed in each of its frames. Carried light is cheap where clusters last for many frames;
+// where the camera moves they last for few, and light comes from the nearest row, which shows another place.
+enum class Carrying {
+  automatic,  // ours: carried unless clusters last for so few frames on average that it saves little
+  always,
+  never,
+};
+
 struct TensorClusteringSettings {
-  std::size_t rows = 100;              // of every frame
-  std::size_t columns = 200;           // clusters per frame, in the mean
-  std::size_t initial_clusters = 100;  // of lights, in all frames
-  std::size_t projection = 50;         // dimensions of the initial clustering; 0: none
-  double time_weight = 1;              // see RectangleClustering
+  std::size_t rows = 100;     // of every frame
+  std::size_t columns = 200;  // clusters per frame, in the mean
+  // Of lights, in all frames; at most a quarter of all clusters, so that there is something to split. The
+  // paper has 100.
+  std::size_t initial_clusters = 1000;
+  std::size_t projection = 50;  // dimensions of the initial clustering; 0: none
+  double time_weight = 1;       // see RectangleClustering
+  // With a target error light is always carried.
+  Carrying carrying = Carrying::automatic;
   // Rows whose mapping is longer than so many distances of neighboring rows show something that was hidden:
   // they are shaded afresh, by each cluster as its own frame has it. Ours; 0: mappings carry everything.
   double max_distance = 10;
@@ -41,7 +54,7 @@ struct TensorClusteringSettings {
   double max_change = 0.05;
   // Beyond which part of a frame's mean light a cluster is summed light by light, where it is a peak
   // (cluster_reader.h). Ours; 0: nowhere.
-  double max_peak = 0.05;
+  double max_peak = 0.02;
   // Passes that average light with one frame on either side along the mappings, so that errors do not flicker
   // (temporal_filter.h). Ours; 0: none.
   std::size_t filter = 1;
@@ -58,6 +71,7 @@ struct TensorEstimate {
   std::vector<std::vector<Rgb>> sums;  // of every frame, one per row of it
   std::size_t clusters = 0;
   std::vector<std::size_t> active;  // clusters that contribute to each frame: the effective number
+  bool carried = true;              // from frame to frame; else every frame was shaded by itself
   double predicted_error = -1;      // with a target error: that of the test rows; below 0: not known
   double cost = 0;                  // of the clustering
   std::vector<linalg::RectangleClustering::Rectangle> rectangles;  // the clusters, if they are to be kept

@@ -45,12 +45,20 @@ constexpr std::size_t kMinPhotons = 100'000;
 constexpr std::size_t kPilotSamples = 4096;
 constexpr double kMaxSamplesPerLight = 4;
 
-// Light that arrives at one side of a sample, in parts: all of it, and one of the parts drawn by power. The
-// draw goes by each part's own random number, so that a part that stays the same has the same chance at every
-// moment.
+// Where so much of what a surface sends on leaves in lobes narrower than this, light is kept apart by the
+// octant of space that it came from.
+constexpr float kNarrow = 0.5f, kMostlyNarrow = 0.3f;
+constexpr std::size_t kOctants = 8;
+
+std::size_t octant(Vec3f d) { return (d.x < 0 ? 1u : 0u) | (d.y < 0 ? 2u : 0u) | (d.z < 0 ? 4u : 0u); }
+
+// Light that arrives at one side of a sample, in parts: all of it, its mean direction, and one of the parts
+// drawn by power. The draw goes by each part's own random number, so that a part that stays the same has the
+// same chance at every moment.
 struct Arriving {
   Rgb flux;
-  Vec3f direction;  // of the drawn part, back towards where it came from
+  Vec3f direction;     // of the drawn part, back towards where it came from
+  Vec3f directions{};  // of all parts, times their power
   int emitter = 0, depth = 1;
   double race = kInfinity;
 
@@ -58,6 +66,7 @@ struct Arriving {
     const double power = max_component(part);
     if (!(power > 0)) return;
     flux += part;
+    directions += from * static_cast<float>(power);
     const double time = -std::log1p(-unit_double(mix64(number))) / power;
     if (time < race) race = time, direction = from, emitter = emitter_, depth = depth_;
   }
@@ -72,10 +81,11 @@ struct PlacedSample {
   Vec3f along;            // of a fiber
   float area = 0;
   bool shines[2] = {false, false};  // light that arrives in front, behind, is sent on
+  std::size_t octants = 1;          // that its light is kept apart by
+  std::size_t first = 0;            // of what arrives there: by cause, side and octant
 };
 
 enum Cause : std::size_t { direct_light = 0, photon_light = 1 };
-using SampleLight = std::array<std::array<Arriving, 2>, 2>;  // by cause and side
 
 class GatherLighting {
  public:
@@ -83,7 +93,9 @@ class GatherLighting {
                  const LightSettings& settings)
       : world_(world), samples_(samples), survey_(survey), settings_(settings) {
     place();
-    light_.resize(samples_.samples.size());
+    std::size_t parts = 0;
+    for (PlacedSample& at : placed_) at.first = parts, parts += 4 * at.octants;
+    light_.resize(parts);
   }
 
   void add_direct() {
@@ -122,8 +134,7 @@ class GatherLighting {
     parallel_for(placed_.size(), kSamplesAtOnce, [&](std::size_t begin, std::size_t end) {
       LightBatch& batch = batches[begin / kSamplesAtOnce];
       for (std::size_t k = begin; k < end; ++k)
-        for (const Cause cause : {direct_light, photon_light})
-          for (std::size_t side = 0; side < 2; ++side) leave(k, cause, side, batch);
+        for (std::size_t part = 0; part < 4 * placed_[k].octants; ++part) leave(k, part, batch);
       batch.lights.shrink_to_fit();
       batch.closures.shrink();
     });
@@ -172,10 +183,23 @@ class GatherLighting {
     for (std::size_t side = 0; side < 2; ++side) {
       const Closure closure = world_.materials().closure(hit.material, hit.point, side == 0 ? at.ng : -at.ng);
       at.shines[side] = closure.has_non_delta();
+      if (is_mostly_narrow(closure, side == 0 ? at.ng : -at.ng)) at.octants = kOctants;
       if (side == 0 || at.n == Vec3f{}) at.n = closure.frame.n;
     }
     if (dot(at.n, at.ng) < 0) at.n = -at.n;
     at.there = at.shines[0] || at.shines[1];
+  }
+
+  bool is_mostly_narrow(const Closure& closure, Vec3f wo) const {
+    if (settings_.lobes.diffuse_only) return false;
+    const Closure narrow = scatter::sharp_part(closure, kNarrow);
+    return narrow.count > 0 && max_component(scatter::albedo(narrow, wo)) >
+                                   kMostlyNarrow * max_component(scatter::albedo(closure, wo));
+  }
+
+  Arriving& arriving(std::size_t k, Cause cause, std::size_t side, Vec3f from) {
+    const PlacedSample& at = placed_[k];
+    return light_[at.first + (2 * cause + side) * at.octants + (at.octants > 1 ? octant(from) : 0)];
   }
 
   void add_direct(const world::LightSampler& lights, std::size_t k) {
@@ -198,9 +222,9 @@ class GatherLighting {
       if (!at.shines[side] || (!at.fiber && (dot(wi, at.n) > 0) != (side == 0))) continue;
       const std::uint64_t number = hash_ids(sample.id, Stage::gather_samples, 4, r);
       const Rgb visible = world::visible_fraction(world_, at.position, at.ng, wi, s.direct.distance, number);
-      light_[k][direct_light][side].add(
-          s.direct.radiance * visible * (cosine * at.area / (s.pdf * static_cast<float>(kDirectRays))), wi,
-          s.emitter, 1, number);
+      arriving(k, direct_light, side, wi)
+          .add(s.direct.radiance * visible * (cosine * at.area / (s.pdf * static_cast<float>(kDirectRays))),
+               wi, s.emitter, 1, number);
     }
   }
 
@@ -292,17 +316,20 @@ class GatherLighting {
     for (std::size_t p = 0; p < photons.size(); ++p)
       for (const Share& s : shares[p])
         if (s.part > 0)
-          light_[s.sample][photon_light][s.side].add(photons[p].power * s.part, photons[p].incoming,
-                                                     photons[p].emitter, photons[p].depth,
-                                                     photons[p].id ^ samples_.samples[s.sample].id);
+          arriving(s.sample, photon_light, s.side, photons[p].incoming)
+              .add(photons[p].power * s.part, photons[p].incoming, photons[p].emitter, photons[p].depth,
+                   photons[p].id ^ samples_.samples[s.sample].id);
   }
 
   // As a light, if the surface sends any of it on.
-  void leave(std::size_t k, Cause cause, std::size_t side, LightBatch& batch) const {
-    const Arriving& arriving = light_[k][cause][side];
-    if (!(max_component(arriving.flux) > 0) || !is_finite(arriving.flux)) return;
+  void leave(std::size_t k, std::size_t part, LightBatch& batch) const {
     const PlacedSample& at = placed_[k];
-    const Vec3f incoming = arriving.direction;
+    const Arriving& arriving = light_[at.first + part];
+    if (!(max_component(arriving.flux) > 0) || !is_finite(arriving.flux)) return;
+    // A drawn direction is another one whenever its part is gone. Where lobes are widened anyhow, the mean of
+    // an octant says as much and moves evenly.
+    const bool mean = at.octants > 1 && settings_.lobes.least_roughness > 0;
+    const Vec3f incoming = mean ? normalize(arriving.directions) : arriving.direction;
     const world::SurfaceHit hit = world_.surface(at.hit, -incoming);
     const Closure whole = world_.materials().closure(hit.material, hit.point, incoming);
     const Closure closure = settings_.lobes.of(whole, incoming);
@@ -320,7 +347,7 @@ class GatherLighting {
     light.depth = static_cast<std::uint16_t>(arriving.depth);
     light.path = static_cast<std::uint32_t>(k);
     light.half = PlaceInHalf(k, placed_.size()).feature();
-    light.id = hash_ids(samples_.samples[k].id, Stage::gather_samples, cause, side);
+    light.id = hash_ids(samples_.samples[k].id, Stage::gather_samples, at.octants, part);
     if (closure.is_lambertian())
       light.albedo = closure.diffuse_color();
     else
@@ -333,7 +360,7 @@ class GatherLighting {
   const LightSurvey& survey_;
   const LightSettings& settings_;
   std::vector<PlacedSample> placed_;
-  std::vector<SampleLight> light_;
+  std::vector<Arriving> light_;  // PlacedSample::first
 };
 
 std::size_t photons_for(std::size_t samples) {

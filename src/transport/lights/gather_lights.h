@@ -16,6 +16,11 @@ namespace lumirank::transport {
 // power: exact for lambertian surfaces, right in the mean for all others. Random numbers belong to samples
 // and photons, so that what does not move and is lit alike is the same light to the bit at every moment.
 //
+// Ours: what shines (most of whose light leaves in narrow lobes) has up to eight of each, one for every
+// octant of space from which light comes, and where lobes are widened each has the mean direction of its
+// octant. One direction of all is drawn anew whenever photons move, and its caustic flickers; the paper has
+// lights on lambertian surfaces only.
+//
 // Ours, where the paper estimates the photons' density at the samples: every photon is shared out among the
 // nearest samples on its shape and its side of the surface, so that no flux is lost in corners or along
 // edges. It is moved by about the distance between samples: a bias that vanishes as they grow in number.
