@@ -57,7 +57,8 @@ def main():
                         "--also='--film-samples 0' makes the pictures from before film samples")
     args = parser.parse_args()
     methods = [m["name"] for m in json.loads(
-        subprocess.run([args.program, "methods", "--json"], capture_output=True, text=True, check=True).stdout)]
+        subprocess.run([args.program, "methods", "--json"], capture_output=True, text=True, check=True).stdout)
+               if not m.get("of_shots")]
     rows = [(m, "render", ["--method", m]) for m in methods] + MORE
     table = {name: {scene: digest(args.program, command, scene, options, args.also.split()) for scene in SCENES}
              for name, command, options in rows if not args.only or args.only in name}

@@ -1,10 +1,11 @@
 // Numbered frames of a scene that moves, and a film of them by ffmpeg.
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstring>
-#include <map>
+#include <filesystem>
 #include <memory>
 
 #include "commands.h"
@@ -16,10 +17,13 @@ extern char** environ;
 namespace lumirank::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct AnimateOptions {
   CommonOptions common;
   AnimateSettings settings;
   std::string folder, frames, formats = "exr,png", video;
+  int chunk = 0;  // 0: as the method has it
 };
 
 void read_frames(const std::string& text, AnimateSettings& settings) {
@@ -29,11 +33,32 @@ void read_frames(const std::string& text, AnimateSettings& settings) {
                                              : read_count("--frames", text.substr(colon + 1), 0, 10'000'000);
 }
 
-// All PNG frames from the first one on, as H.264 at a quality that shows no blocks.
-void make_video(const AnimateOptions& options, Streams streams) {
-  char rate[32], first[16];
+// Before any frame is rendered for it.
+void check_video(const AnimateOptions& options) {
+  if (options.video.empty()) return;
+  if (options.formats.find("png") == std::string::npos)
+    throw InputError("a film is made of PNG frames", "add png to --format");
+  const fs::path file(options.video);
+  if (file.extension().empty())
+    throw InputError({options.video, 0}, "the film's name has no ending", "give --video FILE.mp4");
+  std::error_code error;
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path(),
+                 frames = fs::absolute(fs::path(options.folder) / "x").lexically_normal().parent_path();
+  if (folder != frames && !fs::is_directory(folder, error))  // that of the frames is made
+    throw InputError({options.video, 0}, "its folder does not exist", "make it, or choose another place");
+  if (fs::is_directory(file, error)) throw InputError({options.video, 0}, "is a folder", "name a file in it");
+}
+
+// The PNG frames that were asked for, as H.264 at a quality that shows no blocks. The file is whole or as
+// it was.
+void make_video(const AnimateOptions& options, const AnimationResult& result, Streams streams) {
+  // ffmpeg goes by the ending.
+  const std::string unfinished =
+      options.video + ".part-" + std::to_string(getpid()) + fs::path(options.video).extension().string();
+  char rate[32];
   std::snprintf(rate, sizeof rate, "%g", options.settings.frames_per_second);
-  std::snprintf(first, sizeof first, "%d", options.settings.first);
+  const std::string first = std::to_string(result.first),
+                    count = std::to_string(result.last - result.first + 1);
   const std::string frames = options.folder + "/frame_%04d.png";
   // Even numbers of pixels are what players can show.
   const char* words[] = {"ffmpeg",
@@ -43,9 +68,11 @@ void make_video(const AnimateOptions& options, Streams streams) {
                          "-framerate",
                          rate,
                          "-start_number",
-                         first,
+                         first.c_str(),
                          "-i",
                          frames.c_str(),
+                         "-frames:v",
+                         count.c_str(),
                          "-vf",
                          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
                          "-c:v",
@@ -54,7 +81,7 @@ void make_video(const AnimateOptions& options, Streams streams) {
                          "16",
                          "-pix_fmt",
                          "yuv420p",
-                         options.video.c_str(),
+                         unfinished.c_str(),
                          nullptr};
   pid_t process = 0;
   int status = 0;
@@ -63,72 +90,25 @@ void make_video(const AnimateOptions& options, Streams streams) {
     throw InputError(std::string("the film was not made: ffmpeg cannot be started (") + std::strerror(error) +
                          "); the frames are there",
                      "install ffmpeg, or leave out --video");
-  if (waitpid(process, &status, 0) < 0 || status != 0)
-    throw InputError("the film was not made: ffmpeg failed; the frames are there", "see what it says above");
-  if (!options.common.quiet) std::fprintf(streams.out, "wrote %s\n", options.video.c_str());
-}
-
-TensorSettings::Carrying read_carrying(const std::string& value) {
-  using enum TensorSettings::Carrying;
-  if (value == "auto") return automatic;
-  if (value == "on") return always;
-  if (value == "off") return never;
-  throw InputError("--set carry is auto, on or off, not '" + value + "'",
-                   "give off to have every frame computed by itself");
-}
-
-// `--method tensor-clustering`: its parameters are given with --set as those of the other methods.
-TensorSettings read_tensor(const std::map<std::string, std::string>& parameters) {
-  TensorSettings tensor;
-  for (const auto& [key, value] : parameters) {
-    const std::string option = "--set " + key;
-    if (key == "chunk")
-      tensor.chunk = read_count(option, value, 1, 1000);
-    else if (key == "rows")
-      tensor.rows = read_count(option, value, 1, 10'000);
-    else if (key == "columns")
-      tensor.columns = read_count(option, value, 0, 1'000'000);
-    else if (key == "initial-clusters")
-      tensor.initial_clusters = read_count(option, value, 1, 1'000'000);
-    else if (key == "time-weight")
-      tensor.time_weight = read_number(option, value, {0, 1e9});
-    else if (key == "overlap")
-      tensor.overlap = read_count(option, value, 0, 1000);
-    else if (key == "memory")
-      tensor.memory = read_number(option, value, {0, 1e9});
-    else if (key == "max-change")
-      tensor.max_change = read_number(option, value, {0, 1e9});
-    else if (key == "max-peak")
-      tensor.max_peak = read_number(option, value, {0, 1e9});
-    else if (key == "carry")
-      tensor.carrying = read_carrying(value);
-    else if (key == "max-distance")
-      tensor.max_distance = read_number(option, value, {0, 1e9});
-    else if (key == "filter")
-      tensor.filter = read_count(option, value, 0, 100);
-    else if (key == "representatives" && (value == "central" || value == "largest"))
-      tensor.largest_representatives = value == "largest";
-    else if (key == "representatives")
-      throw InputError("'" + value + "' names no representatives", "give central or largest");
-    else if (key == "clusters" && (value == "on" || value == "off"))
-      tensor.write_clusters = value == "on";
-    else if (key == "clusters")
-      throw InputError("--set clusters is on or off, not '" + value + "'", "give on to have them written");
-    else if (key == "bits")
-      tensor.bits = read_count(option, value, 16, 32);
-    else
-      throw InputError("tensor-clustering has no parameter '" + key + "'",
-                       "it has chunk, overlap, memory, rows, columns, initial-clusters, time-weight, carry, "
-                       "max-distance, max-change, max-peak, filter, representatives, bits and clusters");
+  const bool made = waitpid(process, &status, 0) >= 0 && status == 0;
+  std::error_code error_of_file;
+  if (made) fs::rename(unfinished, options.video, error_of_file);
+  if (!made || error_of_file) {
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    throw InputError("the film was not made: " + (made ? error_of_file.message() : "ffmpeg failed") +
+                         "; the frames are there",
+                     made ? "choose another place" : "see what it says above");
   }
-  return tensor;
+  if (!options.common.quiet) std::fprintf(streams.out, "wrote %s\n", options.video.c_str());
 }
 
 int run_animate(AnimateOptions& options, Streams streams) {
   AnimateSettings& settings = options.settings;
   settings.render = options.common.render_settings();
   if (MethodSettings& method = settings.render.method; method.name == "tensor-clustering") {
-    settings.tensor = read_tensor(method.parameters);
+    // Its parameters are given with --set as those of the other methods.
+    settings.tensor = tensor_settings(method.parameters);
     method.name = MethodSettings{}.name, method.parameters.clear();
   }
   settings.frames_per_second = options.common.fps;
@@ -139,11 +119,16 @@ int run_animate(AnimateOptions& options, Streams streams) {
       throw InputError("'" + format + "' is no format of frames", "exr, png and pfm are");
     settings.endings.push_back("." + format);
   }
-  if (!options.video.empty() && options.formats.find("png") == std::string::npos)
-    throw InputError("a film is made of PNG frames", "add png to --format");
+  check_video(options);
   Console console(options.common.verbosity(), streams.err);
   const Scene scene = Scene::load(options.common.scene, options.common.load_options(), console.sinks());
   choose_shot_method(scene, settings);
+  if (options.chunk > 0) {
+    if (!settings.tensor)
+      throw InputError("--chunk is of tensor clustering alone: frames are rendered one by one here",
+                       "leave it out, or give --method tensor-clustering");
+    settings.tensor->chunk = options.chunk;
+  }
   const AnimationResult result = animate(scene, settings, options.folder, console.sinks());
   console.clear();
   if (!options.common.quiet || result.interrupted)
@@ -151,7 +136,7 @@ int run_animate(AnimateOptions& options, Streams streams) {
         result.interrupted ? streams.err : streams.out, "%s%d frames rendered, %d were there already: %s\n",
         result.interrupted ? "interrupted: " : "", result.rendered, result.kept, options.folder.c_str());
   if (result.interrupted) return 130;
-  if (!options.video.empty()) make_video(options, streams);
+  if (!options.video.empty()) make_video(options, result, streams);
   return 0;
 }
 
@@ -172,6 +157,8 @@ void add_animate(CLI::App& app, Action& action) {
                       "FIRST:LAST, counted from 0 at second 0 (default: the whole motion)");
   add_number(*command, "--fps", options->common.fps, {0, 1000, true, "frames per second"},
              "frames per second (default 24)");
+  add_count(*command, "--chunk", options->chunk, 1, 1000,
+            "frames that tensor clustering makes together, as --set chunk=… (default 40)");
   command->add_option("--clip", options->common.clip,
                       "glTF: the animation to show, by name or number; '*': all (default: the first)");
   command->add_option("--format", options->formats,

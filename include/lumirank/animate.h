@@ -52,14 +52,17 @@ struct TensorSettings {
   bool write_clusters = false;
 };
 
-// As `--set` of `lumirank animate --method tensor-clustering` takes them, all of them; reports have them so.
+// As `--set` of `lumirank animate --method tensor-clustering` takes them: defaults but for what is given. One
+// that there is not, or of a wrong value, is an InputError.
+LUMIRANK_API TensorSettings tensor_settings(const std::map<std::string, std::string>& parameters);
+// The other way, all of them; reports have them so.
 LUMIRANK_API std::map<std::string, std::string> parameters_of(const TensorSettings& settings);
 
 struct AnimateSettings {
   RenderSettings render;  // of every frame: with the same seed, so the same random numbers, in each
   double frames_per_second = 24;
-  int first = 0,
-      last = -1;  // frame k is the moment k / frames_per_second; last -1: the last one of the motion
+  // Frame k is the moment k / frames_per_second; -1: the first one and the last one of the motion.
+  int first = -1, last = -1;
   std::vector<std::string> endings = {".exr", ".png"};  // of each frame's pictures
   DisplaySettings display;
   // Instead of the method of `render`, for columns.
@@ -72,10 +75,13 @@ inline constexpr double kShotMemory = 6000;  // MB, on every machine, so that al
 // What `lumirank animate` does where no method is named, that is, where it is "auto" without parameters:
 // tensor clustering with kShotColumns (or as many as the error takes that is asked for) and chunks that fit
 // into kShotMemory, if the scene moves and nothing is asked for that it refuses (a time budget, layers, an
-// open shutter, compensation). All other settings are left as they are: frames are rendered one by one.
+// open shutter, compensation). Else frames are rendered one by one. Whatever the method, lights whose
+// placement is automatic stand on gather samples where something moves, the same in every frame (not with a
+// time budget or an open shutter, where frames or instants have lights of their own).
 LUMIRANK_API void choose_shot_method(const Scene& scene, AnimateSettings& settings);
 
 struct AnimationResult {
+  int first = 0, last = -1;    // the frames that were asked for
   int rendered = 0, kept = 0;  // frames: made now, and found finished
   bool interrupted = false;    // cancelled: what is finished stays
 };
@@ -83,7 +89,8 @@ struct AnimationResult {
 // Writes frame_0000.exr, …, and each frame's report frame_0000.json, into `folder` (made if absent). A frame
 // is finished when its report is there; finished frames are kept, so an interrupted shot goes on where it
 // stopped, and several processes may make different frames of one folder. What the frames are made of is in
-// shot.json: frames of another scene or with other settings are an InputError, and nothing is written over.
+// shot.json (of the scene a hash of all its files): frames of another scene or with other settings are an
+// InputError, and nothing is written over.
 // So are frames before the first key of the motion or after its last one.
 LUMIRANK_API AnimationResult animate(const Scene& scene, const AnimateSettings& settings,
                                      const std::string& folder, const Sinks& sinks = {});

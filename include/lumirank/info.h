@@ -62,10 +62,11 @@ struct MethodParameter {
 };
 
 struct MethodDescription {
-  std::string name;     // for MethodSettings::name
+  std::string name;     // for MethodSettings::name, unless of_shots
   std::string summary;  // one sentence
   std::string paper;    // "" for a baseline without one
   std::vector<MethodParameter> parameters;
+  bool of_shots = false;  // makes a shot's frames together (AnimateSettings::tensor), and no single picture
 };
 
 // All methods with all their parameters.

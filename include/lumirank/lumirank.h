@@ -29,8 +29,8 @@ class LUMIRANK_API Scene {
   // Throws InputError (file, line, remedy). Warnings go to `sinks.warning` and stay in the listing.
   static Scene load(const std::string& filename, const LoadOptions& options = {}, const Sinks& sinks = {});
 
-  // The same scene at another moment (LoadOptions::time), read anew; what does not move is shared. A scene
-  // from memory has one moment.
+  // The same scene at another moment (LoadOptions::time), read anew; before the first key as at it, after the
+  // last one as at that. What does not move is shared. A scene from memory has one moment.
   Scene at(double seconds, const Sinks& sinks = {}) const;
 
   // What it consists of; builds the world once to count triangles and emitters.

@@ -18,8 +18,9 @@ struct LoadOptions {
   bool strict = false;                         // warnings about the scene are errors
   std::string environment = {};                // an image that replaces the scene's own environment
   bool allow_missing = false;                  // files that do not exist get a stand-in, with a warning
-  // The moment, in seconds, of a scene that moves; before its first key as at it, after its last one as at
-  // that. Unset: glTF's nodes as they stand, the first keys of a Mitsuba scene, pbrt's start of the shutter.
+  // The moment, in seconds, of a scene that moves; before its first key or after its last one is an
+  // InputError. Unset: glTF's nodes as they stand, the first keys of a Mitsuba scene, pbrt's start of the
+  // shutter.
   std::optional<double> time = {};
   double frames_per_second = 24;  // of meshes in numbered files (cloth.####.ply), and of the shutter
   std::string clip = {};  // glTF: the animation, by name or number; "": the first; "*": all of them at once

@@ -7,8 +7,10 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "api/render_in_shot.h"
 #include "api/render_tensor.h"
@@ -18,15 +20,9 @@
 #include "base/hash_text.h"
 #include "base/timer.h"
 #include "image/atomic_file.h"
-#include "settings/rows.h"
 
 namespace lumirank {
 namespace {
-
-const char* carrying_name(const TensorSettings& t) {
-  using enum TensorSettings::Carrying;
-  return t.carrying == always ? "on" : t.carrying == never ? "off" : "auto";
-}
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -45,31 +41,41 @@ struct Range {
   int first_key, last_key;  // of the motion
 };
 
-Range frames_of(const scenedesc::Motion& motion, const AnimateSettings& settings) {
+Range frames_of(const scenedesc::SceneDesc& scene, const AnimateSettings& settings) {
+  const scenedesc::Motion& motion = scene.motion;
   const double fps = settings.frames_per_second;
   if (!(fps > 0) || !std::isfinite(fps))
     throw InputError("the number of frames per second is not positive", "give --fps 24, say");
   const auto first_key = static_cast<int>(std::ceil(motion.begin * fps - kSlack)),
              last_key = static_cast<int>(std::floor(motion.end * fps + kSlack));
-  const Range range{settings.first, settings.last < 0 ? last_key : settings.last, first_key, last_key};
-  if (range.first < 0 || range.last < range.first)
+  const Range range{settings.first < 0 ? first_key : settings.first,
+                    settings.last < 0 ? last_key : settings.last, first_key, last_key};
+  if (range.last < range.first)
     throw InputError(
         "there are no frames from " + std::to_string(range.first) + " to " + std::to_string(range.last),
         "give --frames FIRST:LAST, both counted from 0");
-  const bool moves = motion.end > motion.begin;
-  if (moves && (range.first < first_key || range.last > last_key))
-    throw InputError("frames " + std::to_string(range.first) + " to " + std::to_string(range.last) +
+  if (motion.end > motion.begin && (range.first < first_key || range.last > last_key))
+    throw InputError({scene.source_file, 0},
+                     "frames " + std::to_string(range.first) + " to " + std::to_string(range.last) +
                          " are not all within the motion, which has frames " + std::to_string(first_key) +
                          " to " + std::to_string(last_key) + " at " + Json(fps).dump() + " per second",
                      "give others with --frames, or another --clip");
   return range;
 }
 
-// Of the scene file's bytes, so that a scene that was changed is another one.
-std::string fingerprint(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes(std::istreambuf_iterator<char>(in), {});
-  const std::uint64_t hash = hash_text(bytes);
+// Of the bytes of all files that the scene consists of, so that a scene that was changed is another one.
+std::string fingerprint(const Scene& scene) {
+  std::vector<std::string> names = scene.files();
+  for (const auto& shape : scene.impl().desc.shapes)
+    if (const auto* mesh = std::get_if<scenedesc::MeshFileDesc>(&shape.kind))
+      for (const std::string& name : mesh->sequence) names.push_back(name);
+  std::uint64_t hash = kHashOfNothing;
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (!seen.insert(name).second) continue;
+    std::ifstream in(name, std::ios::binary);  // one that is missing has a stand-in
+    hash = hash_text(std::string(std::istreambuf_iterator<char>(in), {}), hash);
+  }
   char text[24];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;
@@ -84,7 +90,7 @@ class Shot {
   void open() {
     const LoadOptions& load = scene_.impl().options;
     manifest_ = {{"scene", fs::path(scene_.impl().desc.source_file).filename().string()},
-                 {"scene_fingerprint", fingerprint(scene_.impl().desc.source_file)},
+                 {"scene_fingerprint", fingerprint(scene_)},
                  {"clip", load.clip},
                  {"frames_per_second", settings_.frames_per_second},
                  {"environment", load.environment},
@@ -185,23 +191,12 @@ class Shot {
   }
 
  private:
+  // Nothing but what decides about pixels.
   Json tensor_json() const {
     if (!settings_.tensor) return nullptr;
-    const TensorSettings& t = *settings_.tensor;
-    return {{"chunk", t.chunk},
-            {"rows", t.rows},
-            {"columns", t.columns},
-            {"initial_clusters", t.initial_clusters},
-            {"time_weight", t.time_weight},
-            {"carrying", carrying_name(t)},
-            {"max_distance", t.max_distance},
-            {"max_change", t.max_change},
-            {"max_peak", t.max_peak},
-            {"filter", t.filter},
-            {"largest_representatives", t.largest_representatives},
-            {"overlap", t.overlap},
-            {"memory", t.memory},
-            {"bits", t.bits}};
+    std::map<std::string, std::string> parameters = parameters_of(*settings_.tensor);
+    parameters.erase("clusters");
+    return parameters;
   }
   void write_clusters(const api::Chunk& chunk, const api::TensorFrames& made) const {
     Json rectangles = Json::array();
@@ -295,34 +290,20 @@ void render_chunks(const Shot& shot, const AnimateSettings& settings, const Rang
 
 }  // namespace
 
-std::map<std::string, std::string> parameters_of(const TensorSettings& t) {
-  using settings::format_number;
-  return {{"chunk", std::to_string(t.chunk)},
-          {"overlap", std::to_string(t.overlap)},
-          {"memory", format_number(t.memory)},
-          {"rows", std::to_string(t.rows)},
-          {"columns", std::to_string(t.columns)},
-          {"initial-clusters", std::to_string(t.initial_clusters)},
-          {"time-weight", format_number(t.time_weight)},
-          {"carry", carrying_name(t)},
-          {"max-distance", format_number(t.max_distance)},
-          {"max-change", format_number(t.max_change)},
-          {"max-peak", format_number(t.max_peak)},
-          {"filter", std::to_string(t.filter)},
-          {"representatives", t.largest_representatives ? "largest" : "central"},
-          {"bits", std::to_string(t.bits)},
-          {"clusters", t.write_clusters ? "on" : "off"}};
-}
-
 void choose_shot_method(const Scene& scene, AnimateSettings& settings) {
   const scenedesc::Motion& motion = scene.impl().desc.motion;
-  if (settings.tensor || settings.render.method.name != "auto" ||
-      !settings.render.method.parameters.empty() || !(motion.end > motion.begin))
+  RenderSettings& render = settings.render;
+  // Not where every frame or instant has lights of its own (api/render_in_shot.h).
+  if (motion.end > motion.begin && render.lights.placement == LightPlacement::automatic && render.time == 0 &&
+      !render.view.is_open())
+    render.lights.placement = LightPlacement::gather;
+  if (settings.tensor || render.method.name != "auto" || !render.method.parameters.empty() ||
+      !(motion.end > motion.begin))
     return;
   TensorSettings tensor;
   tensor.columns = kShotColumns, tensor.memory = kShotMemory;
   try {
-    api::check(tensor, settings.render);
+    api::check(tensor, render);
   } catch (const InputError&) {  // something that it refuses is asked for
     return;
   }
@@ -338,10 +319,10 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
                          Json(scene.impl().options.frames_per_second).dump() + " per second",
                      "read it with the same LoadOptions::frames_per_second");
   if (settings.endings.empty()) throw InputError("the frames have no format", "give --format exr,png");
-  const Range frames = frames_of(scene.impl().desc.motion, settings);
+  const Range frames = frames_of(scene.impl().desc, settings);
   Shot shot(scene, settings, folder);
   shot.open();
-  AnimationResult result;
+  AnimationResult result{.first = frames.first, .last = frames.last};
   std::vector<int> missing;
   for (int frame = frames.first; frame <= frames.last; ++frame)
     if (shot.is_finished(frame))

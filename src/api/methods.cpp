@@ -1,6 +1,7 @@
 // The list of methods: typed, as text and as JSON.
 #include <nlohmann/json.hpp>
 
+#include "api/tensor_parameters.h"
 #include "lumirank/info.h"
 #include "methods/method.h"
 
@@ -9,10 +10,11 @@ namespace lumirank {
 std::vector<MethodDescription> list_methods() {
   std::vector<MethodDescription> list;
   for (const auto& m : methods::all_methods()) {
-    MethodDescription& d = list.emplace_back(MethodDescription{m.name, m.summary, m.paper, {}});
+    MethodDescription& d = list.emplace_back(MethodDescription{m.name, m.summary, m.paper, {}, false});
     for (const auto& p : m.parameters)
       d.parameters.push_back({p.key, p.type, p.default_text, p.range, p.unit, p.help, p.experiment});
   }
+  list.push_back(api::describe_tensor_clustering());
   return list;
 }
 
@@ -29,8 +31,11 @@ std::string methods_json(bool all) {
                               {"unit", p.unit},
                               {"help", p.help},
                               {"experiment", p.experiment}});
-    json.push_back(
-        {{"name", m.name}, {"summary", m.summary}, {"paper", m.paper}, {"parameters", parameters}});
+    json.push_back({{"name", m.name},
+                    {"summary", m.summary},
+                    {"paper", m.paper},
+                    {"of_shots", m.of_shots},
+                    {"parameters", parameters}});
   }
   return json.dump(1) + "\n";
 }

@@ -2,14 +2,29 @@
 #include "api/scene.h"
 
 #include "api/build_world.h"
+#include "base/error.h"
 #include "pipeline/memory.h"
 #include "scenedesc/readers.h"
 #include "scenedesc/schema/files.h"
 #include "scenedesc/writer/mitsuba_writer.h"
+#include "settings/rows.h"
 
 namespace lumirank {
 
 namespace {
+
+void require_within_motion(const scenedesc::SceneDesc& desc, double seconds) {
+  const scenedesc::Motion& motion = desc.motion;
+  constexpr double kRounding = 1e-6;  // of key times and frame rates
+  if (!(motion.end > motion.begin) ||
+      (seconds >= motion.begin - kRounding && seconds <= motion.end + kRounding))
+    return;
+  using settings::format_number;
+  throw InputError({desc.source_file, 0},
+                   "second " + format_number(seconds) + " is not within the motion, which goes from " +
+                       format_number(motion.begin) + " to " + format_number(motion.end) + " s",
+                   "give another --at or --frame, or another --clip");
+}
 
 Scene read(const std::string& filename, const LoadOptions& options,
            const std::shared_ptr<scenedesc::MeshCache>& meshes, const Sinks& sinks) {
@@ -35,7 +50,9 @@ Scene read(const std::string& filename, const LoadOptions& options,
 }  // namespace
 
 Scene Scene::load(const std::string& filename, const LoadOptions& options, const Sinks& sinks) {
-  return read(filename, options, std::make_shared<scenedesc::MeshCache>(), sinks);
+  Scene scene = read(filename, options, std::make_shared<scenedesc::MeshCache>(), sinks);
+  if (options.time) require_within_motion(scene.impl().desc, *options.time);
+  return scene;
 }
 
 Scene Scene::at(double seconds, const Sinks& sinks) const {

@@ -53,6 +53,9 @@ SceneDesc read_scene(const std::string& filename, const ReadOptions& options) {
     throw InputError(SourceLocation{filename, 0}, "no reader for files that end in \"" + extension + "\"",
                      "Mitsuba (.xml), pbrt-v4 (.pbrt) and glTF (.gltf, .glb) scenes can be read");
   }
+  if (!gltf && !options.clip.empty())
+    throw InputError(SourceLocation{filename, 0},
+                     "the file has no clip '" + options.clip + "': only glTF has clips", "leave out --clip");
   SceneDesc scene = gltf   ? read_gltf(filename, options)
                     : pbrt ? read_pbrt(filename, options)
                            : read_mitsuba(filename, options);

@@ -9,6 +9,7 @@
 #include "scenedesc/pbrt_scene.h"
 #include "scenedesc/schema/frame_files.h"
 #include "scenedesc/schema/keyed_transform.h"
+#include "support/refused.h"
 #include "support/scene_file.h"
 
 namespace lumirank::scenedesc {
@@ -16,6 +17,11 @@ namespace {
 
 void expect_near(const Transform& have, const Transform& want, double tolerance = 1e-9) {
   for (std::size_t k = 0; k < 16; ++k) EXPECT_NEAR(have.m[k], want.m[k], tolerance) << "element " << k;
+}
+void expect_near(Vec3d have, Vec3d want, double tolerance = 1e-9) {
+  EXPECT_NEAR(have.x, want.x, tolerance);
+  EXPECT_NEAR(have.y, want.y, tolerance);
+  EXPECT_NEAR(have.z, want.z, tolerance);
 }
 
 ReadOptions moment(double seconds) {
@@ -92,6 +98,71 @@ TEST(PbrtMotion, ActiveTransformsAtAMoment) {
   EXPECT_THROW(pbrt_world(world, "TransformTimes 3 1\n"), InputError);
 }
 
+// A camera that flies by the lamps, and lamps of all kinds that have a place.
+TEST(MitsubaMotion, CamerasAndLampsMove) {
+  const auto keys = [](const std::string& first, const std::string& last) {
+    return "<animation name=\"to_world\"><transform time=\"1\">" + first +
+           "</transform><transform time=\"3\">" + last + "</transform></animation>";
+  };
+  const std::string text =
+      "<scene version=\"3.0.0\"><sensor type=\"perspective\">" +
+      keys("<lookat origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/>",
+           "<lookat origin=\"4,0,5\" target=\"0,0,5\" up=\"0,1,0\"/>") +
+      "</sensor><emitter type=\"point\">" + keys("<translate y=\"2\"/>", "<translate x=\"4\" y=\"6\"/>") +
+      "</emitter><emitter type=\"spot\">" + keys("", "<rotate y=\"1\" angle=\"90\"/><translate z=\"8\"/>") +
+      "</emitter><shape type=\"sphere\">" + keys("<translate z=\"1\"/>", "<translate z=\"-3\"/>") +
+      "<emitter type=\"area\"/></shape></scene>";
+  // A quarter of the way, in which turns of 90° have turned by 22.5°.
+  const double part = 0.25, turned = part * M_PI / 2;
+  const SceneDesc scene = parse_mitsuba(text, testing::TempDir() + "flight.xml", moment(1 + 2 * part));
+  const Transform& camera = scene.sensors.at(0).to_world;
+  expect_near(camera.origin(), {1, 0, 5});
+  expect_near(camera.axis(2), {-std::sin(turned), 0, -std::cos(turned)});
+  expect_near(camera.axis(1), {0, 1, 0});
+  expect_near(std::get<PointLightDesc>(scene.emitters.at(0).kind).position, {1, 3, 0});
+  const Transform& spot = std::get<SpotLightDesc>(scene.emitters.at(1).kind).to_world;
+  expect_near(spot.origin(), {0, 0, 2});
+  expect_near(spot.axis(2), {std::sin(turned), 0, std::cos(turned)});
+  ASSERT_TRUE(scene.shapes.at(0).emitter);
+  expect_near(scene.shapes[0].to_world.origin(), {0, 0, 0});
+  EXPECT_EQ(scene.motion.moving.size(), 4u);
+  EXPECT_EQ(scene.motion.begin, 1);
+  EXPECT_EQ(scene.motion.end, 3);
+}
+
+// pbrt's camera has the inverse of the transform before it, at both ends of the motion.
+TEST(PbrtMotion, CamerasAndLampsMove) {
+  const std::string head =
+      "TransformTimes 1 3\n"
+      "ActiveTransform StartTime\nLookAt 0 0 5  0 0 0  0 1 0\n"
+      "ActiveTransform EndTime\nLookAt 4 0 5  0 0 5  0 1 0\n"
+      "ActiveTransform All\nCamera \"perspective\"\n";
+  const std::string world =
+      "AttributeBegin\nActiveTransform StartTime\nTranslate 0 2 0\nActiveTransform EndTime\n"
+      "Translate 4 6 0\nActiveTransform All\nLightSource \"point\" \"point3 from\" [0 0 1]\nAttributeEnd\n"
+      "AttributeBegin\nActiveTransform EndTime\nTranslate 0 0 8\nRotate 90 0 1 0\nActiveTransform All\n"
+      "LightSource \"spot\" \"point3 from\" [0 0 0] \"point3 to\" [0 0 1]\nAttributeEnd\n"
+      "AttributeBegin\nActiveTransform EndTime\nTranslate 0 0 -4\nActiveTransform All\n"
+      "AreaLightSource \"diffuse\"\nShape \"sphere\"\nAttributeEnd\n";
+  const double part = 0.25, turned = part * M_PI / 2;
+  const SceneDesc scene = pbrt_world(world, head, moment(1 + 2 * part));
+  const Transform& camera = scene.sensors.at(0).to_world;
+  expect_near(camera.origin(), {1, 0, 5});
+  expect_near(camera.axis(2), {-std::sin(turned), 0, -std::cos(turned)});
+  expect_near(camera.axis(1), {0, 1, 0});
+  expect_near(std::get<PointLightDesc>(scene.emitters.at(0).kind).position, {1, 3, 1});
+  const Transform& spot = std::get<SpotLightDesc>(scene.emitters.at(1).kind).to_world;
+  expect_near(spot.origin(), {0, 0, 2});
+  expect_near(spot.axis(2), {std::sin(turned), 0, std::cos(turned)}, 1e-6);
+  ASSERT_TRUE(scene.shapes.at(0).emitter);
+  expect_near(scene.shapes[0].to_world.origin(), {0, 0, -1});
+  EXPECT_EQ(scene.motion.moving.size(), 4u);
+  // Without a moment it is the start.
+  const SceneDesc start = pbrt_world(world, head);
+  expect_near(start.sensors.at(0).to_world.origin(), {0, 0, 5});
+  expect_near(std::get<PointLightDesc>(start.emitters.at(0).kind).position, {0, 2, 1});
+}
+
 TEST(FrameFiles, TheNearestOfThoseThatThereAre) {
   const test::TemporaryFolder folder;
   for (const char* name :
@@ -155,7 +226,7 @@ TEST(FrameFiles, AMeshThatBecomesAnotherIsRefusedWithBothFiles) {
     std::ofstream(folder / ("m_02" + ending)) << fan(5, ply);
     MeshFileDesc file;
     file.format = ply ? MeshFormat::ply : MeshFormat::obj;
-    file.sequence_start = folder / ("m_00" + ending);
+    file.sequence = {folder / ("m_00" + ending)};
     for (const char* same : {"m_00", "m_01"}) {
       file.filename = folder / (same + ending);
       EXPECT_EQ(read_mesh(file).positions.size(), 4u) << same;
@@ -170,7 +241,14 @@ TEST(FrameFiles, AMeshThatBecomesAnotherIsRefusedWithBothFiles) {
                                       std::string("4 vertices and 2 faces")})
         EXPECT_NE(said.find(part), std::string::npos) << part << " in: " << said;
     }
-    file.sequence_start.clear();  // by itself it is sound
+    // As many, but otherwise joined.
+    std::string turned = fan(4, ply);
+    turned.replace(turned.find(ply ? "3 0 1 2" : "f 1 2 3"), 7, ply ? "3 0 2 1" : "f 1 3 2");
+    std::ofstream(folder / ("m_03" + ending)) << turned;
+    MeshFileDesc other = file;
+    other.filename = folder / ("m_03" + ending);
+    EXPECT_NE(test::refused([&] { read_mesh(other); }).find("other faces than the first"), std::string::npos);
+    file.sequence.clear();  // by itself it is sound
     EXPECT_EQ(read_mesh(file).positions.size(), 5u);
   }
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
 
 #include "base/error.h"
+#include "base/hash_text.h"
 #include "scenedesc/meshes/mesh_reader.h"
 #include "scenedesc/meshes/ply_header.h"
 #include "scenedesc/schema/files.h"
@@ -13,63 +15,96 @@ namespace lumirank::scenedesc {
 namespace {
 
 // As the file states them: reading may mend a mesh, one frame of a sequence otherwise than another.
-struct MeshCounts {
+struct Topology {
   std::uint64_t vertices = 0, faces = 0;
-  bool operator==(const MeshCounts&) const = default;
+  std::uint64_t corners = 0;  // a hash of what the faces say of their vertices; 0: not known
+  bool operator==(const Topology&) const = default;
 };
 
-MeshCounts counts_of_ply(const std::string& bytes, const std::string& filename) {
-  MeshCounts counts;
-  for (const PlyElement& element : parse_ply_header(bytes, filename).elements)
-    if (element.name == "vertex")
-      counts.vertices = element.count;
-    else if (element.name == "face")
-      counts.faces = element.count;
-  return counts;
+// The line that begins at `begin`, without its end.
+std::string_view line_from(std::string_view bytes, std::size_t begin) {
+  return bytes.substr(begin, std::min(bytes.find('\n', begin), bytes.size()) - begin);
 }
 
-MeshCounts counts_of_obj(const std::string& bytes) {
-  MeshCounts counts;
-  for (std::size_t line = 0; line < bytes.size();) {
-    const std::size_t begin = std::min(bytes.find_first_not_of(" \t", line), bytes.size());
-    if (begin + 1 < bytes.size() && (bytes[begin + 1] == ' ' || bytes[begin + 1] == '\t')) {
-      counts.vertices += bytes[begin] == 'v';
-      counts.faces += bytes[begin] == 'f';
-    }
-    const std::size_t end = bytes.find('\n', line);
-    line = end == std::string::npos ? bytes.size() : end + 1;
+// What the file says of its faces; empty where it is not worth the search: lists before them, more than a
+// list in them, or something after them.
+std::string_view faces_of_ply(const PlyHeader& header, std::string_view bytes) {
+  if (header.elements.empty()) return {};
+  const PlyElement& last = header.elements.back();
+  if (last.name != "face" || last.properties.size() != 1 || !last.has_list()) return {};
+  std::size_t at = header.body;
+  for (const PlyElement& element : header.elements) {
+    if (&element == &last) break;
+    if (element.has_list() || element.count > bytes.size()) return {};
+    if (header.format != PlyFormat::ascii) at += element.count * element.min_size(header.format);
+    for (std::uint64_t k = 0; header.format == PlyFormat::ascii && k < element.count && at < bytes.size();
+         ++k)
+      at += line_from(bytes, at).size() + 1;
   }
-  return counts;
+  return bytes.substr(std::min(at, bytes.size()));
 }
 
-MeshCounts counts_of(const MeshFileDesc& file, const std::string& bytes, const std::string& filename) {
+Topology topology_of_ply(std::string_view bytes, const std::string& filename) {
+  Topology topology;
+  const PlyHeader header = parse_ply_header(bytes, filename);
+  for (const PlyElement& element : header.elements)
+    if (element.name == "vertex")
+      topology.vertices = element.count;
+    else if (element.name == "face")
+      topology.faces = element.count;
+  if (const std::string_view faces = faces_of_ply(header, bytes); !faces.empty())
+    topology.corners = hash_text(faces);
+  return topology;
+}
+
+Topology topology_of_obj(std::string_view bytes) {
+  Topology topology;
+  topology.corners = kHashOfNothing;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::string_view line = line_from(bytes, at);
+    at += line.size() + 1;
+    const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+    if (begin + 1 >= line.size() || (line[begin + 1] != ' ' && line[begin + 1] != '\t')) continue;
+    topology.vertices += line[begin] == 'v';
+    if (line[begin] != 'f') continue;
+    ++topology.faces;
+    topology.corners = hash_text(line, topology.corners);
+  }
+  return topology;
+}
+
+Topology topology_of(const MeshFileDesc& file, const std::string& bytes, const std::string& filename) {
   switch (file.format) {
     case MeshFormat::obj:
-      return counts_of_obj(bytes);
+      return topology_of_obj(bytes);
     case MeshFormat::ply:
-      return counts_of_ply(bytes, filename);
+      return topology_of_ply(bytes, filename);
     case MeshFormat::serialized:
       break;
   }
   const MeshData mesh = parse_serialized(bytes, filename, file.shape_index);
-  return {mesh.positions.size(), mesh.indices.size() / 3};
+  return {mesh.positions.size(), mesh.indices.size() / 3, 0};
 }
 
-std::string as_text(const MeshCounts& counts) {
-  return std::to_string(counts.vertices) + " vertices and " + std::to_string(counts.faces) + " faces";
+std::string as_text(const Topology& topology) {
+  return std::to_string(topology.vertices) + " vertices and " + std::to_string(topology.faces) + " faces";
 }
 
 }  // namespace
 
 void check_sequence(const MeshFileDesc& file, const std::string& bytes) {
-  const std::string& start = file.sequence_start;
-  if (start.empty() || start == file.filename) return;
-  const MeshCounts first = counts_of(file, read_file(start, {start, 0}), start),
-                   now = counts_of(file, bytes, file.filename);
+  if (file.sequence.empty() || file.sequence.front() == file.filename) return;
+  const std::string& start = file.sequence.front();
+  const Topology first = topology_of(file, read_file(start, {start, 0}), start),
+                 now = topology_of(file, bytes, file.filename);
   if (first == now) return;
+  const bool alike = first.vertices == now.vertices && first.faces == now.faces;
   throw InputError({file.filename, 0},
-                   "the mesh has " + as_text(now) + ", but the first of its sequence, " + start + ", has " +
-                       as_text(first),
+                   alike
+                       ? "the mesh has other faces than the first of its sequence, " + start + ": as many (" +
+                             std::to_string(now.faces) + "), but between other vertices, or in another order"
+                       : "the mesh has " + as_text(now) + ", but the first of its sequence, " + start +
+                             ", has " + as_text(first),
                    "write all files of the sequence from one mesh that deforms");
 }
 

@@ -14,7 +14,7 @@ decltype(ShapeDesc::kind) mesh_file(Reader& reader, Plugin& p, MeshFormat format
   const std::string path = resolve_path(name, where.file);
   const auto file = reader.named_file(reader.path_at_time(path), where, "mesh file", "");
   out.filename = file.name;
-  out.sequence_start = Reader::sequence_start(path);
+  out.sequence = Reader::sequence(path);
   out.face_normals = p.flag("face_normals", false);
   // The same defaults in 0.6 and 3.x: the v of OBJ runs up and is flipped, that of the others runs down
   // already.

@@ -53,7 +53,7 @@ std::optional<ShapeKind> ply_mesh(Reader& reader, Params& p) {
   const std::string now = reader.path_at_time(path);
   const auto file = reader.file(now == path ? name : now, p.where_of("filename"), "mesh file", "");
   out.filename = file.name;
-  out.sequence_start = Reader::sequence_start(path);
+  out.sequence = Reader::sequence(path);
   out.smooth_without_normals = false;
   if (p.has("displacement")) {
     p.ignore({"displacement", "displacement.edgelength", "edgelength"});

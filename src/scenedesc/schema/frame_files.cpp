@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <map>
 
 namespace lumirank::scenedesc {
 
 namespace fs = std::filesystem;
 
-std::optional<FrameFile> file_of_frame(const std::string& path, std::optional<int> frame) {
+std::map<int, std::string> files_of_frames(const std::string& path) {
   std::error_code error;
   const std::string name = fs::path(path).filename().string();
   const std::size_t end = name.find_last_of('#') + 1;
-  if (end == 0 || fs::exists(path, error)) return std::nullopt;
+  if (end == 0 || fs::exists(path, error)) return {};
   std::size_t begin = end;
   while (begin > 0 && name[begin - 1] == '#') --begin;
   const std::string head = name.substr(0, begin), tail = name.substr(end);
@@ -28,6 +27,11 @@ std::optional<FrameFile> file_of_frame(const std::string& path, std::optional<in
     const auto [stop, status] = std::from_chars(from, to, number);
     if (status == std::errc{} && stop == to && number >= 0) found.emplace(number, entry.path().string());
   }
+  return found;
+}
+
+std::optional<FrameFile> file_of_frame(const std::string& path, std::optional<int> frame) {
+  const std::map<int, std::string> found = files_of_frames(path);
   if (found.empty()) return std::nullopt;
   auto chosen = found.begin();
   if (frame) {

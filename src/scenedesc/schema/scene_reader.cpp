@@ -49,9 +49,10 @@ std::string SceneReader::path_at_time(const std::string& path) {
   return found->path;
 }
 
-std::string SceneReader::sequence_start(const std::string& path) {
-  const auto found = file_of_frame(path, std::nullopt);
-  return found ? found->path : "";
+std::vector<std::string> SceneReader::sequence(const std::string& path) {
+  std::vector<std::string> files;
+  for (auto& [number, name] : files_of_frames(path)) files.push_back(std::move(name));
+  return files;
 }
 
 void SceneReader::add_motion(const std::string& what, double begin, double end) {

@@ -38,8 +38,8 @@ class SceneReader {
 
   // `path`, or where that is a numbered sequence (frame_files.h) its file at the time to be read.
   std::string path_at_time(const std::string& path);
-  // The first file of the sequence; "" if it is none.
-  static std::string sequence_start(const std::string& path);
+  // All files of the sequence, the first one first; empty if it is none.
+  static std::vector<std::string> sequence(const std::string& path);
 
   // Something of the name `what` moves from `begin` to `end` (seconds).
   void add_motion(const std::string& what, double begin, double end);

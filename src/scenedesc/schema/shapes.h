@@ -29,8 +29,8 @@ struct MeshFileDesc {
   bool flip_tex_coords = false;
   std::optional<float> max_smooth_angle;  // degrees; normals are made anew
   bool smooth_without_normals = true;     // false: a file without normals has face normals (pbrt)
-  // Of a numbered sequence (frame_files.h), the first file: all must have as many vertices and faces.
-  std::string sequence_start = {};
+  // Of a numbered sequence (frame_files.h) all files, the first one first: all must have the same faces.
+  std::vector<std::string> sequence = {};
 };
 // A mesh that the reader already holds: checked (see check_mesh) and never changed again. Shapes that share
 // it share its geometry. Null: its file does not exist, and that was allowed (--allow-missing); like a mesh
