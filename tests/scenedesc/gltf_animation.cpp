@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scenedesc/gltf_maker.h"
@@ -97,6 +98,46 @@ TEST(GltfAnimation, RotationsAreSpherical) {
   }
 }
 
+// Appendix C.5 for rotations: the spline of each component, its tangents scaled by the time between the keys,
+// which is then made a unit quaternion.
+TEST(GltfAnimation, CubicRotationsAreUnitQuaternions) {
+  using Quaternion = std::array<double, 4>;
+  const auto turn = [](double angle) {
+    return Quaternion{0, std::sin(angle / 2) * 0.6, std::sin(angle / 2) * 0.8, std::cos(angle / 2)};
+  };
+  const double times[3] = {0.5, 1, 3};
+  const Quaternion values[3] = {turn(0.3), turn(1.9), turn(-0.7)};
+  const Quaternion arriving[3] = {{9, 9, 9, 9}, {0.5, -0.2, 0.3, 0.1}, {0.1, 0.4, -0.3, 0.2}},
+                   leaving[3] = {{-0.4, 0.6, 0.2, -1}, {0.3, 0.1, -0.6, 0.5}, {9, 9, 9, 9}};
+  Channel c{.path = "rotation", .times = {}, .values = {}, .interpolation = "CUBICSPLINE", .type = "VEC4"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    c.times.push_back(static_cast<float>(times[k]));
+    for (const Quaternion& q : {arriving[k], values[k], leaving[k]})
+      for (const double number : q) c.values.push_back(static_cast<float>(number));
+  }
+  const GltfMaker m = animated({c});
+  for (const double seconds : {0.5, 0.6, 0.75, 1.0, 1.3, 2.0, 2.9, 3.0}) {
+    const std::size_t k = seconds < 1 ? 0 : 1;
+    const double apart = times[k + 1] - times[k], t = (seconds - times[k]) / apart, t2 = t * t, t3 = t2 * t;
+    Quaternion q{};
+    double size = 0;
+    for (std::size_t n = 0; n < 4; ++n) {
+      q[n] = (2 * t3 - 3 * t2 + 1) * values[k][n] + apart * (t3 - 2 * t2 + t) * leaving[k][n] +
+             (-2 * t3 + 3 * t2) * values[k + 1][n] + apart * (t3 - t2) * arriving[k + 1][n];
+      size += q[n] * q[n];
+    }
+    for (double& number : q) number /= std::sqrt(size);
+    const auto [x, y, z, w] = q;
+    expect_near(place_at(m, seconds, {1, 0, 0}),
+                {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)});
+    expect_near(place_at(m, seconds, {0, 0, 1}),
+                {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)});
+    if (t > 0.1 && t < 0.9) {  // else the test would not see it
+      EXPECT_GT(std::abs(size - 1), 0.01) << seconds;
+    }
+  }
+}
+
 TEST(GltfAnimation, NormalizedIntegersAreRotationsToo) {
   GltfMaker m = square();
   const int input = m.accessor("SCALAR", Floats{0, 1});
@@ -114,6 +155,37 @@ TEST(GltfAnimation, WeightsOfMorphTargetsMove) {
   const int right = m.accessor("VEC3", Floats{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0});
   m.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}, {{"POSITION", right}}};
   EXPECT_EQ(mesh_of(parse(m, moment(0.25))).positions[0], (Vec3f{0.75f, 0, 0.5f}));
+}
+
+// An arm of two joints: vertices 0 and 1 hang on a shoulder that stands, 2 on an elbow at (0, 0.5, 0) that
+// turns by a quarter, and 3 on both alike.
+TEST(GltfAnimation, SkinsFollowJointsThatTurn) {
+  const float s = std::sqrt(0.5f);
+  GltfMaker m =
+      animated({{.path = "rotation", .values = {0, 0, 0, 1, 0, 0, s, s}, .type = "VEC4", .node = 2}});
+  auto& attributes = m.root["meshes"][0]["primitives"][0]["attributes"];
+  attributes["JOINTS_0"] =
+      m.accessor("VEC4", std::vector<std::uint8_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0});
+  attributes["WEIGHTS_0"] = m.accessor("VEC4", Floats{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0});
+  // Moved back from where they were bound: the elbow from (0, 0.5, 0).
+  Floats inverse(32, 0.0f);
+  for (const std::size_t k : {0u, 5u, 10u, 15u, 16u, 21u, 26u, 31u}) inverse[k] = 1;
+  inverse[16 + 13] = -0.5f;
+  m.root["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", m.accessor("MAT4", inverse)}}};
+  m.root["nodes"] = {{{"mesh", 0}, {"skin", 0}},
+                     {{"translation", {0, 0, 2}}, {"children", {2}}},
+                     {{"translation", {0, 0.5, 0}}}};
+  m.root["scenes"][0]["nodes"] = {0, 1};
+  for (const double t : {0.0, 0.3, 0.5, 1.0}) {
+    const SceneDesc scene = parse(m, moment(t));
+    const MeshData& mesh = mesh_of(scene);
+    ASSERT_EQ(mesh.positions.size(), 4u);
+    const double x = std::cos(t * M_PI / 2), y = std::sin(t * M_PI / 2);
+    // The elbow turns (1, 0.5) and (0, 0.5) about itself.
+    const Vec3d want[4] = {{0, 0, 2}, {1, 0, 2}, {x - y / 2, 0.5 + y + x / 2, 2}, {-y / 4, 0.75 + x / 4, 2}};
+    for (std::size_t k = 0; k < 4; ++k)
+      expect_near(mesh.origin + static_cast<Vec3d>(mesh.positions[k]), want[k]);
+  }
 }
 
 TEST(GltfAnimation, LightsAndVisibilityByPointers) {
