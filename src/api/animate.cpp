@@ -10,7 +10,6 @@
 #include <set>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include "api/render_in_shot.h"
 #include "api/render_tensor.h"
@@ -65,13 +64,9 @@ Range frames_of(const scenedesc::SceneDesc& scene, const AnimateSettings& settin
 
 // Of the bytes of all files that the scene consists of, so that a scene that was changed is another one.
 std::string fingerprint(const Scene& scene) {
-  std::vector<std::string> names = scene.files();
-  for (const auto& shape : scene.impl().desc.shapes)
-    if (const auto* mesh = std::get_if<scenedesc::MeshFileDesc>(&shape.kind))
-      for (const std::string& name : mesh->sequence) names.push_back(name);
   std::uint64_t hash = kHashOfNothing;
   std::set<std::string> seen;
-  for (const std::string& name : names) {
+  for (const std::string& name : scene.files()) {
     if (!seen.insert(name).second) continue;
     std::ifstream in(name, std::ios::binary);  // one that is missing has a stand-in
     hash = hash_text(std::string(std::istreambuf_iterator<char>(in), {}), hash);

@@ -1,13 +1,15 @@
 #include "scenedesc/meshes/mesh_sequence.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/hash_text.h"
+#include "base/random.h"
 #include "scenedesc/meshes/mesh_reader.h"
-#include "scenedesc/meshes/ply_header.h"
+#include "scenedesc/meshes/ply_body.h"
 #include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc {
@@ -17,7 +19,7 @@ namespace {
 // As the file states them: reading may mend a mesh, one frame of a sequence otherwise than another.
 struct Topology {
   std::uint64_t vertices = 0, faces = 0;
-  std::uint64_t corners = 0;  // a hash of what the faces say of their vertices; 0: not known
+  std::uint64_t corners = 0;  // a hash of what the faces say of their vertices; 0: not looked at
   bool operator==(const Topology&) const = default;
 };
 
@@ -26,34 +28,32 @@ std::string_view line_from(std::string_view bytes, std::size_t begin) {
   return bytes.substr(begin, std::min(bytes.find('\n', begin), bytes.size()) - begin);
 }
 
-// What the file says of its faces; empty where it is not worth the search: lists before them, more than a
-// list in them, or something after them.
-std::string_view faces_of_ply(const PlyHeader& header, std::string_view bytes) {
-  if (header.elements.empty()) return {};
-  const PlyElement& last = header.elements.back();
-  if (last.name != "face" || last.properties.size() != 1 || !last.has_list()) return {};
-  std::size_t at = header.body;
-  for (const PlyElement& element : header.elements) {
-    if (&element == &last) break;
-    if (element.has_list() || element.count > bytes.size()) return {};
-    if (header.format != PlyFormat::ascii) at += element.count * element.min_size(header.format);
-    for (std::uint64_t k = 0; header.format == PlyFormat::ascii && k < element.count && at < bytes.size();
-         ++k)
-      at += line_from(bytes, at).size() + 1;
-  }
-  return bytes.substr(std::min(at, bytes.size()));
-}
-
-Topology topology_of_ply(std::string_view bytes, const std::string& filename) {
+Topology topology_of_ply(const std::string& bytes, const std::string& filename) {
   Topology topology;
   const PlyHeader header = parse_ply_header(bytes, filename);
-  for (const PlyElement& element : header.elements)
-    if (element.name == "vertex")
-      topology.vertices = element.count;
-    else if (element.name == "face")
-      topology.faces = element.count;
-  if (const std::string_view faces = faces_of_ply(header, bytes); !faces.empty())
-    topology.corners = hash_text(faces);
+  PlyBody body(bytes, header, filename);
+  const auto add = [&](double value) {
+    topology.corners = mix64(topology.corners ^ std::bit_cast<std::uint64_t>(value));
+  };
+  for (const PlyElement& element : header.elements) {
+    const bool faces = element.name == "face";
+    if (element.name == "vertex") topology.vertices = element.count;
+    if (faces) topology.faces = element.count;
+    if (element.properties.empty()) continue;
+    const int list = faces ? element.find({"vertex_indices", "vertex_index"}, true) : -1;
+    for (std::uint64_t k = 0; k < element.count; ++k) {
+      body.enter(element, k);
+      for (const PlyProperty& p : element.properties) {
+        if (list < 0 || &p != &element.properties[static_cast<std::size_t>(list)]) {
+          body.skip(p);
+          continue;
+        }
+        const std::size_t corners = body.list_length(p);
+        add(static_cast<double>(corners));
+        for (std::size_t c = 0; c < corners; ++c) add(body.value(p.type));
+      }
+    }
+  }
   return topology;
 }
 

@@ -83,7 +83,10 @@ std::vector<std::string> files_of(const SceneDesc& scene) {
   for (const BsdfDesc& b : scene.bsdfs)
     for_each_file(b.kind, [&](const FileInput& file) { files.push_back(file.name); });
   for (const ShapeDesc& s : scene.shapes) {
-    if (const auto* mesh = std::get_if<MeshFileDesc>(&s.kind)) files.push_back(mesh->filename);
+    if (const auto* mesh = std::get_if<MeshFileDesc>(&s.kind)) {
+      files.push_back(mesh->filename);
+      files.insert(files.end(), mesh->sequence.begin(), mesh->sequence.end());
+    }
     if (const auto* curves = std::get_if<CurvesDesc>(&s.kind); curves && !curves->filename.empty())
       files.push_back(curves->filename);
   }
