@@ -79,6 +79,7 @@ void PathTracer::finish(Walk& walk) const {
       if (world_.materials().passage(hit->material) == scatter::MaterialSet::Passage::opaque) break;
     }
     Closure closure = world_.materials().closure(hit->material, hit->point, -walk.ray.direction);
+    if (walk.non_delta_vertices == 0) scatter::face_viewer(closure, -walk.ray.direction);  // as rows are
     if (!scatter(walk, *hit, closure)) break;
   }
 }

@@ -152,6 +152,15 @@ float Closure::cosine(Vec3f w) const {
 
 bool Closure::sides_agree(Vec3f w) const { return is_fiber() || dot(w, frame.n) * dot(w, ng) > 0; }
 
+void face_viewer(Closure& closure, Vec3f wo) {
+  constexpr float least_cosine = 0.01f;
+  if (closure.is_fiber() || closure.sides_agree(wo)) return;
+  const float toward = dot(closure.ng, wo), side = toward < 0 ? -1.0f : 1.0f;
+  if (toward == 0) return;
+  const Vec3f n = closure.frame.n * side, turned = n + wo * (least_cosine - dot(n, wo));
+  closure.frame = Frame::from_normal_tangent(normalize(turned) * side, closure.frame.s);
+}
+
 bool Closure::is_lambertian() const {
   int non_delta = 0;
   for (int k = 0; k < count; ++k) {

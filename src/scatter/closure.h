@@ -182,6 +182,11 @@ Closure broad_part(const Closure& closure, float limit);
 // measurements, clear coats and fibers stay as they are.
 Closure widened(const Closure& closure, Vec3f wo, float least);
 
+// Turns a shading normal that faces away from wo, although the surface faces it, until it faces wo: at the
+// silhouettes of coarse meshes with smooth normals, and in steep bumps, nothing would be seen otherwise. For
+// closures that the eye sees.
+void face_viewer(Closure& closure, Vec3f wo);
+
 // Which half of the closure a caller wants.
 enum class Lobes : std::uint8_t { non_delta, delta, all };
 

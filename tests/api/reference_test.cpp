@@ -1,6 +1,9 @@
 // The path tracer against closed forms.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "base/vec.h"
 #include "lumirank/lumirank.h"
 #include "support/scene_file.h"
 #include "support/statistics.h"
@@ -93,6 +96,33 @@ TEST(Reference, DiffusePlaneUnderTheSky) {
   ReferenceSettings how;
   how.spp = 64;
   expect_mean(reference(scene, settings, how).picture, {1.2, 0.3, 0.3}, "sky");
+}
+
+// A floor whose smooth normals face away from the eye, as at the silhouettes of coarse meshes: they are
+// turned until they face it, and under a lamp at infinity that is ρ/π · E · n·l, for the path tracer and by
+// columns.
+TEST(Reference, NormalsThatFaceAwayAreTurnedToTheEye) {
+  const Vec3f n = normalize(Vec3f{0.985f, 0.174f, 0}), wo = normalize(Vec3f{-4.9f, 1, 0});
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "floor.obj")
+      << "v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nvn " << n.x << ' ' << n.y << " 0\nf 1//1 2//1 3//1 4//1\n";
+  std::ofstream(folder / "scene.xml")
+      << "<scene version=\"3.0.0\">" << point_camera("-4.9,1,0", "0,0,0", 16, 0.05)
+      << "<shape type=\"obj\"><string name=\"filename\" value=\"floor.obj\"/><bsdf type=\"diffuse\"><rgb "
+         "name=\"reflectance\" value=\"0.6, 0.3, 0.1\"/></bsdf></shape><emitter type=\"directional\"><vector "
+         "name=\"direction\" x=\"0\" y=\"-1\" z=\"0\"/><rgb name=\"irradiance\" value=\"2, 1, 3\"/></emitter>"
+         "</scene>";
+  const Scene scene = Scene::load(folder / "scene.xml");
+  const float toward = dot(n, wo);
+  ASSERT_LT(toward, -0.9);
+  const double f = normalize(n + wo * (0.01f - toward)).y / M_PI;
+  RenderSettings settings;
+  settings.method.name = "brute-force";
+  settings.lights.count = 100;
+  for (const Picture& picture :
+       {reference(scene, settings, ReferenceSettings{.spp = 4}).picture, render(scene, settings).picture})
+    for (std::size_t c = 0; c < 3; ++c)
+      for (const double value : channel(picture, c)) EXPECT_NEAR(value, (c == 0 ? 1.2 : 0.3) * f, 2e-3 * f);
 }
 
 // Irradiance over π of a rectangle [-a,a]×[-b,b] of unit radiance at height h above the point below its

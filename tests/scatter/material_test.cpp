@@ -55,6 +55,42 @@ TEST(Inputs, AreHeldToPhysicalRanges) {
   EXPECT_EQ(albedo(set.closure(0, point_with_normal(kUp), kUp), kUp), Rgb(1, 0, 0));
 }
 
+// Where the shading normal faces away and the surface does not.
+TEST(FaceViewer, TurnsTheNormalUntilItFacesTheEye) {
+  for (const BsdfCase& c : bsdf_list()) {
+    for (const Vec3f seen : {at_angle(0.05f, 0.2f), -at_angle(0.05f, 0.2f)}) {
+      SurfacePoint p = point_with_normal(kUp);
+      p.shading = Frame::from_normal(normalize(Vec3f{-0.5f, 0.1f, 0.86f}));
+      Closure turned = c.set.closure(c.material, p, seen);
+      if (turned.is_fiber() || turned.empty()) continue;
+      // Bump and normal maps bend the normal of the point further.
+      if (turned.sides_agree(seen)) continue;
+      face_viewer(turned, seen);
+      EXPECT_TRUE(turned.sides_agree(seen)) << c.name;
+      EXPECT_GT(dot(turned.frame.n, turned.ng), 0) << c.name;
+      EXPECT_NEAR(length(turned.frame.n), 1, 1e-5f) << c.name;
+      const float cosine = std::abs(dot(turned.frame.n, seen));
+      EXPECT_GT(cosine, 0.005f) << c.name;
+      EXPECT_LT(cosine, 0.1f) << c.name;
+      EXPECT_LE(max_component(albedo(turned, seen)), 1) << c.name;
+      const Closure again = turned;
+      face_viewer(turned, seen);
+      EXPECT_EQ(again.frame.n, turned.frame.n) << c.name;
+    }
+  }
+}
+
+TEST(FaceViewer, LeavesWhatIsSeenAlone) {
+  const MaterialSet set = materials({DiffuseMaterial{gray(0.5f)}});
+  SurfacePoint p = point_with_normal(kUp);
+  p.shading = Frame::from_normal(normalize(Vec3f{-0.5f, 0.1f, 0.86f}));
+  Closure c = set.closure(0, p, kUp);
+  const Frame before = c.frame;
+  face_viewer(c, kUp);
+  EXPECT_EQ(c.frame.n, before.n);
+  EXPECT_EQ(c.frame.s, before.s);
+}
+
 // Smooth plastic by its formula: base ρ/π·(1 - F(i))(1 - F(o))/(n²(1 - r)), r the internal diffuse
 // reflectance (times ρ if nonlinear), and the coating reflects F.
 TEST(Plastic, SmoothMatchesItsFormula) {

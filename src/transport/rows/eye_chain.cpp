@@ -143,7 +143,8 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
     }
     const Vec3f wo = -s.ray.direction;
     if (hit->emitter >= 0) emission += s.weight * world_.emitted(*hit, wo);
-    const Closure closure = world_.materials().closure(hit->material, hit->point, wo);
+    Closure closure = world_.materials().closure(hit->material, hit->point, wo);
+    scatter::face_viewer(closure, wo);
     if (from_eye && first) {
       const float side = dot(closure.frame.n, wo) < 0 ? -1.0f : 1.0f;
       const float ng_side = dot(closure.ng, wo) < 0 ? -1.0f : 1.0f;
@@ -151,7 +152,6 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
                 hit->point.position, hit->hit.t};
     }
     const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
-    // Where the two normals disagree about the side of wo, the non-delta lobes are 0 (scatter::eval).
     if (light_may_follow && closure.sides_agree(wo) && closure.has_non_delta())
       add_receiver(*hit, closure, s, sample, out, pool);
     if (closure.has_delta()) continue_from(*hit, closure, s, rng);
