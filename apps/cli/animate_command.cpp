@@ -159,6 +159,9 @@ void add_animate(CLI::App& app, Action& action) {
              "frames per second (default 24)");
   add_count(*command, "--chunk", options->chunk, 1, 1000,
             "frames that tensor clustering makes together, as --set chunk=… (default 40)");
+  command->add_flag("--refit", options->settings.refit,
+                    "for previews of large meshes that deform, frame by frame: the structures that rays are "
+                    "traced in follow the vertices, which is faster to build and slower to trace");
   command->add_option("--clip", options->common.clip,
                       "glTF: the animation to show, by name or number; '*': all (default: the first)");
   command->add_option("--format", options->formats,

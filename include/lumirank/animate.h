@@ -67,6 +67,12 @@ struct AnimateSettings {
   DisplaySettings display;
   // Instead of the method of `render`, for columns.
   std::optional<TensorSettings> tensor = {};
+  // For previews of large meshes that deform, frame by frame: where only vertices have moved since the frame
+  // before, Embree's structure is refitted instead of built anew. That takes a tenth of the time, but rays
+  // take longer the more a mesh has bent, and which of two surfaces in the same place is seen can depend on
+  // where the shot was begun. Meshes of less than 65,536 triangles are built anew. Not with `tensor` or an
+  // open shutter, which need the structures of many moments at once (InputError).
+  bool refit = false;
 };
 
 inline constexpr int kShotColumns = 500;     // for each frame: as long as a still by default, about

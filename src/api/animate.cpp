@@ -91,7 +91,8 @@ class Shot {
                  {"environment", load.environment},
                  {"defines", load.defines},
                  {"settings", Json::parse(to_json(settings_.render))},
-                 {"tensor", tensor_json()}};
+                 {"tensor", tensor_json()},
+                 {"refit", settings_.refit}};
     const std::string name = path("shot.json");
     std::error_code error;
     if (fs::exists(name, error)) {
@@ -125,10 +126,9 @@ class Shot {
   }
 
   // False if it was interrupted.
-  bool render_frame(int frame, const std::shared_ptr<const pipeline::ShotLights>& lights,
-                    const Sinks& sinks) const {
+  bool render_frame(int frame, const api::InShot& shot, const Sinks& sinks) const {
     const Scene now = scene_.at(frame / settings_.frames_per_second, sinks);
-    const RenderResult result = api::render_in_shot(now, settings_.render, lights, sinks);
+    const RenderResult result = api::render_in_shot(now, settings_.render, shot, sinks);
     if (result.interrupted) return false;
     write(frame, result.picture, result.report);
     return true;
@@ -235,20 +235,22 @@ Sinks part_of_progress(const Sinks& sinks, double begin, double share) {
   return own;
 }
 
-void render_frames(const Shot& shot, const std::vector<int>& missing, AnimationResult& result,
+void render_frames(const Shot& shot, bool refit, const std::vector<int>& missing, AnimationResult& result,
                    const Sinks& sinks) {
   Sinks own = sinks;
   own.progress = [](const char*, double) {};
-  std::shared_ptr<const pipeline::ShotLights> lights;
+  std::shared_ptr<const world::World> before;
+  api::InShot in_shot;
+  if (refit) in_shot.refit = &before;
   try {
-    if (!missing.empty()) lights = shot.plan_lights(sinks);
+    if (!missing.empty()) in_shot.lights = shot.plan_lights(sinks);
   } catch (const Cancelled&) {
     result.interrupted = true;
     return;
   }
   for (std::size_t k = 0; k < missing.size(); ++k) {
     sinks.report("frames", static_cast<double>(k) / static_cast<double>(missing.size()));
-    if (sinks.cancelled() || !shot.render_frame(missing[k], lights, own)) {
+    if (sinks.cancelled() || !shot.render_frame(missing[k], in_shot, own)) {
       result.interrupted = true;
       return;
     }
@@ -292,8 +294,8 @@ void choose_shot_method(const Scene& scene, AnimateSettings& settings) {
   if (motion.end > motion.begin && render.lights.placement == LightPlacement::automatic && render.time == 0 &&
       !render.view.is_open())
     render.lights.placement = LightPlacement::gather;
-  if (settings.tensor || render.method.name != "auto" || !render.method.parameters.empty() ||
-      !(motion.end > motion.begin))
+  if (settings.tensor || settings.refit || render.method.name != "auto" ||
+      !render.method.parameters.empty() || !(motion.end > motion.begin))
     return;
   TensorSettings tensor;
   tensor.columns = kShotColumns, tensor.memory = kShotMemory;
@@ -309,6 +311,11 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
                         const Sinks& sinks) {
   validate(settings.render);
   if (settings.tensor) api::check(*settings.tensor, settings.render);
+  if (settings.refit && (settings.tensor || settings.render.view.is_open()))
+    throw InputError(std::string("structures cannot be refitted: ") +
+                         (settings.tensor ? "tensor clustering" : "an open shutter") +
+                         " needs those of many moments at once",
+                     settings.tensor ? "name another --method, or leave out --refit" : "leave out --refit");
   if (settings.render.view.is_open() && scene.impl().options.frames_per_second != settings.frames_per_second)
     throw InputError("the shutter counts in other frames than the shot: the scene was read at " +
                          Json(scene.impl().options.frames_per_second).dump() + " per second",
@@ -327,7 +334,7 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
   if (settings.tensor)
     render_chunks(shot, settings, frames, missing, result, sinks);
   else
-    render_frames(shot, missing, result, sinks);
+    render_frames(shot, settings.refit, missing, result, sinks);
   return result;
 }
 

@@ -29,7 +29,8 @@ std::shared_ptr<const world::World> build_world(const Scene& scene, const Sinks&
   std::vector<scenedesc::Warning> warnings;
   world::BuildOptions options;
   options.strict = scene.impl().options.strict;
-  options.before = extras.before;
+  options.before = extras.refit ? extras.refit : extras.before;
+  options.refit = extras.refit != nullptr;
   if (extras.before) options.units = extras.before->units();
   std::shared_ptr<const world::World> world;
   pipeline::within_memory("the scene is too large for this machine", [&] {

@@ -47,17 +47,16 @@ std::string version() { return program_version(); }
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                     const PreviewCallback& on_preview) {
-  return api::render_in_shot(scene, settings, nullptr, sinks, on_preview);
+  return api::render_in_shot(scene, settings, {}, sinks, on_preview);
 }
 
-RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& settings,
-                                 std::shared_ptr<const pipeline::ShotLights> lights, const Sinks& sinks,
-                                 const PreviewCallback& on_preview) {
+RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& settings, const InShot& shot,
+                                 const Sinks& sinks, const PreviewCallback& on_preview) {
   validate(settings);
   RenderResult result;
   within_memory_and_threads(settings, [&] {
     pipeline::RenderTask task;
-    task.shot_lights = std::move(lights);
+    task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
     task.info = &pipeline::chosen_method(settings, &task.why);
     task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&
@@ -80,7 +79,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
       result = pipeline::run_exposure(instants, std::move(task), settings, sinks, on_preview);
       return;
     }
-    task.world = api::build_world(scene, sinks);
+    task.world = api::build_world(scene, sinks, {.refit = shot.refit ? shot.refit->get() : nullptr});
+    if (shot.refit) *shot.refit = task.world;
     task.build_seconds = task.timer.seconds();
     if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty())
       sinks.warn(text);

@@ -14,9 +14,16 @@ std::shared_ptr<const pipeline::ShotLights> plan_lights_of_motion(const Scene& s
                                                                   const RenderSettings& settings,
                                                                   const Sinks& sinks);
 
-// As render(), with the lights of a shot (nullptr: its own).
-RenderResult render_in_shot(const Scene& scene, const RenderSettings& settings,
-                            std::shared_ptr<const pipeline::ShotLights> lights, const Sinks& sinks,
-                            const PreviewCallback& on_preview = {});
+// What a frame has from others of its shot.
+struct InShot {
+  std::shared_ptr<const pipeline::ShotLights> lights;  // nullptr: its own
+  // If given: the world of a frame before (nullptr: none), whose structures are refitted and which nobody
+  // else may trace; becomes this frame's. Not with an open shutter.
+  std::shared_ptr<const world::World>* refit = nullptr;
+};
+
+// As render(), of a frame of a shot.
+RenderResult render_in_shot(const Scene& scene, const RenderSettings& settings, const InShot& shot,
+                            const Sinks& sinks, const PreviewCallback& on_preview = {});
 
 }  // namespace lumirank::api

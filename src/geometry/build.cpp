@@ -37,10 +37,6 @@ void validate(const TriangleMesh& mesh, std::size_t k) {
       throw InternalError(name + ": a segment without an end");
 }
 
-[[noreturn]] void out_of_memory() {
-  throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
-}
-
 // In world space. An instance keeps its radii and turns rays into its own space, so what counts is by how
 // much it lengthens most; what has been moved has its radii changed as Fibers::transform() says, which is
 // less.
@@ -118,15 +114,23 @@ embree::Geometry fibers_of(RTCDevice device, const Fibers& fibers, const Transfo
 
 }  // namespace
 
+void out_of_memory() {
+  throw InputError("the scene does not fit into memory", "use fewer triangles or instances");
+}
+
+void set_filters(RTCGeometry geometry, Blocking blocking) {
+  if (blocking == Blocking::cutout)
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_cutout);
+  else if (blocking == Blocking::attenuating)
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_attenuating);
+}
+
 void TracedPart::add_mesh(const SharedMesh& mesh, const Transform* baked, Blocking blocking, unsigned id) {
   meshes.push_back(mesh);
   RTCDevice handle = device->handle.get();
   const embree::Geometry geometry = mesh->fibers.empty() ? triangles_of(handle, *mesh, baked)
                                                          : fibers_of(handle, mesh->fibers, baked, fibers);
-  if (blocking == Blocking::cutout)
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_cutout);
-  else if (blocking == Blocking::attenuating)
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_attenuating);
+  set_filters(geometry.get(), blocking);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(scene.get(), geometry.get(), id);
 }
@@ -242,7 +246,8 @@ void RayScene::Impl::share_still(const Impl* before, const std::vector<bool>& sa
   still = {std::move(holds), made[0], made[1]};
 }
 
-void RayScene::Impl::build(std::size_t flatten_limit, const Impl* before, std::size_t share_limit) {
+void RayScene::Impl::build(std::size_t flatten_limit, const Sharing& sharing) {
+  const Impl* before = sharing.before ? sharing.before->impl_.get() : nullptr;
   check();
   choose_flat(flatten_limit);
   for (const Placement& p : placements)
@@ -251,12 +256,13 @@ void RayScene::Impl::build(std::size_t flatten_limit, const Impl* before, std::s
   const std::vector<bool> same = same_as(before);
   device = before ? before->device : open_device();
   if (std::all_of(same.begin(), same.end(), [](bool s) { return s; })) {
-    parts = before->parts, still = before->still;
+    parts = before->parts, still = before->still, refitted = before->refitted;
     blocking = before->blocking, attenuating = before->attenuating, bounds = before->bounds;
     return;
   }
   const long long bytes_before = device->bytes;
-  share_still(before, same, share_limit);
+  share_still(before, same, sharing.least);
+  if (before && sharing.refit) refit(*before, same, sharing.least);
   std::shared_ptr<TracedPart> top[2] = {new_part(), nullptr};  // what blocks, what attenuates
   const auto top_for = [&](bool attenuates) -> TracedPart& {
     if (!top[attenuates]) top[attenuates] = new_part();
@@ -266,7 +272,9 @@ void RayScene::Impl::build(std::size_t flatten_limit, const Impl* before, std::s
     const Placement& p = placements[k];
     if (meshes[p.mesh]->empty() || (!still.holds.empty() && still.holds[k])) continue;
     TracedPart& to = top_for(p.blocking == Blocking::attenuating);
-    if (flat[k])
+    if (const auto found = refitted.find(k); found != refitted.end())
+      to.add_instance(found->second.part, Transform{}, static_cast<unsigned>(k));
+    else if (flat[k])
       add_flat(to, k);
     else
       to.add_instance(instanced_part(p.mesh, p.blocking, before), p.to_world, static_cast<unsigned>(k));

@@ -128,7 +128,7 @@ RayScene::RayScene(std::vector<TriangleMesh> meshes, std::vector<Placement> plac
   for (TriangleMesh& mesh : meshes) impl_->meshes.push_back(share_mesh(std::move(mesh)));
   impl_->placements = std::move(placements);
   impl_->callbacks = std::move(callbacks);
-  impl_->build(flatten_limit, nullptr, 0);
+  impl_->build(flatten_limit, {});
 }
 RayScene::RayScene(std::vector<SharedMesh> meshes, std::vector<Placement> placements,
                    PassageCallbacks callbacks, const Sharing& sharing, std::size_t flatten_limit)
@@ -136,7 +136,7 @@ RayScene::RayScene(std::vector<SharedMesh> meshes, std::vector<Placement> placem
   impl_->meshes = std::move(meshes);
   impl_->placements = std::move(placements);
   impl_->callbacks = std::move(callbacks);
-  impl_->build(flatten_limit, sharing.before ? sharing.before->impl_.get() : nullptr, sharing.least);
+  impl_->build(flatten_limit, sharing);
 }
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;

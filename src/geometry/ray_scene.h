@@ -85,9 +85,12 @@ class RayScene {
   // What may be shared with a scene of another moment (nullptr: nothing). If all placements have the same
   // meshes (the same objects) by the same transforms, that is everything; else what has not moved, if that
   // has at least `least` primitives: fewer are built again sooner than an instance of them is traced.
+  // `refit`: `before` is traced no more; meshes of which only vertices have moved, of as many primitives,
+  // take their structures from it and refit them: faster to build, slower to trace.
   struct Sharing {
     const RayScene* before = nullptr;
     std::size_t least = kFlattenLimit;
+    bool refit = false;
   };
   RayScene(std::vector<SharedMesh> meshes, std::vector<Placement> placements, PassageCallbacks callbacks,
            const Sharing& sharing, std::size_t flatten_limit = kFlattenLimit);

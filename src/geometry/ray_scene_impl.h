@@ -41,7 +41,15 @@ struct TracedPart {
   void add_instance(const std::shared_ptr<const TracedPart>& part, const Transform& to_world, unsigned id);
   void commit();
 };
+[[noreturn]] void out_of_memory();
 using SharedPart = std::shared_ptr<const TracedPart>;
+
+// One mesh in world space in a scene of its own, whose structure can follow the vertices.
+struct RefittedPart {
+  std::shared_ptr<TracedPart> part;
+  RTCGeometry geometry = nullptr;  // the part's
+  int refits = 0;                  // since it was built
+};
 
 struct RayScene::Impl {
   std::vector<SharedMesh> meshes;
@@ -61,15 +69,15 @@ struct RayScene::Impl {
     SharedPart blocking, attenuating;
   };
   Still still;
+  std::map<std::size_t, RefittedPart> refitted;  // by placement; instances of the scenes above
   Bounds3f bounds;
   // Embree leaves out what a ray meets of fibers within two radii of its origin. So rays are handed to it
   // from so much farther behind: over twice the radius of the widest fiber, in world space. 0: there are
   // none.
   float run_up = 0;
 
-  // `before`: of another moment, may be nullptr.
-  void build(std::size_t flatten_limit, const Impl* before, std::size_t share_limit);
-  bool has_instances() const { return !parts.empty() || !still.holds.empty(); }
+  void build(std::size_t flatten_limit, const Sharing& sharing);
+  bool has_instances() const { return !parts.empty() || !still.holds.empty() || !refitted.empty(); }
   // The placement that a hit is on, by Embree's numbers.
   std::uint32_t placement_of(unsigned instance, unsigned geometry) const {
     return instance != RTC_INVALID_GEOMETRY_ID && instance < placements.size() ? instance : geometry;
@@ -81,6 +89,9 @@ struct RayScene::Impl {
   // Placements that are what they are in `before`; all false if the two do not correspond.
   std::vector<bool> same_as(const Impl* before) const;
   void share_still(const Impl* before, const std::vector<bool>& same, std::size_t share_limit);
+  // refit.cpp
+  void refit(const Impl& before, const std::vector<bool>& same, std::size_t least);
+  RefittedPart new_refitted(std::size_t placement) const;
   std::shared_ptr<TracedPart> new_part() const;
   void add_flat(TracedPart& to, std::size_t placement) const;
   SharedPart instanced_part(std::uint32_t mesh, Blocking blocking_kind, const Impl* before);
@@ -100,6 +111,8 @@ struct QueryContext {
 // Refuses hits on round caps of segments that are no part of the fiber. The geometry's user pointer is its
 // TracedFibers (null: triangles). The two below do so too.
 void filter_fiber_caps(const RTCFilterFunctionNArguments* arguments);
+// Sets the filters that a triangle mesh needs.
+void set_filters(RTCGeometry geometry, Blocking blocking);
 // Lets a hit on a cut-out count with the probability of its opacity.
 void filter_cutout(const RTCFilterFunctionNArguments* arguments);
 // Notes a hit on an attenuating surface and lets the ray go on.

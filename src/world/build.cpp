@@ -35,6 +35,9 @@ geometry::Blocking blocking(scatter::MaterialSet::Passage passage) {
   return geometry::Blocking::opaque;
 }
 
+// Triangles of a mesh that is worth it: fewer are built in a twentieth of a second.
+constexpr std::size_t kRefitLimit = std::size_t{1} << 16;
+
 std::size_t bytes_of(const geometry::TriangleMesh& m) {
   return m.positions.size() * sizeof(Vec3f) + m.normals.size() * sizeof(Vec3f) +
          m.uvs.size() * sizeof(Vec2f) + m.colors.size() * sizeof(Rgb) +
@@ -64,6 +67,7 @@ class World::Builder {
       : desc_(desc),
         given_units_(options.units),
         before_(options.before),
+        refit_(options.refit),
         sinks_(sinks),
         notes_(warnings, options.strict),
         textures_(desc),
@@ -230,8 +234,9 @@ class World::Builder {
       const SurfaceHit at = w.surface(hit, direction);
       return w.materials.transmittance(at.material, at.point, normalize(direction));
     };
-    w.rays.emplace(std::move(meshes_), std::move(geometry_.placements), std::move(callbacks),
-                   geometry::RayScene::Sharing{before_ ? &before_->rays() : nullptr});
+    geometry::RayScene::Sharing sharing{before_ ? &before_->rays() : nullptr};
+    if (refit_) sharing.refit = true, sharing.least = kRefitLimit;
+    w.rays.emplace(std::move(meshes_), std::move(geometry_.placements), std::move(callbacks), sharing);
     w.bounds = w.rays->bounds();
     w.info.memory_bytes += w.rays->memory_bytes();
   }
@@ -239,6 +244,7 @@ class World::Builder {
   const sd::SceneDesc& desc_;
   std::optional<Units> given_units_;
   const World* before_;
+  bool refit_;
   const Sinks& sinks_;
   Notes notes_;
   MeshStore store_;

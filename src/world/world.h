@@ -26,6 +26,8 @@ struct BuildOptions {
   std::optional<Units> units = {};
   // The same scene at another moment: what has not changed since is shared with it.
   const World* before = nullptr;
+  // `before` is traced no more: see geometry::RayScene::Sharing.
+  bool refit = false;
 };
 
 struct WorldInfo {

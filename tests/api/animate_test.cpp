@@ -359,6 +359,60 @@ TEST(Animate, TensorClusteringHasFilmSamples) {
   EXPECT_NEAR(mean(16) / receivers, 1, 0.03);
 }
 
+// A fine mesh that moves, frame by frame with structures of their own and with refitted ones: the same
+// pictures but for rounding, and hardly any memory for the structure from the third frame on.
+TEST(Animate, RefitsWhereOnlyVerticesMove) {
+  const TemporaryFolder folder;
+  constexpr int kSide = 184;
+  {
+    std::ofstream mesh(folder / "grid.obj");
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x)
+        mesh << "v " << 2.0 * x / (kSide - 1) - 1 << ' ' << 2.0 * y / (kSide - 1) - 1 << ' '
+             << 0.3 * (x % 7 == 0) << '\n';
+    for (int y = 1; y < kSide; ++y)
+      for (int x = 1; x < kSide; ++x)
+        mesh << "f " << y * kSide + x << ' ' << y * kSide + x + 1 << ' ' << (y - 1) * kSide + x + 1 << ' '
+             << (y - 1) * kSide + x << '\n';
+  }
+  const Scene scene = Scene::load(
+      moving_scene(folder, true, "",
+                   kLamp + "<shape type=\"obj\"><string name=\"filename\" value=\"grid.obj\"/><animation "
+                           "name=\"to_world\"><transform time=\"0\"><translate y=\"1\" z=\"-1\"/></transform>"
+                           "<transform time=\"1\"><rotate y=\"1\" angle=\"40\"/><translate y=\"1.5\"/>"
+                           "</transform></animation></shape>"));
+  AnimateSettings settings = small_shot(0, 3);
+  animate(scene, settings, folder / "built");
+  settings.refit = true;
+  animate(scene, settings, folder / "refitted");
+  for (int k = 0; k < 4; ++k) {
+    const auto want = image::read_image(frame(folder / "built", k)).color.pixels;
+    const auto have = image::read_image(frame(folder / "refitted", k)).color.pixels;
+    ASSERT_EQ(have.size(), want.size());
+    double difference = 0, sum = 0;
+    for (std::size_t n = 0; n < want.size(); ++n)
+      difference += std::abs(have[n].g - want[n].g), sum += want[n].g;
+    EXPECT_GT(sum, 0);
+    EXPECT_LT(difference, 1e-3 * sum) << k;
+  }
+  const auto scene_bytes = [&](const char* shot) {
+    const auto report = nlohmann::json::parse(bytes_of(folder / (std::string(shot) + "/frame_0002.json")));
+    return report["memory.scene_bytes"].get<double>();
+  };
+  EXPECT_LT(scene_bytes("refitted"), 0.6 * scene_bytes("built"));
+  settings.refit = false;
+  EXPECT_NE(refused([&] { animate(scene, settings, folder / "refitted"); }).find("its \"refit\""),
+            std::string::npos);
+  settings.refit = true;
+  settings.tensor = TensorSettings{};
+  EXPECT_NE(refused([&] { animate(scene, settings, folder / "tensor"); }).find("leave out --refit"),
+            std::string::npos);
+  settings.tensor.reset();
+  settings.render.view.shutter_open = 0, settings.render.view.shutter_close = 0.5;
+  EXPECT_NE(refused([&] { animate(scene, settings, folder / "open"); }).find("an open shutter"),
+            std::string::npos);
+}
+
 TEST(Animate, RefusesOtherShotsAndMomentsThatAreNot) {
   const TemporaryFolder folder;
   const Scene scene = Scene::load(moving_scene(folder));
