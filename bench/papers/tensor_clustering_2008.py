@@ -94,7 +94,8 @@ class Shot:
     def tensor(self, columns=None):
         """With the columns of Table 2, or with others."""
         columns = columns or self.of.columns
-        return self.once(f"tensor_{columns}", lambda: self.render(f"tensor_{columns}", self.clustered(columns)))
+        changed = [word for setting in self.args.set for word in ("--set", setting)]
+        return self.once(f"tensor_{columns}", lambda: self.render(f"tensor_{columns}", [*self.clustered(columns), *changed]))
 
     def rival(self):
         return self.tensor(self.of.equal_columns)
@@ -321,6 +322,8 @@ def main():
     parser.add_argument("--rows", type=int, default=100)
     parser.add_argument("--columns", type=int, default=300, help="for a frame in the mean; default 300")
     parser.add_argument("--equal-columns", type=int, default=1000, help="the same at equal time; default 1000")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
+                        help="a parameter of tensor clustering; as in the paper: max-distance=0, max-change=0, max-peak=0, filter=0, carry=on, initial-clusters=100, representatives=largest")
     parser.add_argument("--lines", type=int, help="scanlines with known truth; default 4")
     parser.add_argument("--mitsuba-python", help="a Python with the packages mitsuba, pyoidn and numpy, for the denoised path tracer")
     parser.add_argument("--truth-paths", type=int, default=1024, help="paths per pixel of its own truth; default 1024")

@@ -30,7 +30,8 @@ struct TensorSettings {
   enum class Carrying { automatic, always, never };
   Carrying carrying = Carrying::automatic;
   // Light of other frames is not carried to what is farther from all that they show than so many distances
-  // between neighboring samples: it was hidden there, and is shaded afresh. 0: no bound, as in the paper.
+  // between neighboring samples (of a picture with 256² receivers; in larger ones of as large a part of it):
+  // it was hidden there, and is shaded afresh. 0: no bound, as in the paper.
   double max_distance = 10;
   // By how large a part of its light a place may differ from what is carried to it (a shadow or a highlight
   // that moves); else it and what is around it are shaded afresh. 0: no bound, as in the paper.

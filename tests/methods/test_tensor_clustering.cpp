@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/random.h"
@@ -404,6 +405,19 @@ TEST(TensorClustering, AFrameMayShowNothing) {
 }
 
 // Two surfaces at one place are told apart by their normals and colors.
+TEST(RowMapping, ReachesAsLargeAPartOfLargePictures) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const std::size_t rows : {10ul, 65'536ul}) {
+    EXPECT_TRUE(reaches(10, 10, rows));
+    EXPECT_FALSE(reaches(10.1f, 10, rows));
+  }
+  // Twice as wide and high: there are twice as many samples between the same places.
+  EXPECT_TRUE(reaches(20, 10, 4 * 65'536));
+  EXPECT_FALSE(reaches(20.2f, 10, 4 * 65'536));
+  EXPECT_TRUE(reaches(1e9f, 0, 10));
+  EXPECT_FALSE(reaches(infinity, 0, 10));
+}
+
 TEST(RowMapping, TellsSurfacesApart) {
   DenseMatrix a(4, 1, std::vector<Rgb>(4, Rgb(1)));
   a.row_position = {{0, 0, 0}, {0, 0, 0}, {0.1f, 0, 0}, {0.1f, 0, 0}};

@@ -108,6 +108,13 @@ RowMapping RowMapping::then(const RowMapping& next) const {
   return both;
 }
 
+bool reaches(float distance, double max_distance, std::size_t rows) {
+  constexpr double kUsualRows = 256 * 256;
+  const double larger = std::max(1.0, std::sqrt(static_cast<double>(rows) / kUsualRows));
+  return std::isfinite(distance) &&
+         (max_distance == 0 || static_cast<double>(distance) <= max_distance * larger);
+}
+
 struct FrameRows::Impl {
   std::size_t rows = 0;
   float scale = 0;

@@ -34,6 +34,11 @@ struct FrameMappings {
   std::vector<RowMapping> to_earlier;  // [k]: rows of frame k to those of frame k + 1
 };
 
+// Whether a mapping to a frame of `rows` rows is no longer than `max_distance`, in distances of neighboring
+// rows in pictures of up to 256² rows; in larger ones it is as large a part of the picture, since light is
+// not rougher where it is sampled more densely. 0: any that there is.
+bool reaches(float distance, double max_distance, std::size_t rows);
+
 // What a row shows as a mixture of what rows of another frame show (ours): weights sum to 1, some may be
 // negative. Of one row alone where it shows the very same place.
 struct RowBlend {

@@ -28,7 +28,7 @@ class FilteredFrame {
 
   Rgb at(Index row, const Side& earlier, const Side& later) const {
     const Rgb own = shot_.sums[frame_][row];
-    if (!reaches(earlier.mapping.distance[row]) || !reaches(later.mapping.distance[row])) return own;
+    if (!within_reach(earlier, row) || !within_reach(later, row)) return own;
     const Seen before = seen(earlier, row), after = seen(later, row);
     const Rgb change = 0.5f * (before.light + after.light) - own;
     // As a change, so that where nothing changes light stays as it is to the last bit.
@@ -41,9 +41,8 @@ class FilteredFrame {
     float spread = 0;  // by how much the rows differ that it is interpolated between
   };
 
-  bool reaches(float distance) const {
-    return std::isfinite(distance) &&
-           (filter_.max_distance == 0 || static_cast<double>(distance) <= filter_.max_distance);
+  bool within_reach(const Side& side, Index row) const {
+    return reaches(side.mapping.distance[row], filter_.max_distance, side.mapping.distance.size());
   }
   float weight(const Rgb& change, float spread, const Rgb& own) const {
     if (!(filter_.max_change > 0)) return 1;

@@ -19,7 +19,7 @@ namespace lumirank::methods {
 
 struct TemporalFilter {
   std::size_t passes = 0;   // each averages over one frame on either side; 0: none
-  double max_distance = 0;  // of a mapping, in distances of neighboring rows; 0: any
+  double max_distance = 0;  // of a mapping, see reaches()
   // Of a pair's mean from a row's light, and of the rows that it is interpolated from among each other, as a
   // part of the row's light and `unseen`: there a pair has lost a fifth of its
   // weight, and at three times as much all of it. So a pass changes light by at most 0.6 of it. 0: any

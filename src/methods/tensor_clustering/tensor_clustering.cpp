@@ -374,21 +374,19 @@ class TensorRun {
     const auto target = tensor_.frame(f);
     const auto here = source.row_features().albedo, there = target->row_features().albedo;
     const bool relit = !here.empty() && !there.empty();
-    const auto reaches = [&](std::size_t i) {
-      const float distance = mapping.distance[i];
-      return std::isfinite(distance) &&
-             (settings_.max_distance == 0 || static_cast<double>(distance) <= settings_.max_distance);
+    const auto within_reach = [&](std::size_t i) {
+      return reaches(mapping.distance[i], settings_.max_distance, mapping.from.size());
     };
     parallel_for(mapping.from.size(), kCarriedAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (!reaches(i)) continue;
+        if (!within_reach(i)) continue;
         const Index at = mapping.from[i];
         carried_[f][i] += relit ? relight(sums[at], here[at], there[i]) : sums[at];
       }
     });
     std::vector<Index> hidden;
     for (std::size_t i = 0; i < mapping.from.size(); ++i)
-      if (!reaches(i)) hidden.push_back(static_cast<Index>(i));
+      if (!within_reach(i)) hidden.push_back(static_cast<Index>(i));
     if (!hidden.empty()) {
       const std::vector<Rgb> found =
           sums_at(*target, hidden, in_own_frame(f, [&](const ClusterColumn& c) { return c.frame == from; }),

@@ -46,8 +46,9 @@ struct TensorClusteringSettings {
   double time_weight = 1;       // see RectangleClustering
   // With a target error light is always carried.
   Carrying carrying = Carrying::automatic;
-  // Rows whose mapping is longer than so many distances of neighboring rows show something that was hidden:
-  // they are shaded afresh, by each cluster as its own frame has it. Ours; 0: mappings carry everything.
+  // Rows whose mapping is longer than so many distances of neighboring rows (in large pictures of more, see
+  // reaches()) show something that was hidden: they are shaded afresh, by each cluster as its own frame has
+  // it. Ours; 0: mappings carry everything.
   double max_distance = 10;
   // By how large a part of a row's light that which is carried may differ from what is found in its own
   // frame; else the row and those around it are shaded afresh. Ours; 0: mappings carry everything.
