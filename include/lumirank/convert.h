@@ -9,10 +9,10 @@
 
 namespace lumirank {
 
-// Writes the scene to `filename` (.xml), and beside it the meshes, pictures and curves that the scene file
-// itself holds; other files are referred to. Each file is whole or absent. What Mitsuba 3 cannot say is
-// warned of. Returns the names of what was written, the scene last. Throws InputError if one of them is an
-// input of the scene, or cannot be written.
+// Writes the scene to `filename` (.xml), and beside it the meshes, pictures, volumes and curves that the
+// scene file itself holds; other files are referred to. Each file is whole or absent. What Mitsuba 3 cannot
+// say is warned of. Returns the names of what was written, the scene last. Throws InputError if one of them
+// is an input of the scene, or cannot be written.
 LUMIRANK_API std::vector<std::string> convert(const Scene& scene, const std::string& filename,
                                               const Sinks& sinks = {});
 

@@ -19,6 +19,7 @@ struct LUMIRANK_API SceneInfo {
   std::uint64_t meshes = 0;
   std::uint64_t meshes_left_out = 0;  // without a triangle, or without a file
   std::uint64_t instances = 0, textures = 0, materials = 0;
+  std::uint64_t media = 0;  // participating ones
 
   struct Emitter {
     std::string name;
@@ -44,7 +45,7 @@ struct LUMIRANK_API SceneInfo {
 
   // What the file has and Lumirank does not, with what is used instead; and what no picture shows.
   std::vector<std::string> warnings, notes;
-  std::string listing;  // every sensor, emitter, texture, BSDF and shape, a line each
+  std::string listing;  // every sensor, emitter, texture, BSDF, volume, medium and shape, a line each
 
   std::string json() const;  // without the listing
   std::string text() const;  // with it

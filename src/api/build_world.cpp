@@ -30,6 +30,7 @@ std::shared_ptr<const world::World> build_world(const Scene& scene, const Sinks&
   world::BuildOptions options;
   options.strict = scene.impl().options.strict;
   options.before = extras.refit ? extras.refit : extras.before;
+  options.media = extras.media;
   options.refit = extras.refit != nullptr;
   if (extras.before) options.units = extras.before->units();
   std::shared_ptr<const world::World> world;

@@ -20,6 +20,7 @@ struct BuildExtras {
   std::vector<scenedesc::Warning>* warnings = nullptr;  // gets them as well
   // Of the same scene at another moment: it is built in the units of that, and shares what has not changed.
   const world::World* before = nullptr;
+  bool media = false;  // whoever asks for it can render participating media
   // Instead, in its own units: that is traced no more, and Embree's structures are refitted where only
   // vertices have moved.
   const world::World* refit = nullptr;

@@ -73,7 +73,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     if (settings.view.is_open()) {
       pipeline::check_exposure(*task.info, settings);
       const auto count = settings.view.shutter_samples.value_or(ViewSettings::kDefaultInstants);
-      const auto instants = api::open_shutter(scene, settings, static_cast<std::size_t>(count), sinks);
+      const auto instants = api::open_shutter(scene, settings, static_cast<std::size_t>(count), false, sinks);
       task.build_seconds = task.timer.seconds();
       pipeline::require_memory(memory, pipeline::kSmallerPicture);
       result = pipeline::run_exposure(instants, std::move(task), settings, sinks, on_preview);
@@ -106,9 +106,12 @@ RenderResult reference(const Scene& scene, const RenderSettings& settings, const
     pipeline::require_memory(pipeline::memory_of_reference(pixels_of(view)), pipeline::kSmallerPicture);
     const bool open = settings.view.is_open();
     const std::vector<pathtrace::Instant> instants =
-        open ? api::open_shutter(scene, settings, reference_instants(settings), sinks)
-             : std::vector<pathtrace::Instant>{{api::build_world(scene, sinks), view}};
+        open ? api::open_shutter(scene, settings, reference_instants(settings), true, sinks)
+             : std::vector<pathtrace::Instant>{{api::build_world(scene, sinks, {.media = true}), view}};
     const double build_seconds = timer.seconds();
+    if (how.paths != ReferencePaths::all && !instants.front().world->media().empty())
+      throw InputError("--paths " + to_text(how.paths) + " leaves out paths by what they meet on surfaces",
+                       "in a scene with participating media leave --paths out");
     if (!open)
       if (const std::string text = pipeline::empty_view(*instants.front().world, view); !text.empty())
         sinks.warn(text);

@@ -28,7 +28,8 @@ std::array<double, 3> corner(const world::World& world, Vec3f own) {
 SceneInfo Scene::info(const Sinks& sinks) const {
   const scenedesc::SceneDesc& desc = impl_->desc;
   std::vector<scenedesc::Warning> warnings;
-  const std::shared_ptr<const world::World> world = api::build_world(*this, sinks, {.warnings = &warnings});
+  const std::shared_ptr<const world::World> world =
+      api::build_world(*this, sinks, {.warnings = &warnings, .media = true});
   const auto& built = world->info();
   SceneInfo info;
   info.file = desc.source_file, info.format = desc.format;
@@ -36,6 +37,7 @@ SceneInfo Scene::info(const Sinks& sinks) const {
   info.fiber_segments = built.segments;
   info.meshes = built.meshes, info.meshes_left_out = built.meshes_left_out;
   info.instances = built.instances, info.textures = built.textures, info.materials = built.materials;
+  info.media = built.media;
   for (const auto& e : world->emitters()) {
     const Rgb p = world->units().power_in_file(emitters::power(e, world->bounds().radius()));
     info.emitters.push_back({e.name,
@@ -70,6 +72,7 @@ std::string SceneInfo::json() const {
   json["instances"] = instances;
   json["textures"] = textures;
   json["materials"] = materials;
+  json["media"] = media;
   json["emitters"] = Json::array();
   for (const Emitter& e : emitters)
     json["emitters"].push_back({{"name", e.name}, {"group", e.group}, {"power", e.power}});
@@ -90,7 +93,7 @@ std::string SceneInfo::text() const {
   std::string text = listing + "\nbuilt: " + count(triangles, " triangles (") +
                      count(unique_triangles, " unique) in ") + count(meshes, " meshes and ") +
                      count(instances, " instances, ") + count(textures, " textures, ") +
-                     count(materials, " materials\n");
+                     count(materials, " materials") + (media > 0 ? ", " + count(media, " media\n") : "\n");
   if (meshes_left_out > 0)
     text += "left out: " + count(meshes_left_out, " meshes without a triangle, or without a file\n");
   text += "bounds: " + bounds_json(*this).dump() + "\nemitters: " + std::to_string(emitters.size()) + "\n";

@@ -12,7 +12,7 @@
 namespace lumirank::api {
 
 std::vector<pathtrace::Instant> open_shutter(const Scene& scene, const RenderSettings& settings,
-                                             std::size_t count, const Sinks& sinks) {
+                                             std::size_t count, bool media, const Sinks& sinks) {
   const LoadOptions& load = scene.impl().options;
   const scenedesc::Motion& motion = scene.impl().desc.motion;
   if (!(load.frames_per_second > 0))
@@ -32,8 +32,8 @@ std::vector<pathtrace::Instant> open_shutter(const Scene& scene, const RenderSet
     if (found == made.end()) {
       const bool first = made.empty();
       const Scene now = scene.at(at, quiet);
-      auto world =
-          build_world(now, first ? sinks : quiet, {.before = first ? nullptr : instants.back().world.get()});
+      auto world = build_world(now, first ? sinks : quiet,
+                               {.before = first ? nullptr : instants.back().world.get(), .media = media});
       found = made.emplace(at, pathtrace::Instant{std::move(world),
                                                   pipeline::make_view(now.impl().desc, settings.view)})
                   .first;

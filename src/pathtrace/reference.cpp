@@ -1,12 +1,14 @@
 #include "pathtrace/reference.h"
 
 #include <cmath>
+#include <variant>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "film/filter_sampler.h"
 #include "pathtrace/sample_stream.h"
+#include "pathtrace/volume_path_tracer.h"
 
 namespace lumirank::pathtrace {
 // Members of PathFilm::Impl, so they have names of their own instead of an anonymous namespace.
@@ -74,8 +76,12 @@ double reversed_bits(std::uint32_t k) {
 struct PathFilm::Impl {
   // What traces one instant.
   struct Tracing {
-    PathTracer tracer;
+    std::variant<PathTracer, VolumePathTracer> tracer;
     world::Camera camera;
+
+    Radiance trace(const geometry::Ray& ray, std::uint64_t pixel, std::uint64_t sample) const {
+      return std::visit([&](const auto& by) { return by.trace(ray, pixel, sample); }, tracer);
+    }
   };
   world::View view;
   ReferenceOptions options;
@@ -94,8 +100,13 @@ struct PathFilm::Impl {
         halves{PathFilmHalf(pixels), PathFilmHalf(pixels)} {}
 
   void add_instant(const world::World& world, const world::View& v) {
-    const PathSettings settings{options.seed, v.max_depth, options.paths, options.carried};
-    tracing.push_back({PathTracer(world, settings), world::Camera(v.sensor, world.units())});
+    world::Camera camera(v.sensor, world.units());
+    if (options.paths == Paths::all && !world.media().empty()) {
+      tracing.push_back({VolumePathTracer(world, options.seed, v.max_depth, v.sensor.medium), camera});
+    } else {
+      const PathSettings settings{options.seed, v.max_depth, options.paths, options.carried};
+      tracing.push_back({PathTracer(world, settings), camera});
+    }
   }
 
   const Tracing& at(std::uint64_t pixel, int sample) const {
@@ -121,7 +132,7 @@ struct PathFilm::Impl {
       const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
                        static_cast<float>(y) + 0.5f + at.offset.y};
       const Radiance radiance =
-          now.tracer.trace(now.camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
+          now.trace(now.camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
       if (!is_finite(radiance.total()))
         throw InternalError("the reference met a value that is not finite; replay pixel " +
                             std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));

@@ -43,7 +43,7 @@ class Study {
         sinks_(sinks),
         plan_(plan_runs(settings)),
         world_(std::make_shared<world::World>(
-            world::World::build(scene.desc, {scene.strict}, warnings_, sinks))),
+            world::World::build(scene.desc, {.strict = scene.strict, .media = false}, warnings_, sinks))),
         view_(make_view(scene.desc, settings.base.view)),
         reference_(settings, view_) {
     const fs::path file = fs::absolute(scene.desc.source_file);

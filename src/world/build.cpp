@@ -11,6 +11,7 @@
 #include "world/impl.h"
 #include "world/lights.h"
 #include "world/material_builder.h"
+#include "world/media_builder.h"
 #include "world/mesh_store.h"
 #include "world/notes.h"
 #include "world/placer.h"
@@ -68,6 +69,7 @@ class World::Builder {
         given_units_(options.units),
         before_(options.before),
         refit_(options.refit),
+        with_media_(options.media),
         sinks_(sinks),
         notes_(warnings, options.strict),
         textures_(desc),
@@ -81,6 +83,7 @@ class World::Builder {
     assemble_geometry();
     step(0.5);
     set_materials();
+    set_media();
     step(0.6);
     for (std::size_t i = 0; i < geometry_.placed.size(); ++i) {
       set_placement(i);
@@ -151,13 +154,23 @@ class World::Builder {
     w_.materials.textures = textures_.finish();
   }
 
+  void set_media() {
+    if (desc_.media.empty()) return;
+    if (!with_media_) return notes_.warn(desc_.media[0].where, "participating media", "empty space");
+    MediaBuilder media(desc_, notes_);
+    w_.media = media.build(w_.units);
+    w_.info.media = w_.media.size();
+    w_.info.memory_bytes += media.memory_bytes();
+  }
+
   void set_placement(std::size_t i) {
     auto& placement = geometry_.placements[i];
     placement.material = static_cast<std::uint32_t>(material_of_[i]);
     placement.blocking = blocking(w_.materials.passage(material_of_[i]));
     w_.placements.push_back({placement.to_world.is_identity(), w_.materials.is_hair(material_of_[i]),
                              geometry_.flip[i], placement.to_world,
-                             placement.to_world.inverse().value_or(Transform{})});
+                             placement.to_world.inverse().value_or(Transform{}),
+                             with_media_ ? geometry_.placed[i].shape->media : sd::MediumInterfaceDesc{}});
     const Placed& placed = geometry_.placed[i];
     std::string name = placed.shape->id;
     if (placed.instance) name += '\n' + placed.instance->id;
@@ -244,7 +257,7 @@ class World::Builder {
   const sd::SceneDesc& desc_;
   std::optional<Units> given_units_;
   const World* before_;
-  bool refit_;
+  bool refit_, with_media_;
   const Sinks& sinks_;
   Notes notes_;
   MeshStore store_;

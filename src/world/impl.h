@@ -14,12 +14,14 @@ struct World::Impl {
     bool hair = false;  // fibers of hair: points lie on the axis and have no geometric normal
     bool flip = false;  // the outside is against the order of the corners in the mesh's own frame
     Transform to_world, inverse;
+    scenedesc::MediumInterfaceDesc media;
   };
 
   std::optional<geometry::RayScene> rays;
   scatter::MaterialSet materials;
   std::vector<PlacementData> placements;
   std::vector<std::uint64_t> placement_ids;
+  std::vector<media::Medium> media;
   std::vector<emitters::Emitter> emitters;
   std::vector<scatter::ColorInput> radiance;  // of area emitters; unused for the others
   int environment = -1;

@@ -15,6 +15,23 @@ World::~World() = default;
 const geometry::RayScene& World::rays() const { return *impl_->rays; }
 const scatter::MaterialSet& World::materials() const { return impl_->materials; }
 const std::vector<emitters::Emitter>& World::emitters() const { return impl_->emitters; }
+const std::vector<media::Medium>& World::media() const { return impl_->media; }
+int World::medium_beyond(const SurfaceHit& hit, Vec3f direction, int current) const {
+  const scenedesc::MediumInterfaceDesc& media = impl_->placements[hit.hit.instance].media;
+  if (!media.divides) return current;
+  return dot(direction, hit.point.ng) < 0 ? media.inside : media.outside;
+}
+int World::medium_around(geometry::Ray ray, int fallback) const {
+  constexpr int kMaxSurfaces = 256;
+  for (int k = 0; k < kMaxSurfaces; ++k) {
+    const auto hit = intersect(ray);
+    if (!hit) return fallback;
+    if (impl_->placements[hit->hit.instance].media.divides)
+      return medium_beyond(*hit, -ray.direction, fallback);
+    ray.origin = offset_origin(hit->point.position, hit->point.ng, ray.direction);
+  }
+  return fallback;
+}
 int World::environment() const { return impl_->environment; }
 const Bounds3f& World::bounds() const { return impl_->bounds; }
 const std::vector<std::uint64_t>& World::placement_ids() const { return impl_->placement_ids; }

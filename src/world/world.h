@@ -11,6 +11,7 @@
 #include "base/sinks.h"
 #include "emitters/emitter.h"
 #include "geometry/ray_scene.h"
+#include "media/medium.h"
 #include "scatter/material.h"
 #include "scenedesc/schema/scene_desc.h"
 #include "world/camera.h"
@@ -26,6 +27,8 @@ struct BuildOptions {
   std::optional<Units> units = {};
   // The same scene at another moment: what has not changed since is shared with it.
   const World* before = nullptr;
+  // Participating media are there. Without them the scene is in empty space, which is warned about.
+  bool media = true;
   // `before` is traced no more: see geometry::RayScene::Sharing.
   bool refit = false;
 };
@@ -34,7 +37,7 @@ struct WorldInfo {
   std::size_t meshes = 0, instances = 0, triangles = 0, unique_triangles = 0;
   std::size_t meshes_left_out = 0;  // without a triangle, or without their file; not among `meshes`
   std::size_t segments = 0;         // of fibers
-  std::size_t textures = 0, materials = 0, emitters = 0;
+  std::size_t textures = 0, materials = 0, media = 0, emitters = 0;
   // Meshes, textures and acceleration structure, without what is shared with BuildOptions::before.
   std::size_t memory_bytes = 0;
 };
@@ -58,6 +61,13 @@ class World {
   const geometry::RayScene& rays() const;
   const scatter::MaterialSet& materials() const;
   const std::vector<emitters::Emitter>& emitters() const;
+  // Participating media; empty space is none of them and has the number -1.
+  const std::vector<media::Medium>& media() const;
+  // The medium that a ray is in which leaves the hit into `direction`, having come through `current`.
+  int medium_beyond(const SurfaceHit& hit, Vec3f direction, int current) const;
+  // The medium at a place, by the first surface that divides media along a ray from there; `fallback` if
+  // there is none.
+  int medium_around(geometry::Ray ray, int fallback) const;
   // The emitter that fills the background, or -1. At most one EnvironmentEmitter exists (sky and map are
   // merged or warned about).
   int environment() const;

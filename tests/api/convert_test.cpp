@@ -1,6 +1,7 @@
 // A converted scene renders to the same bits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -116,6 +117,38 @@ Shape "bilinearmesh" "point3 P" [ -2 -2 3  2 -2 3  -2 2 3  2 2 3 ]
   ASSERT_EQ(a.size(), b.size());
   // The frame of the map is made of rounded axes, which move look-ups by some 10⁻⁷ of the map.
   for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-4 * std::abs(a[k])) << k;
+}
+
+TEST(Convert, MediaGoAlong) {
+  const test::TemporaryFolder folder;
+  std::string grid("VOL\3\1\0\0\0\2\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0", 24);
+  for (const float x : {-1.0f, -1.0f, -1.0f, 1.0f, 1.0f, 1.0f, 0.5f, 3.0f})
+    grid.append(reinterpret_cast<const char*>(&x), sizeof x);
+  std::ofstream(folder / "smoke.vol", std::ios::binary) << grid;
+  std::ofstream(folder / "scene.xml") << R"(<scene version="3.0.0">
+<medium type="homogeneous" id="fog"><rgb name="sigma_t" value="0.05, 0.1, 1.5"/><phase type="hg"/></medium>
+<sensor type="perspective"><transform name="to_world"><lookat origin="0,1,5" target="0,0,0" up="0,1,0"/></transform>
+<film type="hdrfilm"><integer name="width" value="12"/><integer name="height" value="8"/></film><ref id="fog"/></sensor>
+<emitter type="point"><point name="position" x="1" y="3" z="2"/><rgb name="intensity" value="9"/></emitter>
+<shape type="rectangle"><transform name="to_world"><scale value="3"/><translate z="-2"/></transform></shape>
+<shape type="cube"><bsdf type="null"/><ref name="exterior" id="fog"/><medium name="interior" type="heterogeneous">
+<volume name="sigma_t" type="gridvolume"><string name="filename" value="smoke.vol"/>
+<boolean name="use_grid_bbox" value="true"/></volume><rgb name="albedo" value="0.9, 0.8, 0.7"/>
+<float name="scale" value="1.5"/></medium></shape>
+</scene>)";
+  const Scene scene = Scene::load(folder / "scene.xml");
+  Sinks sinks;
+  sinks.warning = [](const std::string& text) { ADD_FAILURE() << text; };
+  EXPECT_EQ(convert(scene, folder / "out.xml", sinks).size(), 1u);
+  const Scene again = Scene::load(folder / "out.xml", {.defines = {}, .strict = true});
+  ReferenceSettings how;
+  how.spp = 4;
+  const auto a = reference(scene, {}, how).picture.planes[0].rgb;
+  EXPECT_EQ(a, reference(again, {}, how).picture.planes[0].rgb);
+  EXPECT_GT(*std::max_element(a.begin(), a.end()), 0);
+  // What it reads of them is not written over.
+  const std::vector<std::string> files = again.files();
+  EXPECT_EQ(std::ranges::count(files, folder / "smoke.vol"), 1);
 }
 
 TEST(Convert, DoesNotOverwriteWhatItReads) {

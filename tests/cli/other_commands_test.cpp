@@ -146,6 +146,23 @@ TEST(Info, ListsWhatWasReplacedWithItsLine) {
   expect_refused(lumirank({"info", scene, "--strict"}), "scene.xml:4");
 }
 
+TEST(Info, CountsMedia) {
+  const TemporaryFolder folder;
+  const std::string scene = write_scene(
+      folder, point_camera("0,0,3", "0,0,0", 8, 40) +
+                  "<shape type=\"sphere\"><bsdf type=\"null\"/><medium name=\"interior\" id=\"milk\" "
+                  "type=\"homogeneous\"/></shape><emitter type=\"constant\"/>");
+  const Outcome text = lumirank({"info", scene, "--strict"}), json = lumirank({"info", scene, "--json"});
+  EXPECT_SUCCESS(text);
+  EXPECT_EQ(nlohmann::json::parse(json.out).at("media"), 1);
+  EXPECT_NE(text.out.find("1 materials, 1 media\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("\"milk\": extinction 1, albedo 0.75"), std::string::npos) << text.out;
+  // Most scenes have none, and their listing says nothing of it.
+  const Outcome box = lumirank({"info", example("box")});
+  EXPECT_EQ(box.out.find("media"), std::string::npos) << box.out;
+  EXPECT_EQ(nlohmann::json::parse(lumirank({"info", example("box"), "--json"}).out).at("media"), 0);
+}
+
 TEST(Info, EveryExample) {
   for (const char* name : {"interior", "lamps", "courtyard", "recesses"}) {
     const Outcome json = lumirank({"info", example(name), "--json", "--strict"});

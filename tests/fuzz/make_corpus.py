@@ -223,6 +223,16 @@ def curves():
     write("curves", "binary", b"\6BINARY_HAIR" + struct.pack("<I13f", 4, float("inf"), 0, 0, 0, 1, 0, 0, float("inf"), 0, 1, 0, 0, 2) + struct.pack("<f", 0))
 
 
+def vol():
+    def grid(encoding, size, channels, values):
+        return b"VOL\3" + struct.pack("<5i6f", encoding, *size, channels, -1, 0, 2, 1, 4, 3) + values
+    write("vol", "floats.vol", grid(1, (3, 2, 1), 1, struct.pack("<6f", *range(6))))
+    write("vol", "colors.vol", grid(1, (2, 1, 1), 3, struct.pack("<6f", *range(6))))
+    write("vol", "halves.vol", grid(2, (1, 1, 3), 1, struct.pack("<3e", 0.5, -2, 1e-7)))
+    write("vol", "bytes.vol", grid(3, (2, 2, 1), 1, bytes([0, 1, 128, 255])))
+    write("vol", "directions.vol", grid(4, (1, 1, 1), 3, bytes(2)))
+
+
 def images():
     # The JPEG seeds beside these are of write_sample_jpeg in tests/film.
     def png(name, depth, color, interlace, rows, *more):
@@ -250,6 +260,7 @@ def main():
     ply()
     serialized()
     ies()
+    vol()
     gltf()
     for name, text in SCENES.items():
         write("mitsuba", name, text)

@@ -222,6 +222,74 @@ TEST(GltfMaterial, Transmission) {
   EXPECT_EQ(find_bsdf<PlasticDesc>(scene)->eta, 1.25f);
 }
 
+// Of white light the color is left after the distance, in solids alone.
+TEST(GltfMaterial, VolumesAbsorb) {
+  GltfMaker m = with_material(
+      {{"name", "wine"},
+       {"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 1}, {"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.25, 0.5}}}}}}});
+  json& extensions = m.root["materials"][0]["extensions"];
+  const SceneDesc scene = parse(m);
+  ASSERT_EQ(scene.media.size(), 1u);
+  const MediumDesc& wine = scene.media[0];
+  EXPECT_EQ(wine.id, "wine");
+  EXPECT_EQ(wine.form, MediumDesc::Form::extinction_and_albedo);
+  EXPECT_TRUE(wine.homogeneous());
+  EXPECT_EQ(wine.extinction.value.r, 0);
+  EXPECT_NEAR(wine.extinction.value.g, 2 * std::log(4.0), 1e-5);
+  EXPECT_NEAR(wine.extinction.value.b, 2 * std::log(2.0), 1e-5);
+  EXPECT_EQ(wine.albedo.value, Rgb(0));
+  const MediumInterfaceDesc& media = scene.shapes[0].media;
+  EXPECT_TRUE(media.divides);
+  EXPECT_EQ(media.inside, 0);
+  EXPECT_EQ(media.outside, kNone);
+  EXPECT_EQ(warning_about(scene, ""), nullptr);
+  const auto is_clear = [&] {
+    const SceneDesc clear = parse(m);
+    return clear.media.empty() && !clear.shapes[0].media.divides;
+  };
+  json& volume = extensions["KHR_materials_volume"];
+  for (const char* key : {"thicknessFactor", "attenuationDistance", "attenuationColor"}) {
+    const json kept = volume[key];
+    volume.erase(key);
+    EXPECT_TRUE(is_clear()) << key;
+    volume[key] = kept;
+  }
+  // Nothing is left of a channel of 0; above 1 would be light from nowhere.
+  volume["attenuationColor"] = {0, 1, 2};
+  const SceneDesc odd = parse(m);
+  EXPECT_GT(odd.media.at(0).extinction.value.r, 100);
+  EXPECT_TRUE(std::isfinite(odd.media.at(0).extinction.value.r));
+  EXPECT_EQ(odd.media.at(0).extinction.value.b, 0);
+  EXPECT_NE(warning_about(odd, "attenuation color above 1"), nullptr);
+  extensions["KHR_materials_transmission"]["transmissionFactor"] = 0;
+  EXPECT_TRUE(is_clear());
+}
+
+TEST(GltfMaterial, AlikeVolumesAreOneMedium) {
+  const auto glass = [](double blue) {
+    return json{
+        {"extensions",
+         {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+          {"KHR_materials_volume",
+           {{"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {1, 1, blue}}}}}}};
+  };
+  GltfMaker m = square();
+  m.root["materials"] = {glass(0.5), glass(0.25), glass(0.5)};
+  json& primitives = m.root["meshes"][0]["primitives"];
+  for (int k = 0; k < 3; ++k) {
+    primitives[static_cast<std::size_t>(k)] = primitives[0];
+    primitives[static_cast<std::size_t>(k)]["material"] = k;
+  }
+  const SceneDesc scene = parse(m);
+  EXPECT_EQ(scene.media.size(), 2u);
+  EXPECT_EQ(scene.shapes.at(0).media.inside, 0);
+  EXPECT_EQ(scene.shapes.at(1).media.inside, 1);
+  EXPECT_EQ(scene.shapes.at(2).media.inside, 0);
+}
+
 TEST(GltfMaterial, SpecularClearCoatSheenUnlit) {
   const json matt = {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}};
   GltfMaker m = with_material({{"pbrMetallicRoughness", matt},

@@ -5,35 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <regex>
 #include <set>
 
-#include "scenedesc/readers.h"
-#include "support/scene_file.h"
+#include "round_trip.h"
 
 namespace lumirank::scenedesc {
 namespace {
-
-// The listing without the head and made-up names.
-std::string listing(const SceneDesc& scene) {
-  std::string text = describe(scene);
-  text.erase(0, text.find(", depth"));
-  text.erase(text.rfind('\n'));
-  return std::regex_replace(text, std::regex("\n  ([0-9]+) \"[^\"]*\":"), "\n  $1:");
-}
-
-struct RoundTrip {
-  WrittenScene first, second;
-  SceneDesc again;
-  RoundTrip(const SceneDesc& scene, const test::TemporaryFolder& folder) {
-    const std::string name = folder / "out.xml";
-    first = write_mitsuba(scene, name);
-    for (const WrittenFile& file : first.files)
-      std::ofstream(folder / file.name, std::ios::binary) << file.bytes;
-    again = parse_mitsuba(first.xml, name);
-    second = write_mitsuba(again, name);
-  }
-};
 
 TEST(MitsubaWriter, ExamplesComeBackAsTheyWere) {
   for (const char* name : {"box", "courtyard", "interior", "lamps", "recesses"}) {

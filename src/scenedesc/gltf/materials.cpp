@@ -72,19 +72,16 @@ int Reader::two_sided(const Element& at, int bsdf) { return add_bsdf(at, TwoSide
 int Reader::transmitting_bsdf(const Element& material, const Surface& s, const Element& transmission) {
   const FloatInput share =
       float_input(transmission, "transmissionFactor", 0, "transmissionTexture", TextureChannel::red);
-  const auto volume = material.extension("KHR_materials_volume");
-  const bool solid = volume && volume->real("thicknessFactor", 0, 0) > 0;
   const bool opaque_part = !is_constant(share, 1) || !is_constant(s.metallic, 0);
   const int opaque = opaque_part ? two_sided(material, opaque_bsdf(material, s)) : kNone;
   int clear = kNone;
-  if (solid) {
+  if (volume_of(material)) {
     DielectricDesc glass;
     glass.eta = s.ior;
     glass.specular_transmittance = s.base;
     glass.distribution = Distribution::ggx;
     glass.alpha_u = glass.alpha_v = s.alpha;
     clear = add_bsdf(material, glass);
-    if (volume->has("attenuationDistance")) warn(*volume, "absorption inside a volume", "a clear one");
   } else {
     if (!(s.roughness.texture == kNone && s.roughness.value <= 0.1f))
       warn(material, "rough transmission through a thin surface", "smooth transmission");
@@ -196,6 +193,7 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
     out.emission = s.base;
   } else {
     out.bsdf = lit_bsdf(material, s);
+    out.medium = medium_of(material);
     out.emission = emission_of(material);
     if (material.has("occlusionTexture"))
       note(material, "baked occlusion, which light transport makes by itself, is left out");

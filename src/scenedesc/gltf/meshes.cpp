@@ -220,6 +220,7 @@ void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
       shape.where = primitive.where();
       shape.to_world = place;
       shape.bsdf = built.bsdf;
+      if (built.medium != kNone) shape.media = {true, built.medium, kNone};
       shape.kind = InlineMeshDesc{data, primitive.path()};
       if (built.emission) shape.emitter = AreaEmitterDesc{*built.emission, shape.id, primitive.where()};
       scene_.shapes.push_back(std::move(shape));

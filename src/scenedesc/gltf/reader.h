@@ -2,8 +2,10 @@
 // is in a file of its own.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -76,6 +78,7 @@ class Reader : public SceneReader {
   // materials.cpp: `colored` if the primitive has vertex colors. kNone: the default material.
   struct BuiltMaterial {
     int bsdf = kNone;
+    int medium = kNone;  // inside
     int uv_set = 0;
     std::optional<ColorInput> emission;
     std::string name;
@@ -96,6 +99,10 @@ class Reader : public SceneReader {
   int cut_out(const Element& material, const Element& metallic_roughness, int base);
   int mix(const Element& at, FloatInput weight, int one, int other);  // weight · one + (1 - weight) · other
   int add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind);
+
+  // media.cpp
+  std::optional<Element> volume_of(const Element& material);  // the extension, if the material is of a solid
+  int medium_of(const Element& material);  // what fills it; kNone: nothing that absorbs light
 
   // textures.cpp: each takes a textureInfo and returns an index into the scene's textures.
   int build_texture(const Element& info, bool raw, TextureChannel channel);
@@ -123,6 +130,7 @@ class Reader : public SceneReader {
   std::map<std::tuple<std::string, bool, int, std::vector<float>>, int> built_textures_;
   std::map<std::size_t, BitmapTextureDesc> built_images_;
   std::map<std::pair<std::string, int>, std::shared_ptr<const MeshData>> built_meshes_;
+  std::map<std::array<float, 3>, int> built_media_;  // by extinction
 };
 
 // The rotation of a quaternion (x, y, z, w) of any length but zero, which is an InputError at `where`.

@@ -201,6 +201,7 @@ void Reader::build_emitter(const Element& element) {
     return;
   }
   p.ignore({"sampling_weight"});
+  p.take_all("medium");  // the surfaces around a light say in what it is
   p.finish();
   scene_.emitters.push_back(std::move(out));
 }

@@ -72,6 +72,11 @@ bool Plugin::has_object(const std::string& tag) const {
                      [&](const Child& c) { return c.target->tag == tag; });
 }
 
+bool Plugin::names_object(const std::string& name, const std::string& tag) const {
+  return std::any_of(children_.begin(), children_.end(),
+                     [&](const Child& c) { return c.name == name && c.target->tag == tag; });
+}
+
 SourceLocation Plugin::where_of(const std::string& name) const {
   for (const Child& child : children_)
     if (child.name == name) return child.element->where;

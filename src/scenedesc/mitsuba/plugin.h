@@ -25,6 +25,7 @@ class Plugin {
 
   bool has(const std::string& name) const;
   bool has_object(const std::string& tag) const;
+  bool names_object(const std::string& name, const std::string& tag) const;
   SourceLocation where_of(
       const std::string& name) const;  // of the property, or of the plugin if there is none
 

@@ -86,8 +86,9 @@ void Reader::build_top_level(const Element& element) {
   } else if (tag == "integrator") {
     build_integrator(element);
   } else if (tag == "medium") {
-    warn(element.where, "participating media (<medium type=\"" + element.require("type") + "\">)",
-         "empty space");
+    build_medium(element);
+  } else if ((tag == "phase" || tag == "volume") && element.find("id")) {
+    // Built where it is referred to.
   } else if (tag == "sampler" || tag == "film" || tag == "rfilter" || tag == "phase" || tag == "volume" ||
              tag == "subsurface" || tag == "ref") {
     warn(element.where, "a <" + tag + "> directly in the scene", "");

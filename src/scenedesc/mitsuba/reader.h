@@ -33,6 +33,7 @@ class Reader : public SceneReader {
   int build_texture(const Element& element);
   int build_bsdf(const Element& element);
   int build_shape(const Element& element, bool in_group);
+  int build_medium(const Element& element);  // kNone: it was left out
   void build_emitter(const Element& element);
   void build_sensor(const Element& element);
   void build_integrator(const Element& element);
@@ -40,6 +41,8 @@ class Reader : public SceneReader {
   // <texture type="uniform|srgb|blackbody|d65|…"> and <spectrum type="…"> hold one color.
   bool constant_texture(const Element& element, Intent intent, Rgb& value);
   AreaEmitterDesc area_emitter(const Element& element);
+  VolumeInput volume_input(const Element& element);
+  std::vector<PhaseLobeDesc> phase_function(const Element& element);
 
   // Names are relative to the folder of the file that says them.
   NamedFile file(const std::string& name, const SourceLocation& where, const std::string& kind,
@@ -54,10 +57,11 @@ class Reader : public SceneReader {
   ShapeGroupDesc shape_group(Plugin& p);
   InstanceDesc shape_instance(Plugin& p);
   void add_surface(Plugin& p, ShapeDesc& shape);  // its BSDF and its light
+  void add_media(Plugin& p, ShapeDesc& shape);    // media.cpp
 
   const Document& document_;
   std::map<std::string, const Element*> ids_;
-  std::unordered_map<const Element*, int> textures_, bsdfs_, groups_;
+  std::unordered_map<const Element*, int> textures_, bsdfs_, groups_, volumes_, media_;
   std::set<const Element*> open_;  // being built: a reference to one of them is a loop
   std::set<const Element*> used_area_emitters_;
 

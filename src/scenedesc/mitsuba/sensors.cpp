@@ -190,6 +190,7 @@ void Reader::build_sensor(const Element& element) {
   }
   const float open = p.number("shutter_open", 0), close = p.number("shutter_close", 0);
   if (close != open) warn(p.where_of("shutter_close"), "a shutter that is open for a while", "one instant");
+  if (const Element* medium = p.take_one("medium")) out.medium = build_medium(*medium);
   p.ignore({"srf"});
   p.finish();
   scene_.sensors.push_back(std::move(out));

@@ -82,6 +82,7 @@ AreaEmitterDesc Reader::area_emitter(const Element& element) {
   out.where = p.where();
   out.radiance = p.radiance("radiance", Rgb(1));
   p.ignore({"sampling_weight"});
+  p.take_all("medium");  // the shape says what is around it
   p.finish();
   used_area_emitters_.insert(&element);
   return out;
@@ -124,6 +125,7 @@ void Reader::add_surface(Plugin& p, ShapeDesc& shape) {
     shape.bsdf = add_bsdf("", p.where(), DiffuseDesc{{Rgb(0), kNone}});
   else if (shape.bsdf == kNone && dialect().camel_case() && p.has_object("medium"))
     shape.bsdf = add_bsdf("", p.where(), NullBsdfDesc{});
+  add_media(p, shape);
 }
 
 int Reader::build_shape(const Element& element, bool in_group) {

@@ -7,9 +7,6 @@ namespace lumirank::scenedesc::mitsuba {
 void Plugin::warn_unused(const Child& child) {
   const std::string& tag = child.target->tag;
   const std::string as = child.name.empty() ? "" : " \"" + child.name + "\"";
-  if (tag == "medium")
-    return reader_.warn(child.element->where, "participating media (the medium" + as + " of " + title() + ")",
-                        "empty space");
   if (tag == "subsurface")
     return reader_.warn(child.element->where, "subsurface scattering of " + title(),
                         "the surface's own BSDF");

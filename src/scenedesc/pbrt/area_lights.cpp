@@ -1,6 +1,7 @@
 // What an area light does to a shape.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scenedesc/pbrt/shape_kinds.h"
 
@@ -74,6 +75,7 @@ ShapeDesc back_of(const ShapeDesc& front) {
   constexpr float kGap = 1e-4f;
   ShapeDesc out = front;
   out.flip_normals = !front.flip_normals;
+  std::swap(out.media.inside, out.media.outside);
   const float side = front.flip_normals ? 1 : -1;
   if (auto* sphere = std::get_if<SphereDesc>(&out.kind)) {
     sphere->radius *= 1 + side * kGap;

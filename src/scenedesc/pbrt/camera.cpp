@@ -37,6 +37,7 @@ void Reader::read_camera(Params& p, const std::string& type) {
   has_camera_ = true;
   camera_.type = type;
   camera_.where = p.where();
+  camera_.medium = use_medium(state_.outside);
   const auto inverse = state_.at_start.inverse(), inverse_at_end = state_.at_end.inverse();
   if (!inverse || !inverse_at_end)
     throw InputError(p.where(), "the camera's transform is singular", "a Scale by 0 perhaps");
@@ -179,6 +180,7 @@ void Reader::finish_camera() {
 
   SensorDesc out;
   out.where = camera_.where;
+  out.medium = camera_.medium;
   out.film = film_;
   out.samples_per_pixel = samples_;
   if (!camera_.aspect && camera_.window.empty()) out.kept_axis = FieldAxis::smaller;

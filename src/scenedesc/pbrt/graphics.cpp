@@ -173,12 +173,13 @@ bool Reader::state_directive(Tokens& tokens, const Token& word) {
     state_.bsdf = named_material(take_text(tokens, word, "name"), where);
   } else if (name == "MakeNamedMedium") {
     const std::string medium = take_text(tokens, word, "name");
-    take_params(tokens, word, medium, "medium");
-    warn_once(where, "participating media (MakeNamedMedium)", "empty space");
+    Params p = take_params(tokens, word, medium, "medium");
+    name_medium(p, medium);
+    p.finish();
   } else if (name == "MediumInterface") {
-    take_text(tokens, word, "medium");
-    if (tokens.peek().kind == Token::Kind::text) tokens.take();
-    // What the media are has been warned about where they are made.
+    state_.inside = state_.outside = medium_slot(take_text(tokens, word, "medium"), where);
+    if (tokens.peek().kind == Token::Kind::text)
+      state_.outside = medium_slot(std::string(tokens.take().value), where);
   } else {
     return false;
   }

@@ -252,6 +252,7 @@ void Reader::finish() {
       throw InputError(material.first_use, "the material " + in_quotes(name) + " is not defined",
                        "define it with MakeNamedMaterial");
   check_mixtures();
+  resolve_media();
   for (const auto& [index, name] : pending_instances_) {
     ShapeDesc& shape = scene_.shapes[static_cast<std::size_t>(index)];
     const auto found = objects_.find(name);

@@ -27,7 +27,8 @@ struct AreaLight {
 struct GraphicsState {
   Transform at_start, at_end;  // of the shutter: they differ for what moves (ActiveTransform)
   bool reverse = false;
-  int bsdf = kNone;  // kNone: pbrt's default, made when it is needed
+  int bsdf = kNone;                     // kNone: pbrt's default, made when it is needed
+  int inside = kNone, outside = kNone;  // MediumInterface: slots of Reader::media_
   std::shared_ptr<const AreaLight> light;
   bool start_active = true, end_active = true;  // which of them directives change
   ColorSpace space = ColorSpace::srgb;
@@ -72,6 +73,10 @@ class Reader : public SceneReader {
   void end_object(const Place& where);
   void read_instance(const std::string& name, const Place& where);
 
+  // media.cpp: names are slots until everything is read, as media may be used before they are defined.
+  int medium_slot(const std::string& name, const Place& where);  // kNone: "", which is empty space
+  void name_medium(Params& p, const std::string& name);
+
   // lights.cpp
   void read_light(Params& p, const std::string& type);
   void read_area_light(Params& p, const std::string& type);
@@ -96,6 +101,7 @@ class Reader : public SceneReader {
     Transform to_world;
     std::optional<float> aspect;
     std::vector<float> window;
+    int medium = kNone;  // a slot
     float fov = 90, lens_radius = 0, focal_distance = 1e6f, exposure_time = 1;
   };
 
@@ -124,6 +130,11 @@ class Reader : public SceneReader {
   int masked(Params& p, int bsdf);
   void add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light);
 
+  int make_medium(Params& p, const std::string& name);  // kNone: it was left out
+  int use_medium(int slot);                             // returns it
+  MediumInterfaceDesc current_media();                  // of slots
+  void resolve_media();
+
   const std::string main_file_;
 
   GraphicsState state_;
@@ -149,6 +160,14 @@ class Reader : public SceneReader {
     Place first_use;
   };
   std::map<std::string, NamedMaterial> materials_;
+  struct NamedMedium {
+    std::string name;
+    Place first_use;
+    bool used = false, defined = false;  // used: by a shape or the camera
+    int medium = kNone;                  // an index into the scene's media
+  };
+  std::vector<NamedMedium> media_;
+  std::map<std::string, int> medium_slots_;
   std::map<std::pair<int, int>, int> masks_;  // (bsdf, opacity texture) → bsdf
   int default_bsdf_ = kNone;
 

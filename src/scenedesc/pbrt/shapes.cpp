@@ -16,8 +16,9 @@ bool is_null(const SceneDesc& scene, int bsdf) {
 bool joins(const ShapeDesc& last, const ShapeDesc& next) {
   const auto *a = std::get_if<CurvesDesc>(&last.kind), *b = std::get_if<CurvesDesc>(&next.kind);
   return a && b && a->basis == b->basis && last.bsdf == next.bsdf && last.to_world == next.to_world &&
-         last.flip_normals == next.flip_normals && last.in_group == next.in_group && !last.emitter &&
-         !next.emitter;
+         last.flip_normals == next.flip_normals && last.in_group == next.in_group &&
+         last.media.inside == next.media.inside && last.media.outside == next.media.outside &&
+         !last.emitter && !next.emitter;
 }
 
 void join(CurvesDesc& all, const CurvesDesc& more) {
@@ -50,6 +51,7 @@ void Reader::read_shape(Params& p, const std::string& type) {
   shape.where = p.where();
   shape.to_world = to_world(p.where());
   shape.flip_normals = state_.reverse;
+  shape.media = current_media();
   if (!shape.to_world.inverse())
     throw InputError(p.where(), "the transform of " + p.title() + " is singular", "a Scale by 0 perhaps");
   auto kind = make_shape(*this, p, type, shape.to_world);

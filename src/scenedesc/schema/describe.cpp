@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <memory>
 #include <type_traits>
 
 namespace lumirank::scenedesc {
@@ -201,6 +202,46 @@ std::string kind(const EmitterDesc& e) {
       e.kind);
 }
 
+std::string m(int index) { return index == kNone ? "none" : "medium " + std::to_string(index); }
+std::string show(const VolumeInput& input) {
+  if (input.volume == kNone) return show(input.value);
+  return (input.value == Rgb(1) ? "" : show(input.value) + " × ") + "volume " + std::to_string(input.volume);
+}
+std::string show(const PhaseLobeDesc& lobe) {
+  if (is_black(lobe.g)) return "isotropic";
+  return (lobe.kind == PhaseLobeDesc::Kind::schlick ? "schlick " : "hg ") + show(lobe.g);
+}
+
+std::string kind(const VolumeDesc& v) {
+  constexpr const char* kSamplings[] = {", from face to face", "", ", fading at the faces"};
+  const auto show_grid = Overloaded{
+      [](const GridFileDesc& x) { return "grid " + x.filename + (x.use_grid_box ? ", in its own box" : ""); },
+      [](const std::shared_ptr<const GridData>& x) {
+        const auto& [nx, ny, nz] = x->size;
+        std::string text = "grid of " + std::to_string(nx) + " × " + std::to_string(ny) + " × " +
+                           std::to_string(nz) + (x->channels == 1 ? " numbers" : " colors");
+        if (!(x->lo == Vec3f{0, 0, 0} && x->hi == Vec3f{1, 1, 1}))
+          text += ", box " + show(x->lo) + " to " + show(x->hi);
+        return text;
+      }};
+  return std::visit(show_grid, v.kind) + kSamplings[static_cast<int>(v.sampling)] +
+         (v.nearest ? ", nearest" : "") + show(v.to_world);
+}
+
+std::string kind(const MediumDesc& medium) {
+  std::string text =
+      medium.form == MediumDesc::Form::extinction_and_albedo
+          ? "extinction " + show(medium.extinction) + ", albedo " + show(medium.albedo)
+          : "absorption " + show(medium.absorption) + ", scattering " + show(medium.scattering);
+  if (!is_black(medium.emission.value)) text += ", emission " + show(medium.emission);
+  text += ", phase function ";
+  if (medium.phase.empty()) return text + "isotropic";
+  if (medium.phase.size() == 1) return text + show(medium.phase[0]);
+  for (std::size_t k = 0; k < medium.phase.size(); ++k)
+    text += (k == 0 ? "" : " and ") + num(medium.phase[k].weight) + " of " + show(medium.phase[k]);
+  return text;
+}
+
 std::string head(std::size_t index, const std::string& id) {
   return "  " + std::to_string(index) + (id.empty() ? "" : " \"" + id + "\"") + ": ";
 }
@@ -219,6 +260,7 @@ std::string show(const SensorDesc& s) {
     text += ", aperture " + num(s.aperture_radius) + ", focus " + num(s.focus_distance);
   text += std::string(", filter ") + filters[static_cast<int>(f.filter.kind)];
   if (s.samples_per_pixel > 0) text += ", " + std::to_string(s.samples_per_pixel) + " samples per pixel";
+  if (s.medium != kNone) text += ", in " + m(s.medium);
   return text + show(s.to_world);
 }
 
@@ -240,10 +282,18 @@ std::string describe(const SceneDesc& scene) {
   text += std::to_string(scene.bsdfs.size()) + " BSDFs\n";
   for (std::size_t i = 0; i < scene.bsdfs.size(); ++i)
     text += head(i, scene.bsdfs[i].id) + kind(scene.bsdfs[i]) + "\n";
+  // Most scenes have neither.
+  if (!scene.volumes.empty()) text += std::to_string(scene.volumes.size()) + " volumes\n";
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+    text += head(i, scene.volumes[i].id) + kind(scene.volumes[i]) + "\n";
+  if (!scene.media.empty()) text += std::to_string(scene.media.size()) + " media\n";
+  for (std::size_t i = 0; i < scene.media.size(); ++i)
+    text += head(i, scene.media[i].id) + kind(scene.media[i]) + "\n";
   text += std::to_string(scene.shapes.size()) + " shapes\n";
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const ShapeDesc& s = scene.shapes[i];
     text += head(i, s.id) + kind(s) + (s.bsdf == kNone ? "" : ", " + b(s.bsdf)) +
+            (s.media.divides ? ", inside " + m(s.media.inside) + ", outside " + m(s.media.outside) : "") +
             (s.flip_normals ? ", normals flipped" : "") + (s.in_group ? ", in a group" : "") +
             (s.emitter ? ", radiance " + show(s.emitter->radiance) : "") + show(s.to_world) + "\n";
   }

@@ -10,6 +10,7 @@
 #include "base/photometry.h"
 #include "scenedesc/schema/bsdfs.h"
 #include "scenedesc/schema/emitters.h"
+#include "scenedesc/schema/media.h"
 #include "scenedesc/schema/sensor.h"
 #include "scenedesc/schema/shapes.h"
 #include "scenedesc/schema/textures.h"
@@ -38,6 +39,8 @@ struct SceneDesc {
   double lumens_per_unit = kLumensPerUnit;
   std::vector<TextureDesc> textures;
   std::vector<BsdfDesc> bsdfs;
+  std::vector<VolumeDesc> volumes;
+  std::vector<MediumDesc> media;
   std::vector<ShapeDesc> shapes;
   std::vector<EmitterDesc> emitters;
   std::vector<SensorDesc> sensors;  // at least one after a successful read

@@ -38,6 +38,7 @@ struct SensorDesc {
   float focus_distance = 1;
   float near_clip = 1e-2f, far_clip = 1e4f;
   Vec2f principal_point_offset;  // in fractions of the film
+  int medium = -1;               // around the camera, an index into SceneDesc::media; -1: empty space
   FilmDesc film;
   int samples_per_pixel = 0;  // 0: not stated
 };

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/transform.h"
 #include "base/vec.h"
+#include "scenedesc/schema/media.h"
 #include "scenedesc/schema/mesh.h"
 #include "scenedesc/schema/textures.h"
 
@@ -82,6 +83,7 @@ struct ShapeDesc {
   Transform to_world;
   bool flip_normals = false;
   int bsdf = kNone;  // kNone: the default diffuse BSDF
+  MediumInterfaceDesc media;
   std::optional<AreaEmitterDesc> emitter;
   bool in_group = false;  // a member of a shape group: not in the world by itself
   std::variant<MeshFileDesc, RectangleDesc, CubeDesc, SphereDesc, DiskDesc, CylinderDesc, CurvesDesc,

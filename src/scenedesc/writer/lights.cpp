@@ -162,6 +162,7 @@ void MitsubaWriter::sensor(const SensorDesc& s) {
   }
   xml_.number("near_clip", std::max(s.near_clip, kNearest)), xml_.number("far_clip", s.far_clip);
   xml_.transform("to_world", s.to_world);
+  if (s.medium != kNone) xml_.reference(medium_ids_[static_cast<std::size_t>(s.medium)]);
   xml_.open("film", {{"type", "hdrfilm"}});
   xml_.integer("width", s.film.width), xml_.integer("height", s.film.height);
   if (s.film.crop_width > 0) {

@@ -17,7 +17,7 @@ struct WrittenFile {
 
 struct WrittenScene {
   std::string xml;
-  std::vector<WrittenFile> files;  // meshes, pictures and curves that the description itself holds
+  std::vector<WrittenFile> files;  // meshes, pictures, volumes and curves that the description itself holds
   // What Mitsuba 3 cannot say, and what is written in its place.
   std::vector<Warning> warnings;
 };
@@ -39,8 +39,8 @@ struct Painter {
 };
 
 // `filename` (OUT.xml) only names: files that the scene refers to are named relative to its folder, and those
-// of `files` begin with its stem. Nothing is written. Reads mesh files whose normals are to be made anew and
-// IES profiles; InputError if one cannot be read.
+// of `files` begin with its stem. Nothing is written. Reads mesh files whose normals are to be made anew, IES
+// profiles and volumes; InputError if one cannot be read.
 WrittenScene write_mitsuba(const SceneDesc& scene, const std::string& filename, const Painter& painter = {});
 
 // Every file that the description names.

@@ -168,6 +168,7 @@ void MitsubaWriter::shape(int index) {
   if (!group && !instance) {
     if (s.flip_normals) xml_.flag("flip_normals", true);
     if (s.bsdf != kNone) xml_.reference(bsdf_ids_[static_cast<std::size_t>(s.bsdf)]);
+    divided_media(s.media);
     if (s.emitter) {
       if (s.emitter->id.empty() || s.emitter->id == s.id)
         xml_.open("emitter", {{"type", "area"}});

@@ -5,7 +5,10 @@
 namespace lumirank::scenedesc {
 
 MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename, const Painter& painter)
-    : scene_(scene), filename_(filename), painter_(painter) {
+    : scene_(scene),
+      filename_(filename),
+      painter_(painter),
+      volumes_(scene.volumes.begin(), scene.volumes.end()) {
   // Names that the scene states are kept before any is made up.
   const auto name_all = [&](const auto& list, const char* what, std::vector<std::string>& ids) {
     ids.assign(list.size(), {});
@@ -17,15 +20,19 @@ MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename
   name_all(scene.shapes, "shape_", shape_ids_);
   name_all(scene.bsdfs, "bsdf_", bsdf_ids_);
   name_all(scene.textures, "texture_", texture_ids_);
+  name_all(scene.volumes, "volume_", volume_ids_);
+  name_all(scene.media, "medium_", medium_ids_);
 }
 
 WrittenScene MitsubaWriter::write() {
   xml_.open("scene", {{"version", "3.0.0"}});
-  xml_.open("integrator", {{"type", "path"}});
+  // Mitsuba's path tracer does not see media.
+  xml_.open("integrator", {{"type", scene_.media.empty() ? "path" : "volpathmis"}});
   xml_.integer("max_depth", scene_.max_depth);
   xml_.close();
   if (scene_.lumens_per_unit != kLumensPerUnit)
     warn({scene_.source_file, 0}, "photometric units", "the numbers as they are, which stand for W/nm there");
+  for (std::size_t k = 0; k < scene_.media.size(); ++k) medium(static_cast<int>(k));
   for (const SensorDesc& s : scene_.sensors) sensor(s);
   const bool surrounded = environment();
   for (const EmitterDesc& e : scene_.emitters)
@@ -82,6 +89,8 @@ std::vector<std::string> files_of(const SceneDesc& scene) {
       files.push_back(bitmap->filename);
   for (const BsdfDesc& b : scene.bsdfs)
     for_each_file(b.kind, [&](const FileInput& file) { files.push_back(file.name); });
+  for (const VolumeDesc& v : scene.volumes)
+    if (const auto* grid = std::get_if<GridFileDesc>(&v.kind)) files.push_back(grid->filename);
   for (const ShapeDesc& s : scene.shapes) {
     if (const auto* mesh = std::get_if<MeshFileDesc>(&s.kind)) {
       files.push_back(mesh->filename);

@@ -1,11 +1,14 @@
 // The state of one conversion. Internal to this folder.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scenedesc/writer/mitsuba_writer.h"
 #include "scenedesc/writer/xml.h"
@@ -75,6 +78,29 @@ class MitsubaWriter {
   void lossless_plastic(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id);
   void blend_rest(const MixtureDesc& d, std::size_t from, double sum, const std::string& id);
 
+  // media.cpp
+  // A volume's numbers, in its box: what VolumeDesc::to_world is applied to.
+  struct VolumeNumbers {
+    std::shared_ptr<const GridData> grid;
+    bool floats = true;  // as a file, which Mitsuba 3 then reads
+  };
+  struct MediumInputs {  // their volumes are indices into volumes_
+    VolumeInput extinction, albedo;
+  };
+  const VolumeNumbers& numbers(const VolumeDesc& volume);
+  // The index of a new one: where `volume` is, with these numbers.
+  int add_volume(VolumeDesc volume, GridData grid);
+  int centered(int volume, bool ends);
+  int times(int volume, Rgb factor);
+  MediumInputs extinction_and_albedo(const MediumDesc& medium);
+  MediumInputs sum_of_grids(const MediumDesc& medium);
+  void volume(int index);
+  // The lobes of a medium from one on, whose weights add up to `sum`. name: in what they are part of.
+  void phase_function(const MediumDesc& medium, std::size_t from, double sum, const char* name);
+  void phase_lobe(const MediumDesc& medium, const PhaseLobeDesc& lobe, Xml::Attributes attributes);
+  void medium(int index);
+  void divided_media(const MediumInterfaceDesc& media);
+
   // shapes.cpp
   void shape(int index);
   void mesh(const MeshFileDesc& file, const std::string& id);
@@ -96,12 +122,18 @@ class MitsubaWriter {
   std::filesystem::path filename_;
   Xml xml_;
   WrittenScene out_;
-  std::vector<std::string> texture_ids_, bsdf_ids_, shape_ids_;
+  std::vector<std::string> texture_ids_, bsdf_ids_, volume_ids_, medium_ids_, shape_ids_;
   std::set<std::string> taken_, warned_;
   const Painter& painter_;
   std::map<int, std::optional<BitmapTextureDesc>> painted_;
-  std::vector<int> asked_;                     // textures that something reads
-  std::set<int> written_;                      // of these
+  std::vector<int> asked_;          // textures that something reads
+  std::set<int> written_;           // of these
+  std::deque<VolumeDesc> volumes_;  // the scene's, and those that are made of them: these stay where they are
+  std::map<const GridData*, VolumeNumbers> numbers_;
+  std::map<std::pair<std::string, bool>, VolumeNumbers>
+      file_numbers_;  // by name and GridFileDesc::use_grid_box
+  std::map<int, int> centered_;
+  std::set<int> written_volumes_;
   Vec3d origin_;                               // of the positions of the mesh or curves written last
   std::map<const void*, std::string> stored_;  // meshes and pictures that are used more than once
 };

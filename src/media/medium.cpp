@@ -1,0 +1,129 @@
+#include "media/medium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lumirank::media {
+namespace {
+
+constexpr int kMaxCells = 32;  // of the bounds, along each axis
+constexpr int kPlacesPerCell = 4;
+
+Rgb not_negative(Rgb c) { return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)}; }
+
+// Bounds of c·x for x within [least, most].
+void add_scaled(ExtinctionBounds::Range& out, const Grid::Range& values, Rgb scale) {
+  for (int c = 0; c < 3; ++c) {
+    out.least[c] += scale[c] * std::max(0.0f, values.least[c]);
+    out.most[c] += scale[c] * std::max(0.0f, values.most[c]);
+  }
+}
+
+}  // namespace
+
+Medium::Medium(Form form, Field first, Field second, Field emission, const PhaseFunction& phase)
+    : form_(form),
+      first_(std::move(first)),
+      second_(std::move(second)),
+      emission_(std::move(emission)),
+      phase_(phase) {
+  const bool sum = form == Form::absorption_and_scattering;
+  if (!first_.grid && !(sum && second_.grid)) return;
+  const Field& box = first_.grid ? first_ : second_;
+  to_unit_ = box.to_unit;
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size[axis] = std::clamp(box.grid->size()[axis] / kPlacesPerCell, 1, kMaxCells);
+  std::vector<ExtinctionBounds::Range> cells;
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y)
+      for (int x = 0; x < size[0]; ++x) {
+        const Vec3f n{static_cast<float>(size[0]), static_cast<float>(size[1]), static_cast<float>(size[2])};
+        const Vec3f at{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+        const Vec3f lo{at.x / n.x, at.y / n.y, at.z / n.z};
+        const Vec3f hi{(at.x + 1) / n.x, (at.y + 1) / n.y, (at.z + 1) / n.z};
+        ExtinctionBounds::Range range{};
+        add_scaled(range, first_.grid ? first_.grid->range(lo, hi) : Grid::Range{Rgb(1), Rgb(1)},
+                   first_.scale);
+        if (sum)
+          add_scaled(range, second_.grid ? second_.grid->range(lo, hi) : Grid::Range{Rgb(1), Rgb(1)},
+                     second_.scale);
+        // What interpolation rounds is not to pass the bounds.
+        cells.push_back({range.least * (1 - 1e-5f), range.most * (1 + 1e-5f)});
+      }
+  bounds_.emplace(size, std::move(cells));
+}
+
+Coefficients Medium::at(Vec3f place) const {
+  Coefficients out;
+  const Rgb first = not_negative(first_.at(place)), second = not_negative(second_.at(place));
+  if (form_ == Form::extinction_and_albedo) {
+    out.extinction = first;
+    out.scattering = first * clamp_below(second, 1);
+  } else {
+    out.extinction = first + second;
+    out.scattering = second;
+  }
+  if (emits()) out.emission = emission_.at(place);
+  return out;
+}
+
+std::size_t Medium::memory_bytes() const { return sizeof(Medium) + (bounds_ ? bounds_->memory_bytes() : 0); }
+
+Medium::Walk::Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_max)
+    : medium_(medium), t_end_(t_max) {
+  if (medium.homogeneous()) return;
+  const Vec3f o = medium.to_unit_.point(origin), d = medium.to_unit_.vector(direction);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (d[axis] == 0) {
+      if (!(o[axis] >= 0 && o[axis] <= 1)) t_end_ = -1;
+      continue;
+    }
+    const float a = (0 - o[axis]) / d[axis], b = (1 - o[axis]) / d[axis];
+    t_ = std::max(t_, std::min(a, b));
+    t_end_ = std::min(t_end_, std::max(a, b));
+  }
+  if (!(t_ < t_end_)) {
+    done_ = true;
+    return;
+  }
+  const auto& size = medium.bounds_->size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto count = size[static_cast<std::size_t>(axis)];
+    const auto n = static_cast<float>(count);
+    const float p = (o[axis] + t_ * d[axis]) * n;
+    cell_[axis] = std::clamp(static_cast<int>(p), 0, count - 1);
+    step_[axis] = d[axis] > 0 ? 1 : (d[axis] < 0 ? -1 : 0);
+    if (step_[axis] == 0) {
+      next_t_[axis] = delta_t_[axis] = kInfinity;
+      continue;
+    }
+    const float face = static_cast<float>(cell_[axis] + (step_[axis] > 0 ? 1 : 0)) / n;
+    next_t_[axis] = (face - o[axis]) / d[axis];
+    delta_t_[axis] = 1 / (n * std::abs(d[axis]));
+  }
+}
+
+bool Medium::Walk::next(Piece& piece) {
+  if (done_) return false;
+  if (medium_.homogeneous()) {
+    const Rgb extinction = medium_.at({}).extinction;
+    piece = {0, t_end_, extinction, extinction};
+    done_ = true;
+    return true;
+  }
+  const int axis =
+      next_t_[0] < next_t_[1] ? (next_t_[0] < next_t_[2] ? 0 : 2) : (next_t_[1] < next_t_[2] ? 1 : 2);
+  const float end = std::min(t_end_, std::max(t_, next_t_[axis]));
+  const auto& cell = medium_.bounds_->cell(cell_[0], cell_[1], cell_[2]);
+  piece = {t_, end, cell.least, cell.most};
+  t_ = end;
+  cell_[axis] += step_[axis];
+  next_t_[axis] += delta_t_[axis];
+  const int count = medium_.bounds_->size()[static_cast<std::size_t>(axis)];
+  if (!(t_ < t_end_) || cell_[axis] < 0 || cell_[axis] >= count) done_ = true;
+  return true;
+}
+
+}  // namespace lumirank::media

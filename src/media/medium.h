@@ -1,0 +1,91 @@
+// Participating media: what they absorb, scatter and add along a ray. Everything is in units of the world;
+// coefficients are per length of it, for each channel.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/bounds.h"
+#include "base/rgb.h"
+#include "media/grid.h"
+#include "media/phase.h"
+
+namespace lumirank::media {
+
+// What a medium is at one place.
+struct Coefficients {
+  Rgb extinction, scattering;
+  Rgb emission;  // radiance added for each length
+};
+
+// Of the extinction in the cells of a coarse grid over a medium's box.
+class ExtinctionBounds {
+ public:
+  struct Range {
+    Rgb least, most;
+  };
+  ExtinctionBounds(std::array<int, 3> size, std::vector<Range> cells)
+      : size_(size), cells_(std::move(cells)) {}
+  const std::array<int, 3>& size() const { return size_; }
+  const Range& cell(int x, int y, int z) const {
+    return cells_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
+  }
+  std::size_t memory_bytes() const { return cells_.size() * sizeof(Range); }
+
+ private:
+  std::array<int, 3> size_;
+  std::vector<Range> cells_;
+};
+
+class Medium {
+ public:
+  // What is given: extinction and albedo, or absorption and scattering.
+  enum class Form : std::uint8_t { extinction_and_albedo, absorption_and_scattering };
+
+  // first, second: as the form says. Fields of lengths' coefficients that have grids are 0 outside of them.
+  Medium(Form form, Field first, Field second, Field emission, const PhaseFunction& phase);
+
+  const PhaseFunction& phase() const { return phase_; }
+  bool homogeneous() const { return !bounds_; }
+  bool emits() const { return !emission_.zero(); }
+  // Somewhere, perhaps.
+  bool scatters() const {
+    return !second_.zero() && (form_ == Form::absorption_and_scattering || !first_.zero());
+  }
+  Coefficients at(Vec3f place) const;
+
+  // The cells that a ray passes, one after the other, with bounds of the extinction in them; what it passes
+  // before, between and after is empty. A homogeneous medium is one cell.
+  class Walk {
+   public:
+    struct Piece {
+      float begin = 0, end = 0;
+      Rgb least, most;  // extinction
+    };
+    // `direction`: unit.
+    Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_max);
+    bool next(Piece& piece);
+
+   private:
+    const Medium& medium_;
+    bool done_ = false;
+    float t_ = 0, t_end_ = 0;
+    int cell_[3]{}, step_[3]{};
+    float next_t_[3]{}, delta_t_[3]{};
+  };
+
+  std::size_t memory_bytes() const;  // without its grids, which media may share
+
+ private:
+  friend class Walk;
+  Form form_;
+  Field first_, second_, emission_;
+  PhaseFunction phase_;
+  std::optional<ExtinctionBounds> bounds_;
+  Transform to_unit_;  // of the box of bounds_
+};
+
+}  // namespace lumirank::media

@@ -1,0 +1,97 @@
+// Flights through media: where a path collides, and what of the light arrives.
+//
+// Woodcock et al. 1965 (delta tracking). Novák, Selle, Jarosz, "Residual ratio tracking for estimating
+// attenuation in participating media", 2014. Colors: Wilkie et al., "Hero wavelength spectral sampling",
+// 2014, for media Miller, Georgiev, Jarosz, "A null-scattering path integral formulation of light transport",
+// 2019.
+#pragma once
+
+#include <cmath>
+
+#include "media/medium.h"
+
+namespace lumirank::media {
+
+// What is carried along a path whose distances are drawn for one channel, the hero: its throughput for that
+// choice, and how much likelier each other channel would have made the same path. Its contribution is
+// weight(), the balance heuristic over the three choices.
+struct ChannelThroughput {
+  Rgb throughput{1};
+  Rgb likelihood{1};  // relative to the hero's
+
+  void multiply(Rgb value) { throughput *= value; }
+  Rgb weight() const { return throughput / mean(likelihood); }
+  // An event that the channels would have made with densities `density`, and that transports `value`.
+  void event(Rgb value, Rgb density, int hero) {
+    const float one = 1 / density[hero];
+    throughput *= value * one;
+    likelihood *= density * one;
+  }
+};
+
+inline Rgb exp_minus(Rgb x) { return {std::exp(-x.r), std::exp(-x.g), std::exp(-x.b)}; }
+
+// exp(-extinction · distance), where 0 · ∞ is 0.
+inline Rgb passed(Rgb extinction, float distance) {
+  Rgb out{1};
+  for (int c = 0; c < 3; ++c)
+    if (extinction[c] > 0) out[c] = std::exp(-extinction[c] * distance);
+  return out;
+}
+
+// A path's way from `origin` along unit `direction` to `t_max` (may be infinite) through a medium: places
+// where it collides with something, real or not, are drawn by the hero's bound of the extinction. At each
+//   visit(t, at, bound) -> bool: whether it flies on
+// where `path` has been brought to the place but not made to collide: the densities are bound per length.
+// With `at`, the coefficients there. Returns whether the end was reached; `path` is brought there. `random()`
+// gives numbers in [0, 1).
+template <typename Random, typename Visit>
+bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int hero, Random&& random,
+         ChannelThroughput& path, Visit&& visit) {
+  Medium::Walk walk(medium, origin, direction, t_max);
+  Medium::Walk::Piece piece;
+  while (walk.next(piece)) {
+    float t = piece.begin;
+    const Rgb bound = piece.most;
+    while (true) {
+      const float step = bound[hero] > 0 ? -std::log1p(-random()) / bound[hero] : kInfinity;
+      if (!(t + step < piece.end)) {
+        const Rgb through = passed(bound, piece.end - t);
+        if (is_black(through)) return false;  // an endless medium, or one that lets nothing through
+        path.event(through, through, hero);
+        break;
+      }
+      t += step;
+      const Rgb through = passed(bound, step);
+      path.event(through, through, hero);
+      if (!visit(t, medium.at(origin + direction * t), bound)) return false;
+    }
+  }
+  return true;
+}
+
+// An unbiased estimate of the transmittance over a distance; exact where the medium is homogeneous. All
+// channels share their random places.
+template <typename Random>
+Rgb transmittance(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, Random&& random) {
+  Medium::Walk walk(medium, origin, direction, t_max);
+  Medium::Walk::Piece piece;
+  Rgb out{1};
+  while (walk.next(piece)) {
+    // What is there at least is known; the rest is tracked.
+    out *= passed(piece.least, piece.end - piece.begin);
+    const Rgb rest = piece.most - piece.least;
+    const float bound = max_component(rest);
+    if (!(bound > 0)) continue;
+    for (float t = piece.begin;;) {
+      t += -std::log1p(-random()) / bound;
+      if (!(t < piece.end)) break;
+      const Rgb more = medium.at(origin + direction * t).extinction - piece.least;
+      out *= Rgb(1) - more * (1 / bound);
+      if (is_black(out)) return out;
+    }
+  }
+  return out;
+}
+
+}  // namespace lumirank::media

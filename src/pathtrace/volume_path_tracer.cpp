@@ -1,0 +1,204 @@
+#include "pathtrace/volume_path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scatter/closure.h"
+
+namespace lumirank::pathtrace {
+
+using scatter::Closure;
+using scatter::LobeKind;
+using scatter::Lobes;
+
+// The state of a path between two vertices.
+struct VolumePathTracer::Walk {
+  SampleStream random;
+  geometry::Ray ray;  // of unit direction
+  int hero;           // the channel that distances are drawn for
+  int medium;         // that the path is in, -1: none
+  media::ChannelThroughput path;
+  int segments = 1;            // so far, the current one included; straight passes do not count
+  int non_delta_vertices = 0;  // passed
+  bool specular = true;        // the last vertex was specular (or the eye)
+  float pdf = 0;               // of the direction taken at the last non-delta vertex
+  emitters::LitPoint from{};   // that vertex
+  float traveled = 0;          // since then
+  float eta_scale = 1;         // undoes refraction's scaling for Russian roulette
+  Radiance sum{};
+
+  void add(Rgb value) {
+    Rgb& part =
+        non_delta_vertices == 0 ? sum.emission : (non_delta_vertices == 1 ? sum.direct : sum.indirect);
+    part += value;
+  }
+};
+
+VolumePathTracer::VolumePathTracer(const world::World& world, std::uint64_t seed, int max_depth,
+                                   int eye_medium)
+    : world_(world), lights_(world), seed_(seed), max_depth_(max_depth), eye_medium_(eye_medium) {}
+
+Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
+  Walk walk{.random = SampleStream(seed_, Stage::reference, pixel, sample),
+            .ray = ray,
+            .hero = 0,
+            .medium = eye_medium_,
+            .path = {}};
+  walk.ray.direction = normalize(ray.direction);
+  const float longer = length(ray.direction);
+  walk.ray.t_min *= longer, walk.ray.t_max *= longer;
+  walk.hero = std::min(2, static_cast<int>(3 * walk.random.next_float()));
+  for (int step = 0; step < world::kMaxPasses; ++step) {
+    const auto hit = world_.intersect(walk.ray);
+    const float distance = hit ? hit->hit.t : kInfinity;
+    const Flight flight = fly(walk, distance);
+    if (flight == Flight::ended) break;
+    if (flight == Flight::scattered) continue;
+    if (hit) walk.traveled += distance;
+    add_emission(walk, hit ? &*hit : nullptr);
+    if (!hit || !scatter_on_surface(walk, *hit)) break;
+  }
+  return walk.sum;
+}
+
+// The way to the next surface: arrived there, or scattered before it (and the ray is a new one).
+VolumePathTracer::Flight VolumePathTracer::fly(Walk& walk, float distance) const {
+  if (walk.medium < 0) return Flight::arrived;
+  const media::Medium& medium = world_.media()[static_cast<std::size_t>(walk.medium)];
+  bool scattered = false;
+  const auto random = [&walk] { return walk.random.next_float(); };
+  const bool arrived =
+      media::fly(medium, walk.ray.origin, walk.ray.direction, distance, walk.hero, random, walk.path,
+                 [&](float t, const media::Coefficients& at, Rgb bound) {
+                   if (medium.emits()) {
+                     media::ChannelThroughput shining = walk.path;
+                     shining.event(at.emission, bound, walk.hero);
+                     walk.add(shining.weight());
+                   }
+                   const Rgb null = bound - at.extinction;
+                   if (walk.random.next_float() * bound[walk.hero] >= at.extinction[walk.hero]) {
+                     if (!(null[walk.hero] > 0)) return true;  // by rounding alone
+                     walk.path.event(null, null, walk.hero);
+                     return true;
+                   }
+                   walk.path.event(at.scattering, at.extinction, walk.hero);
+                   walk.traveled += t;
+                   scattered = scatter_in_medium(walk, walk.ray.origin + walk.ray.direction * t, at);
+                   return false;
+                 });
+  if (arrived) return Flight::arrived;
+  return scattered ? Flight::scattered : Flight::ended;
+}
+
+bool VolumePathTracer::scatter_in_medium(Walk& walk, Vec3f place, const media::Coefficients& at) const {
+  if (is_black(at.scattering)) return false;
+  if (max_depth_ >= 0 && walk.segments >= max_depth_) return false;
+  const media::PhaseFunction& phase = world_.media()[static_cast<std::size_t>(walk.medium)].phase();
+  const Vec3f forward = walk.ray.direction;
+  ++walk.non_delta_vertices;
+  walk.from = {place, Vec3f{}, true};
+
+  const auto [u_light, u_lobe] = walk.random.next_fine();
+  const auto light = lights_.sample(walk.from, u_light, walk.random.next_2d());
+  if (light.pdf > 0) {
+    const Rgb f = phase.eval(dot(forward, light.direct.direction));
+    const auto random = [&walk] { return walk.random.next_float(); };
+    const Rgb visible =
+        world::pass_straight(world_,
+                             {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium},
+                             false, random)
+            .left;
+    const float pdf = light.direct.delta ? 0.0f : f[walk.hero];
+    walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));
+  }
+
+  const Vec3f next = phase.sample(forward, walk.hero, u_lobe, walk.random.next_2d());
+  const Rgb f = phase.eval(dot(forward, next));
+  if (!(f[walk.hero] > 0)) return false;
+  walk.path.event(f, f, walk.hero);
+  walk.pdf = f[walk.hero];
+  walk.specular = false;
+  walk.traveled = 0;
+  ++walk.segments;
+  walk.ray = {place, next};
+  return survives(walk);
+}
+
+// What shines at the end of the current segment, weighted against light sampling (balance heuristic).
+void VolumePathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
+  const Vec3f direction = walk.ray.direction;
+  Rgb emitted{0};
+  float light_pdf = 0;
+  if (hit) {
+    if (hit->emitter < 0) return;
+    emitted = world_.emitted(*hit, -direction);
+    if (!walk.specular && !is_black(emitted))
+      light_pdf = lights_.pdf_hit(walk.from, *hit, direction, walk.traveled);
+  } else {
+    if (world_.environment() >= 0) {
+      emitted = world_.background(direction);
+      if (!walk.specular) light_pdf = lights_.pdf_background(walk.from, direction);
+    }
+    // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
+    if (walk.specular) emitted += world_.sun_disc(direction);
+  }
+  if (is_black(emitted)) return;
+  const float weight = walk.specular ? 1.0f : walk.pdf / (walk.pdf + light_pdf);
+  walk.add(walk.path.weight() * emitted * weight);
+}
+
+// Light sampling and the next direction; false ends the path.
+bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& hit) const {
+  const bool may_continue = max_depth_ < 0 || walk.segments < max_depth_;
+  const Vec3f wo = -walk.ray.direction;
+  Closure closure = world_.materials().closure(hit.material, hit.point, wo);
+  if (walk.non_delta_vertices == 0) scatter::face_viewer(closure, wo);  // as rows are
+  const auto [u_light, u_lobe] = walk.random.next_fine();
+  if (closure.has_non_delta() && may_continue) {
+    walk.from = world::lit_point(hit.point.position, closure, wo);
+    const auto light = lights_.sample(walk.from, u_light, walk.random.next_2d());
+    const Vec3f wi = light.direct.direction;
+    const Rgb f = light.pdf > 0 ? scatter::eval(closure, wo, wi) : Rgb{0};
+    if (!is_black(f)) {
+      const int medium = world_.medium_beyond(hit, wi, walk.medium);
+      const auto random = [&walk] { return walk.random.next_float(); };
+      const Rgb visible =
+          world::pass_straight(world_, {hit.point.position, hit.point.ng, wi, light.direct.distance, medium},
+                               false, random)
+              .left;
+      const float pdf = light.direct.delta ? 0.0f : scatter::pdf(closure, wo, wi, Lobes::all);
+      ++walk.non_delta_vertices;
+      walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));
+      --walk.non_delta_vertices;
+    }
+  }
+
+  const auto next = scatter::sample(closure, wo, u_lobe, walk.random.next_2d(), Lobes::all);
+  if (!next || is_black(next->weight)) return false;
+  walk.path.multiply(next->weight);
+  const bool pass = next->delta && next->kind == LobeKind::delta_pass;
+  if (!pass) {
+    if (!may_continue) return false;
+    ++walk.segments;
+    walk.traveled = 0;
+    walk.eta_scale *= next->eta * next->eta;
+    walk.specular = next->delta;
+    walk.pdf = next->pdf;
+    if (!next->delta) ++walk.non_delta_vertices;
+    if (!survives(walk)) return false;
+  }
+  walk.medium = world_.medium_beyond(hit, next->wi, walk.medium);
+  walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), normalize(next->wi)};
+  return true;
+}
+
+// Russian roulette; false ends the path.
+bool VolumePathTracer::survives(Walk& walk) const {
+  if (walk.segments <= 5) return true;
+  const float survival = std::min(0.95f, max_component(walk.path.weight()) * walk.eta_scale);
+  if (walk.random.next_float() >= survival) return false;
+  walk.path.multiply(Rgb(1 / survival));
+  return true;
+}
+
+}  // namespace lumirank::pathtrace

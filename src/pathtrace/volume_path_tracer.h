@@ -1,0 +1,44 @@
+// Ground truth where there are participating media: a unidirectional path tracer that also scatters within
+// them, with next-event estimation and multiple importance sampling. Like PathTracer it shares no estimator
+// with the methods.
+//
+// Distances are drawn for one channel of each path and weighted over all three (media/tracking.h). Light
+// sampling and directions are weighted against each other by their solid angles alone: both estimate the same
+// transmittance, so leaving it out of the weights keeps them a partition of one.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "media/tracking.h"
+#include "pathtrace/path_tracer.h"
+#include "world/straight_path.h"
+
+namespace lumirank::pathtrace {
+
+class VolumePathTracer {
+ public:
+  // `eye_medium`: around the camera, -1: empty space. max_depth as in PathSettings; scattering in a medium is
+  // a vertex.
+  VolumePathTracer(const world::World& world, std::uint64_t seed, int max_depth, int eye_medium);
+
+  // As PathTracer::trace; scattering in a medium is a non-specular vertex, and what a medium emits is
+  // emission.
+  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
+
+ private:
+  struct Walk;
+  enum class Flight { arrived, scattered, ended };
+  Flight fly(Walk& walk, float distance) const;
+  bool scatter_in_medium(Walk& walk, Vec3f place, const media::Coefficients& at) const;
+  void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
+  bool scatter_on_surface(Walk& walk, const world::SurfaceHit& hit) const;
+  bool survives(Walk& walk) const;
+
+  const world::World& world_;
+  world::LightSampler lights_;
+  std::uint64_t seed_;
+  int max_depth_, eye_medium_;
+};
+
+}  // namespace lumirank::pathtrace
