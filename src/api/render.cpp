@@ -15,6 +15,7 @@
 #include "pipeline/error_advice.h"
 #include "pipeline/exposure_run.h"
 #include "pipeline/layers.h"
+#include "pipeline/media_run.h"
 #include "pipeline/memory.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/render_run.h"
@@ -58,9 +59,12 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     pipeline::RenderTask task;
     task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
-    task.info = &pipeline::chosen_method(settings, &task.why);
+    const bool in_media = pipeline::some_scatter(scene.impl().desc) && !settings.view.is_open();
+    task.info = in_media ? &pipeline::chosen_method_in_media(settings, &task.why)
+                         : &pipeline::chosen_method(settings, &task.why);
     task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&
                       settings.method.target_error <= 0 && !task.info->contract.combination;
+    if (in_media) pipeline::check_media(*task.info, settings);
     pipeline::check_layers(*task.info, settings);
     methods::require_capabilities(*task.info, transport::SceneMatrix::kCapabilities);
     task.method = task.info->make(settings.method.parameters);
@@ -79,7 +83,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
       result = pipeline::run_exposure(instants, std::move(task), settings, sinks, on_preview);
       return;
     }
-    task.world = api::build_world(scene, sinks, {.refit = shot.refit ? shot.refit->get() : nullptr});
+    task.world = api::build_world(scene, sinks,
+                                  {.media = in_media, .refit = shot.refit ? shot.refit->get() : nullptr});
     if (shot.refit) *shot.refit = task.world;
     task.build_seconds = task.timer.seconds();
     if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty())
@@ -88,7 +93,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     if (sinks.cancelled()) throw Cancelled();
     pipeline::check_lights(*task.world, settings, pipeline::make_recipe(settings, task.view));
     task.lumens_per_unit = scene.impl().desc.lumens_per_unit;
-    result = pipeline::run_render(std::move(task), settings, sinks, on_preview);
+    result = in_media ? pipeline::run_in_media(std::move(task), settings, sinks, on_preview)
+                      : pipeline::run_render(std::move(task), settings, sinks, on_preview);
   });
   return result;
 }

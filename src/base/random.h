@@ -30,6 +30,8 @@ enum class Stage : std::uint32_t {
   gather_samples,
   film_samples,
   shutter,
+  ray_pairs,
+  passes,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

@@ -47,9 +47,9 @@ Arriving pass(const World& world, const StraightSegment& segment, Behind behind,
       ray.direction = (target - ray.origin) / way;
       ray.t_max = way * (1 - 1e-4f);  // what stands at the end must not block
     }
-    const auto hit = world.intersect(ray);
+    const auto hit = world.rays().intersect(ray);
     const bool opaque =
-        hit && world.materials().passage(hit->material) == scatter::MaterialSet::Passage::opaque;
+        hit && world.rays().placements()[hit->instance].blocking == geometry::Blocking::opaque;
     out.blocked |= opaque;
     if (opaque && behind == Behind::stop) {
       out.left = Rgb{0};
@@ -57,12 +57,13 @@ Arriving pass(const World& world, const StraightSegment& segment, Behind behind,
     }
     if (medium >= 0)
       out.left *= media::transmittance(world.media()[static_cast<std::size_t>(medium)], ray.origin,
-                                       ray.direction, hit ? hit->hit.t : way, random);
+                                       ray.direction, hit ? hit->t : way, random);
     if (!hit || is_black(out.left)) return out;
-    if (!opaque) out.left *= surface(*hit, ray.direction);
+    const SurfaceHit at = world.surface(*hit, ray.direction);
+    if (!opaque) out.left *= surface(at, ray.direction);
     if (is_black(out.left)) return out;
-    medium = world.medium_beyond(*hit, ray.direction, medium);
-    ray.origin = World::offset_origin(hit->point.position, hit->point.ng, ray.direction);
+    medium = world.medium_beyond(at, ray.direction, medium);
+    ray.origin = World::offset_origin(at.point.position, at.point.ng, ray.direction);
   }
   return {Rgb{0}, true};
 }

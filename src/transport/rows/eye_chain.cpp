@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "media/tracking.h"
 #include "transport/rows/receivers.h"
 
 namespace lumirank::transport {
@@ -60,6 +61,8 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
   v.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
   v.surface = static_cast<std::uint32_t>(mix64(s.chain ^ static_cast<std::uint64_t>(hit.material)) >> 32);
   v.distance = s.length + hit.hit.t;
+  v.medium[0] = static_cast<std::int16_t>(s.medium);
+  v.medium[1] = static_cast<std::int16_t>(world_.medium_beyond(hit, s.ray.direction, s.medium));
   v.closure = Receivers::kLambertian;
   if (closure.is_lambertian()) {
     v.albedo = closure.diffuse_color();
@@ -124,19 +127,68 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
                         s.vertices + 1,
                         mix64(s.id + 1 + numbers[k]),
                         chain,
-                        s.length + hit.hit.t});
+                        s.length + hit.hit.t,
+                        world_.medium_beyond(hit, next[k].wi, s.medium)});
   }
+}
+
+// Leaves rows along the way of the segment through its medium, takes from its weight what does not come
+// through, and returns what the medium itself emits towards the eye.
+Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& rng) {
+  const media::Medium& medium = world_.media()[static_cast<std::size_t>(s.medium)];
+  const auto random = [&rng] { return rng.next_float(); };
+  const Vec3f direction = normalize(s.ray.direction);
+  // Without a surface behind it a ray ends where the scene does.
+  if (!std::isfinite(length))
+    length = 2 * world_.bounds().radius() + lumirank::length(s.ray.origin - world_.bounds().center());
+  cut_points(medium, s.ray.origin, direction, length, settings_.segments, rng, cuts_);
+  cuts_.push_back(length);
+  Rgb emitted{0};
+  float from = 0;
+  // Light that scatters once more must not make the path too long.
+  const bool gathers = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
+  for (std::size_t k = 0; k < cuts_.size(); ++k) {
+    const Vec3f origin = s.ray.origin + direction * from;
+    const float part = cuts_[k] - from;
+    EyeSegment segment;
+    segment.origin = origin, segment.direction = direction, segment.length = part;
+    segment.weight = s.weight;
+    segment.id = mix64(s.id + 0x5e6ull + k);
+    segment.sample = sample;
+    segment.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
+    segment.medium = static_cast<std::int16_t>(s.medium);
+    Rgb weight = segment.weight;
+    if (gathers && medium.scatters() && roulette(weight, 0, rng)) {
+      segment.weight = weight;
+      segments_.push_back(segment);
+    }
+    if (medium.emits()) {
+      const float t = part * random();
+      emitted += s.weight * media::transmittance(medium, origin, direction, t, random) *
+                 medium.at(origin + direction * t).emission * part;
+    }
+    s.weight *= media::transmittance(medium, origin, direction, part, random);
+    from = cuts_[k];
+    if (is_black(s.weight)) break;
+  }
+  return emitted;
 }
 
 Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
                      std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first) {
   Rgb emission{0};
   pending_.clear();
-  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0, id, 0, 0});
+  segments_.clear();
+  if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0, id, 0, 0, settings_.eye_medium});
   for (bool from_eye = true; !pending_.empty(); from_eye = false) {
-    const Segment s = pending_.back();
+    Segment s = pending_.back();
     pending_.pop_back();
     const auto hit = world_.intersect(s.ray);
+    if (settings_.segments > 0 && s.medium >= 0) {
+      emission +=
+          cross_medium(s, hit ? hit->hit.t * lumirank::length(s.ray.direction) : kInfinity, sample, rng);
+      if (is_black(s.weight)) continue;
+    }
     if (!hit) {
       emission += s.weight * (world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
       continue;

@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
+#include "transport/rows/eye_segments.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -23,6 +24,7 @@ struct EyeVertex {
   float distance = 0;   // from the eye along the chain
   float roughness = 1;  // of its closure without delta lobes
   std::uint16_t depth = 0;
+  std::int16_t medium[2] = {-1, -1};  // on the side of wo, and on the other
 };
 
 // Receivers that are shaded alike stand together: same sort of material, directly seen or mirrored, and
@@ -38,6 +40,9 @@ struct FirstHit {
 struct ChainSettings {
   int max_depth = -1;
   int max_splits = 3;
+  // Participating media: the one around the camera (-1: none), and into how many parts a ray's way through
+  // one is cut at most; 0: they are not asked for.
+  int eye_medium = -1, segments = 0;
 };
 
 // Light that passes straight through (null surfaces, cut-outs, thin glass) meets no vertex: it counts neither
@@ -52,6 +57,8 @@ class EyeChain {
   // instead every vertex gets its directional albedo and roughness.
   Rgb follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
              std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first);
+  // What the last follow() passed of participating media.
+  const std::vector<EyeSegment>& segments() const { return segments_; }
 
  private:
   struct Segment {
@@ -63,15 +70,19 @@ class EyeChain {
     std::uint64_t id;
     std::uint64_t chain;  // hash of the specular vertices, straight passes excluded
     float length;         // of the segments before
+    int medium;
   };
   void add_receiver(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
                     std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool* pool) const;
+  Rgb cross_medium(Segment& s, float length, std::uint32_t sample, Rng& rng);
   void continue_from(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
                      Rng& rng);
 
   const world::World& world_;
   ChainSettings settings_;
   std::vector<Segment> pending_;  // reused between samples
+  std::vector<EyeSegment> segments_;
+  std::vector<float> cuts_;
 };
 
 }  // namespace lumirank::transport

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTilesAtOnce = 16;
 // What a surface must bring at least to the picture to be worth a receiver, as a share of a white pixel.
-constexpr float kMinShare = 0.004f;
+constexpr float kMinFilmShare = 0.004f;
 
 // Film samples of one pixel that see the same surface and have no receiver.
 struct Unlit {
@@ -141,7 +141,7 @@ class FilmReceivers {
                      [](const Unlit& a, const Unlit& b) { return a.weight > b.weight; });
     const auto room = static_cast<std::size_t>(std::ceil(kMaxAdded * static_cast<float>(settings_.spp)));
     for (std::size_t n = 0; n < std::min(room, unlit.size()); ++n)
-      if (unlit[n].weight >= kMinShare * static_cast<float>(settings_.film_samples))
+      if (unlit[n].weight >= kMinFilmShare * static_cast<float>(settings_.film_samples))
         add(eye, unlit[n], piece);
   }
 

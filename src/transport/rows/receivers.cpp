@@ -38,6 +38,7 @@ Crop crop_of(const world::Camera& camera, const ReceiverSettings& s) {
 // What one piece of tiles found, receivers already in their final order.
 struct Piece {
   std::vector<EyeVertex> vertices;
+  std::vector<EyeSegment> segments;
   scatter::ClosurePool pool;
 };
 
@@ -124,7 +125,8 @@ class ReceiverTracer {
 
   void trace_piece(std::size_t begin, std::size_t end) {
     Piece& piece = pieces_[begin / kTilesPerPiece];
-    EyeChain chain(world_, {settings_.max_depth, settings_.max_splits});
+    EyeChain chain(world_,
+                   {settings_.max_depth, settings_.max_splits, settings_.eye_medium, settings_.segments});
     for (std::size_t t = begin; t < end; ++t) {
       const auto first_of_tile = static_cast<std::ptrdiff_t>(piece.vertices.size());
       std::size_t sample = order_.tiles[t].first_pixel * spp();
@@ -154,6 +156,7 @@ class ReceiverTracer {
           chain.follow(camera_.ray(on_film, place.lens), sample_id(x, y, static_cast<std::uint64_t>(k)),
                        static_cast<std::uint32_t>(sample), rng, piece.vertices, &piece.pool,
                        settings_.first_hits ? &first : nullptr);
+      piece.segments.insert(piece.segments.end(), chain.segments().begin(), chain.segments().end());
       if (!settings_.first_hits) continue;
       result_.first_albedo[sample] = first.albedo;
       result_.first_normal[sample] = first.normal;
@@ -176,7 +179,13 @@ class ReceiverTracer {
     if (count >= 0xffffffffull)
       throw InputError("the film has " + std::to_string(count) + " receivers; at most 2^32 - 1 are possible",
                        "lower the samples per pixel or the size of the film");
-    result_.resize(count, settings_.film_samples > 0);
+    result_.resize(count, settings_.film_samples > 0, settings_.segments > 0);
+    std::size_t segments = 0;
+    for (const Piece& piece : pieces_) segments += piece.segments.size();
+    result_.segments.resize(segments);
+    segments = 0;
+    for (const Piece& piece : pieces_)
+      for (const EyeSegment& segment : piece.segments) result_.segments.set(segments++, segment);
     parallel_for(pieces_.size(), 1, [&](std::size_t p, std::size_t) {
       std::size_t i = first[p];
       for (EyeVertex& v : pieces_[p].vertices) {
@@ -222,11 +231,12 @@ Receivers trace_receivers(const world::World& world, const world::Camera& camera
   return with_film_receivers(world, camera, settings, {crop.x, crop.y}, std::move(receivers), sinks);
 }
 
-void Receivers::resize(std::size_t count, bool with_surface) {
+void Receivers::resize(std::size_t count, bool with_surface, bool with_media) {
   position.resize(count), normal.resize(count), ng.resize(count), wo.resize(count);
   weight.resize(count), albedo.resize(count);
   id.resize(count), sample.resize(count), closure.resize(count), depth.resize(count);
   surface.resize(with_surface ? count : 0);
+  media.resize(with_media ? count : 0);
 }
 
 EyeVertex Receivers::get(std::size_t i) const {
@@ -235,6 +245,7 @@ EyeVertex Receivers::get(std::size_t i) const {
   v.weight = weight[i], v.albedo = albedo[i];
   v.id = id[i], v.sample = sample[i], v.closure = closure[i], v.depth = depth[i];
   if (!surface.empty()) v.surface = surface[i];
+  if (!media.empty()) v.medium[0] = media[i][0], v.medium[1] = media[i][1];
   return v;
 }
 
@@ -243,6 +254,7 @@ void Receivers::set(std::size_t i, const EyeVertex& v) {
   weight[i] = v.weight, albedo[i] = v.albedo;
   id[i] = v.id, sample[i] = v.sample, closure[i] = v.closure, depth[i] = v.depth;
   if (!surface.empty()) surface[i] = v.surface;
+  if (!media.empty()) media[i] = {v.medium[0], v.medium[1]};
 }
 
 scatter::Closure Receivers::closure_at(std::size_t i) const {
@@ -255,9 +267,9 @@ std::uint32_t Receivers::key(std::size_t i) const { return static_cast<std::uint
 std::size_t Receivers::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(position) + bytes(normal) + bytes(ng) + bytes(wo) + bytes(weight) + bytes(id) + bytes(sample) +
-         bytes(depth) + bytes(closure) + bytes(albedo) + bytes(surface) + closures.memory_bytes() +
-         bytes(film) + bytes(emission) + bytes(first_albedo) + bytes(first_normal) + bytes(first_position) +
-         bytes(first_distance);
+         bytes(depth) + bytes(closure) + bytes(albedo) + bytes(surface) + bytes(media) +
+         segments.memory_bytes() + closures.memory_bytes() + bytes(film) + bytes(emission) +
+         bytes(first_albedo) + bytes(first_normal) + bytes(first_position) + bytes(first_distance);
 }
 
 Receivers white_receivers(const Receivers& seen) {

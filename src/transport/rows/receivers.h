@@ -1,6 +1,7 @@
 // Rows: the points that the film sees, at the end of specular chains from the eye.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "base/vec.h"
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
+#include "transport/rows/eye_segments.h"
 #include "world/camera.h"
 #include "world/world.h"
 
@@ -29,6 +31,8 @@ struct ReceiverSettings {
   // Of so many instants of an open shutter, the samples of one: each pixel's samples are spread evenly over
   // the instants, from a start of its own, so that every instant has 1/instants of them on average.
   int instants = 1, instant = 0;
+  // Of participating media, as in ChainSettings.
+  int eye_medium = -1, segments = 0;
 };
 
 struct EyeVertex;
@@ -51,7 +55,10 @@ struct Receivers {
   std::vector<std::uint32_t> closure;  // index into closures (not lambertian), or kLambertian
   std::vector<Rgb> albedo;             // of lambertian receivers: diffuse reflectance
   std::vector<std::uint32_t> surface;  // as in EyeVertex; empty without film samples of their own
-  scatter::ClosurePool closures;       // non-delta lobes only
+  // Participating media on the side of wo and on the other; empty where they are not asked for.
+  std::vector<std::array<std::int16_t, 2>> media;
+  EyeSegments segments;           // rows within them
+  scatter::ClosurePool closures;  // non-delta lobes only
   // The closure of any receiver, lambertian or not, without its delta lobes.
   scatter::Closure closure_at(std::size_t i) const;
 
@@ -79,7 +86,7 @@ struct Receivers {
   std::size_t memory_bytes() const;
 
   // All fields of one receiver; closures stay where they are.
-  void resize(std::size_t count, bool with_surface);
+  void resize(std::size_t count, bool with_surface, bool with_media = false);
   EyeVertex get(std::size_t i) const;
   void set(std::size_t i, const EyeVertex& vertex);
 };

@@ -1,0 +1,146 @@
+// Pictures of participating media by columns, against the volume path tracer.
+#include <gtest/gtest.h>
+
+#include "lumirank/lumirank.h"
+#include "support/scene_file.h"
+#include "support/statistics.h"
+
+namespace lumirank {
+namespace {
+
+using test::load_text;
+using test::mean_of;
+using test::normal_quantile;
+using test::point_camera;
+
+// A room of 2×2×2 with a lamp in its ceiling, filled with fog (the camera is in it), or with a ball of smoke.
+std::string room(const std::string& medium, bool fills) {
+  const auto wall = [&](const std::string& transform, const std::string& color) {
+    return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform +
+           "</transform><bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" +
+           color + "\"/></bsdf></bsdf></shape>";
+  };
+  std::string scene = medium;
+  std::string camera = point_camera("0,0.1,-0.9", "0,0,1", 8, 70);
+  if (fills) camera.insert(camera.find("<film"), "<ref id=\"fog\"/>");
+  scene += camera;
+  scene += wall("<translate z=\"1\"/>", "0.7, 0.7, 0.7");
+  scene += wall("<translate z=\"1\"/><rotate y=\"1\" angle=\"90\"/>", "0.7, 0.2, 0.2");
+  scene += wall("<translate z=\"1\"/><rotate y=\"1\" angle=\"-90\"/>", "0.2, 0.7, 0.2");
+  scene += wall("<translate z=\"1\"/><rotate x=\"1\" angle=\"90\"/>", "0.6, 0.6, 0.6");
+  scene += wall("<translate z=\"1\"/><rotate x=\"1\" angle=\"-90\"/>", "0.6, 0.6, 0.6");
+  scene += wall("<translate z=\"1\"/><rotate y=\"1\" angle=\"180\"/>", "0.5, 0.5, 0.5");
+  scene +=
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.4\"/><rotate x=\"1\" "
+      "angle=\"90\"/>"
+      "<translate y=\"0.98\"/></transform><bsdf type=\"diffuse\"/><emitter type=\"area\">"
+      "<rgb name=\"radiance\" value=\"8, 7, 5\"/></emitter></shape>";
+  if (!fills)
+    scene +=
+        "<shape type=\"sphere\"><float name=\"radius\" value=\"0.5\"/><bsdf type=\"null\"/>"
+        "<ref name=\"interior\" id=\"fog\"/></shape>";
+  return scene;
+}
+
+std::string fog(const std::string& sigma_t, double g) {
+  return "<medium type=\"homogeneous\" id=\"fog\"><rgb name=\"sigma_t\" value=\"" + sigma_t +
+         "\"/><rgb name=\"albedo\" value=\"0.9, 0.8, 0.7\"/><phase type=\"hg\"><float name=\"g\" value=\"" +
+         std::to_string(g) + "\"/></phase></medium>";
+}
+
+std::vector<double> values_of(const Picture& picture) {
+  return {picture.planes[0].rgb.begin(), picture.planes[0].rgb.end()};
+}
+
+// All columns, means over seeds, agree with the path tracer, in the mean over each of four blocks of the
+// picture.
+void expect_agreement(const std::string& text, LightPart only, const char* what) {
+  const Scene scene = load_text(text);
+  RenderSettings settings;
+  settings.view.only = only;
+  settings.view.spp = 4;
+  settings.view.max_depth = 5;
+  settings.method.name = "brute-force";
+  settings.lights.count = 300;
+  settings.lights.clamp = 0;
+  constexpr int kSeeds = 24;
+  std::vector<std::vector<double>> ours;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed);
+    ours.push_back(values_of(render(scene, settings).picture));
+  }
+  ReferenceSettings how;
+  how.spp = 512;
+  std::vector<std::vector<double>> truth;
+  for (int seed = 1; seed <= 8; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(100 + seed);
+    truth.push_back(values_of(reference(scene, settings, how).picture));
+  }
+  for (int block = 0; block < 4; ++block) {
+    const auto mean_in_block = [&](const std::vector<double>& picture) {
+      double sum = 0;
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x)
+          for (int c = 0; c < 3; ++c)
+            sum += picture[static_cast<std::size_t>(3 * ((y + block / 2 * 4) * 8 + x + block % 2 * 4) + c)];
+      return sum / 48;
+    };
+    std::vector<double> a, b;
+    for (const auto& picture : ours) a.push_back(mean_in_block(picture));
+    for (const auto& picture : truth) b.push_back(mean_in_block(picture));
+    const auto of_ours = mean_of(a), of_truth = mean_of(b);
+    EXPECT_NEAR(of_ours.mean, of_truth.mean,
+                normal_quantile(1e-4, 20) * std::hypot(of_ours.standard_error, of_truth.standard_error))
+        << what << ", block " << block;
+    // The test can tell: a tenth more would be seen.
+    EXPECT_LT(of_ours.standard_error, 0.05 * of_truth.mean) << what;
+  }
+}
+
+TEST(MediaRender, FogAgreesWithThePathTracer) {
+  expect_agreement(room(fog("0.5, 0.6, 0.8", 0), true), LightPart::direct, "direct light in fog");
+  expect_agreement(room(fog("0.5, 0.6, 0.8", 0), true), LightPart::indirect, "indirect light in fog");
+}
+
+TEST(MediaRender, ABallOfSmokeAgreesWithThePathTracer) {
+  expect_agreement(room(fog("1.5, 2, 3", 0.4), false), LightPart::all, "a ball of smoke");
+}
+
+TEST(MediaRender, RowsAndColumnsConvergeToAllColumns) {
+  const Scene scene = load_text(room(fog("0.5, 0.6, 0.8", 0), true));
+  RenderSettings settings;
+  settings.view.spp = 1;
+  settings.lights.count = 400;
+  settings.method.name = "brute-force";
+  const auto all = values_of(render(scene, settings).picture);
+  const auto error = [&](int columns) {
+    settings.method.name = "row-column-sampling";
+    settings.method.parameters = {{"rows", "100"}, {"columns", std::to_string(columns)}};
+    const auto some = values_of(render(scene, settings).picture);
+    double difference = 0, sum = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) difference += std::abs(all[k] - some[k]), sum += all[k];
+    return difference / sum;
+  };
+  const double few = error(40), many = error(300);
+  EXPECT_LT(many, 0.6 * few);
+  EXPECT_LT(many, 0.05);
+}
+
+TEST(MediaRender, SaysWhatItCannotDo) {
+  const Scene scene = load_text(room(fog("0.5, 0.6, 0.8", 0), true));
+  const auto refused = [&](auto&& change) {
+    RenderSettings settings;
+    settings.view.width = settings.view.height = 4;
+    settings.lights.count = 50;
+    change(settings);
+    EXPECT_THROW(render(scene, settings), InputError);
+  };
+  refused([](RenderSettings& s) { s.method.name = "slice-cuts"; });
+  refused([](RenderSettings& s) { s.layers = {"direct"}; });
+  refused([](RenderSettings& s) { s.traced.compensate = 4; });
+  refused([](RenderSettings& s) { s.lights.type = LightType::sphere; });
+  EXPECT_THROW(reference(scene, {}, {.spp = 1, .paths = ReferencePaths::rest}), InputError);
+}
+
+}  // namespace
+}  // namespace lumirank

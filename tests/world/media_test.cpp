@@ -1,0 +1,107 @@
+// Media of a built world: where they are, and in which units.
+#include <gtest/gtest.h>
+
+#include "world/scene_maker.h"
+
+namespace lumirank::world {
+namespace {
+
+using namespace test;
+
+// A cube of a medium behind a null surface, within a larger one that divides nothing.
+sd::SceneDesc cube_of_fog(double scale) {
+  sd::SceneDesc desc = empty_scene();
+  sd::MediumDesc fog;
+  fog.extinction.value = Rgb(static_cast<float>(3 / scale));
+  fog.albedo.value = Rgb(0.5f);
+  desc.media.push_back(fog);
+  const int null = add_bsdf(desc, sd::NullBsdfDesc{});
+  const int inner = add_shape(desc, sd::CubeDesc{}, Transform::scale(scale, scale, scale));
+  desc.shapes[static_cast<std::size_t>(inner)].bsdf = null;
+  desc.shapes[static_cast<std::size_t>(inner)].media = {true, 0, sd::kNone};
+  add_shape(desc, sd::CubeDesc{}, Transform::scale(4 * scale, 4 * scale, 4 * scale));
+  add_emitter(desc, sd::PointLightDesc{});
+  return desc;
+}
+
+World built(const sd::SceneDesc& desc, bool media, std::vector<sd::Warning>& warnings) {
+  return World::build(desc, {.media = media}, warnings);
+}
+
+TEST(Media, AreWhereSurfacesSay) {
+  std::vector<sd::Warning> warnings;
+  const World world = built(cube_of_fog(1), true, warnings);
+  const Vec3f direction = normalize(Vec3f{1, 0.2f, 0.3f});
+  EXPECT_EQ(world.medium_around({{0, 0, 0}, direction}, -1), 0);
+  EXPECT_EQ(world.medium_around({{0, 0, 2}, {0, 0, -1}}, -1), -1);
+  // No surface that divides is met: what is said to be everywhere.
+  EXPECT_EQ(world.medium_around({{0, 0, 2}, {0, 0, 1}}, 7), 7);
+  const auto hit = world.intersect({{0, 0, 0}, direction});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(world.medium_beyond(*hit, direction, 0), -1);
+  EXPECT_EQ(world.medium_beyond(*hit, -direction, -1), 0);
+  const auto wall = world.intersect({{0, 0, 2}, {0, 0, 1}});
+  ASSERT_TRUE(wall);
+  EXPECT_EQ(world.medium_beyond(*wall, {0, 0, -1}, 5), 5);
+}
+
+TEST(Media, AreAsThickInAnyUnits) {
+  for (const double scale : {1e-6, 1.0, 1e7}) {
+    std::vector<sd::Warning> warnings;
+    const World world = built(cube_of_fog(scale), true, warnings);
+    const double size = 2 * scale * world.units().scale();
+    const media::Coefficients at = world.media()[0].at(world.units().to_world(Vec3d{}));
+    EXPECT_NEAR(static_cast<double>(at.extinction.g) * size, 6, 1e-4) << scale;
+    EXPECT_NEAR(static_cast<double>(at.scattering.g) * size, 3, 1e-4) << scale;
+  }
+}
+
+TEST(Media, AGridIsWhereItsBoxIs) {
+  sd::SceneDesc desc = cube_of_fog(1e-6);
+  auto grid = std::make_shared<sd::GridData>();
+  grid->size = {2, 1, 1};
+  grid->values = {1, 3};
+  sd::VolumeDesc volume;
+  volume.sampling = sd::GridSampling::corners;
+  volume.to_world = Transform::scale(2e-6, 2e-6, 2e-6) * Transform::translate(-0.5, -0.5, -0.5);
+  volume.kind = std::shared_ptr<const sd::GridData>(grid);
+  desc.volumes.push_back(volume);
+  desc.media[0].extinction = {Rgb(1e6f), 0};
+  std::vector<sd::Warning> warnings;
+  const World world = built(desc, true, warnings);
+  EXPECT_TRUE(warnings.empty());
+  const auto thickness = [&](double x) {
+    const Vec3f place = world.units().to_world(Vec3d{x * 1e-6, 0, 0});
+    return static_cast<double>(world.media()[0].at(place).extinction.r) * world.units().scale() * 1e-6;
+  };
+  EXPECT_NEAR(thickness(-0.999), 1, 0.01);
+  EXPECT_NEAR(thickness(0), 2, 0.01);
+  EXPECT_NEAR(thickness(0.999), 3, 0.01);
+  EXPECT_EQ(thickness(1.1), 0);
+}
+
+TEST(Media, AreLeftOutWithAWarning) {
+  std::vector<sd::Warning> warnings;
+  const World world = built(cube_of_fog(1), false, warnings);
+  EXPECT_TRUE(world.media().empty());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].what.find("participating media"), std::string::npos);
+  EXPECT_EQ(world.medium_around({{0, 0, 0}, {1, 0, 0}}, -1), -1);
+}
+
+TEST(Media, NumbersThatMakeNoSenseAreToldOf) {
+  sd::SceneDesc desc = cube_of_fog(1);
+  desc.media[0].albedo.value = Rgb(1.5f);
+  std::vector<sd::Warning> warnings;
+  const World world = built(desc, true, warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].what.find("albedo"), std::string::npos);
+  EXPECT_EQ(world.media()[0].at({}).scattering, world.media()[0].at({}).extinction);
+  desc.media[0].extinction.value = Rgb(-1);
+  EXPECT_THROW(built(desc, true, warnings), InputError);
+  desc.media[0].extinction = {Rgb(1), 5};
+  EXPECT_THROW(built(desc, true, warnings), InputError);
+}
+
+}  // namespace
+}  // namespace lumirank::world
