@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pathtrace/found_emission.h"
 #include "scatter/closure.h"
 
 namespace lumirank::pathtrace {
@@ -126,25 +127,11 @@ bool VolumePathTracer::scatter_in_medium(Walk& walk, Vec3f place, const media::C
 
 // What shines at the end of the current segment, weighted against light sampling (balance heuristic).
 void VolumePathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
-  const Vec3f direction = walk.ray.direction;
-  Rgb emitted{0};
-  float light_pdf = 0;
-  if (hit) {
-    if (hit->emitter < 0) return;
-    emitted = world_.emitted(*hit, -direction);
-    if (!walk.specular && !is_black(emitted))
-      light_pdf = lights_.pdf_hit(walk.from, *hit, direction, walk.traveled);
-  } else {
-    if (world_.environment() >= 0) {
-      emitted = world_.background(direction);
-      if (!walk.specular) light_pdf = lights_.pdf_background(walk.from, direction);
-    }
-    // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
-    if (walk.specular) emitted += world_.sun_disc(direction);
-  }
-  if (is_black(emitted)) return;
-  const float weight = walk.specular ? 1.0f : walk.pdf / (walk.pdf + light_pdf);
-  walk.add(walk.path.weight() * emitted * weight);
+  const FoundEmission found = found_emission(world_, lights_, walk.specular ? nullptr : &walk.from, hit,
+                                             walk.ray.direction, walk.traveled);
+  if (is_black(found.radiance)) return;
+  const float weight = walk.specular ? 1.0f : walk.pdf / (walk.pdf + found.light_pdf);
+  walk.add(walk.path.weight() * found.radiance * weight);
 }
 
 // Light sampling and the next direction; false ends the path.

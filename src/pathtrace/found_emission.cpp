@@ -1,0 +1,24 @@
+#include "pathtrace/found_emission.h"
+
+namespace lumirank::pathtrace {
+
+FoundEmission found_emission(const world::World& world, const world::LightSampler& lights,
+                             const emitters::LitPoint* from, const world::SurfaceHit* hit, Vec3f direction,
+                             float distance) {
+  FoundEmission found;
+  if (hit) {
+    if (hit->emitter < 0) return found;
+    found.radiance = world.emitted(*hit, -direction);
+    if (from && !is_black(found.radiance)) found.light_pdf = lights.pdf_hit(*from, *hit, direction, distance);
+    return found;
+  }
+  if (world.environment() >= 0) {
+    found.radiance = world.background(direction);
+    if (from) found.light_pdf = lights.pdf_background(*from, direction);
+  }
+  // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
+  if (!from) found.radiance += world.sun_disc(direction);
+  return found;
+}
+
+}  // namespace lumirank::pathtrace
