@@ -152,7 +152,7 @@ TEST(VolFiles, DamageIsNoHarm) {
     std::string bytes = good;
     for (int change = 0; change < 3; ++change)
       bytes[static_cast<std::size_t>(rng.next_float() * static_cast<float>(bytes.size()))] =
-          static_cast<char>(rng.next_float() * 256);
+          static_cast<char>(rng.next_below(256));
     if (rng.next_float() < 0.2f) bytes.resize(static_cast<std::size_t>(rng.next_float() * 90));
     try {
       const GridData grid = parse_vol(bytes, "a.vol");
