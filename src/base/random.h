@@ -32,6 +32,7 @@ enum class Stage : std::uint32_t {
   shutter,
   ray_pairs,
   passes,
+  ray_places,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

@@ -123,8 +123,8 @@ class MediaRun {
     lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
     seconds_["lights"] += timer.seconds();
     timer = {};
-    matrix_ =
-        std::make_unique<transport::MediaMatrix>(*task_.world, rows_, lights_, matrix_settings(recipe_));
+    matrix_ = std::make_unique<transport::MediaMatrix>(
+        *task_.world, rows_, lights_, transport::MediaMatrixSettings{matrix_settings(recipe_)});
     seconds_["matrix"] += timer.seconds();
   }
 

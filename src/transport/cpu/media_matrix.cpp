@@ -43,13 +43,13 @@ struct MediaMatrix::Impl {
   std::vector<std::uint8_t> column_indirect, column_half;
   std::vector<Rgb> column_emitted;
 
-  Impl(const world::World& w, const Receivers& r, const LightsInMedia& l, const SceneMatrixSettings& s)
+  Impl(const world::World& w, const Receivers& r, const LightsInMedia& l, const MediaMatrixSettings& s)
       : world(w),
         receivers(r),
         lights(l),
-        settings(of_points(s)),
+        settings(of_points(s.scene)),
         points(w, r, l.points, settings),
-        pairs(w, r, l, {mix64(s.seed ^ 0x6d65646961ull), s.max_depth}),
+        pairs(w, r, l, {mix64(settings.seed ^ 0x6d65646961ull), settings.max_depth, s.shared_places}),
         surfaces(r.size()),
         segments(r.segments.size()),
         point_count(l.points.size()),
@@ -165,7 +165,7 @@ struct MediaMatrix::Impl {
 };
 
 MediaMatrix::MediaMatrix(const world::World& world, const Receivers& receivers, const LightsInMedia& lights,
-                         const SceneMatrixSettings& settings)
+                         const MediaMatrixSettings& settings)
     : impl_(std::make_unique<Impl>(world, receivers, lights, settings)) {}
 MediaMatrix::~MediaMatrix() = default;
 

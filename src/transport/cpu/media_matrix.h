@@ -3,8 +3,8 @@
 //
 // Rows: first the receivers, then their segments. Columns: first the points, then the rays. An entry with a
 // ray or a segment in it is an integral along it; it is estimated without bias by one place on each
-// (ray_sampling.h), drawn by numbers that belong to the pair, so that it is the same wherever it is asked
-// for. E holds what media and panes let pass, V is 0 or 1.
+// (ray_sampling.h), drawn by numbers that belong to the pair or to its column, so that it is the same
+// wherever it is asked for. E holds what media and panes let pass, V is 0 or 1.
 #pragma once
 
 #include <memory>
@@ -17,11 +17,16 @@
 
 namespace lumirank::transport {
 
+struct MediaMatrixSettings {
+  SceneMatrixSettings scene;
+  bool shared_places = false;  // as in MediaPairs::Settings
+};
+
 // Holds references: world, receivers and lights must outlive it.
 class MediaMatrix final : public matrix::LightingMatrix {
  public:
   MediaMatrix(const world::World& world, const Receivers& receivers, const LightsInMedia& lights,
-              const SceneMatrixSettings& settings);
+              const MediaMatrixSettings& settings);
   ~MediaMatrix() override;
 
   std::size_t rows() const override;

@@ -53,14 +53,14 @@ MediaPairs::Entry MediaPairs::ray_to_segment(std::size_t i, std::size_t j, matri
   const EyeSegments& rows = receivers_.segments;
   const RayLights& rays = lights_.rays;
   if (too_deep(rows.depth[i], rays.depth[j])) return {};
-  Rng rng = random_of(rows.id[i], rays.id[j]);
-  const auto random = [&rng] { return rng.next_float(); };
+  Numbers numbers = numbers_of(rows.id[i], rays.id[j]);
+  const auto random = [&numbers] { return numbers.tracking.next_float(); };
   const RayPlace on_ray = sample_near_line(rays.origin[j], rays.direction[j], rays.length[j], rows.origin[i],
-                                           rows.direction[i], random());
+                                           rows.direction[i], numbers.place());
   if (!(on_ray.pdf > 0)) return {};
   const Vec3f y = rays.origin[j] + rays.direction[j] * on_ray.t;
   const RayPlace on_segment =
-      sample_equiangular(rows.origin[i], rows.direction[i], rows.length[i], y, random());
+      sample_equiangular(rows.origin[i], rows.direction[i], rows.length[i], y, numbers.place());
   if (!(on_segment.pdf > 0)) return {};
   const Vec3f x = rows.origin[i] + rows.direction[i] * on_segment.t;
   const float d = length(y - x);
@@ -73,19 +73,19 @@ MediaPairs::Entry MediaPairs::ray_to_segment(std::size_t i, std::size_t j, matri
   if (is_black(value)) return {};
   value *= media::transmittance(there, rays.origin[j], rays.direction[j], on_ray.t, random) *
            media::transmittance(here, rows.origin[i], rows.direction[i], on_segment.t, random);
-  return connect(value, {x, Vec3f{}, w, d, rows.medium[i]}, part, rng);
+  return connect(value, {x, Vec3f{}, w, d, rows.medium[i]}, part, numbers.tracking);
 }
 
 MediaPairs::Entry MediaPairs::point_to_segment(std::size_t i, std::size_t j, matrix::Part part) const {
   const EyeSegments& rows = receivers_.segments;
   const VirtualLights& points = lights_.points;
   if (too_deep(rows.depth[i], points.depth[j])) return {};
-  Rng rng = random_of(rows.id[i], points.id[j]);
-  const auto random = [&rng] { return rng.next_float(); };
+  Numbers numbers = numbers_of(rows.id[i], points.id[j]);
+  const auto random = [&numbers] { return numbers.tracking.next_float(); };
   const bool far = points.kind[j] == LightKind::directional;
-  const RayPlace place = far ? RayPlace{random() * rows.length[i], 1 / rows.length[i]}
+  const RayPlace place = far ? RayPlace{numbers.place() * rows.length[i], 1 / rows.length[i]}
                              : sample_equiangular(rows.origin[i], rows.direction[i], rows.length[i],
-                                                  points.position[j], random());
+                                                  points.position[j], numbers.place());
   if (!(place.pdf > 0)) return {};
   const Vec3f x = rows.origin[i] + rows.direction[i] * place.t;
   const float d = far ? kInfinity : length(points.position[j] - x);
@@ -96,16 +96,17 @@ MediaPairs::Entry MediaPairs::point_to_segment(std::size_t i, std::size_t j, mat
               (1 / (place.pdf * (far ? 1.0f : d * d)));
   if (is_black(value)) return {};
   value *= media::transmittance(here, rows.origin[i], rows.direction[i], place.t, random);
-  return connect(value, {x, Vec3f{}, w, d, rows.medium[i]}, part, rng);
+  return connect(value, {x, Vec3f{}, w, d, rows.medium[i]}, part, numbers.tracking);
 }
 
 MediaPairs::Entry MediaPairs::ray_to_receiver(std::size_t i, std::size_t j, matrix::Part part) const {
   const RayLights& rays = lights_.rays;
   if (too_deep(receivers_.depth[i], rays.depth[j])) return {};
-  Rng rng = random_of(receivers_.id[i], rays.id[j]);
-  const auto random = [&rng] { return rng.next_float(); };
+  Numbers numbers = numbers_of(receivers_.id[i], rays.id[j]);
+  const auto random = [&numbers] { return numbers.tracking.next_float(); };
   const Vec3f x = receivers_.position[i];
-  const RayPlace place = sample_equiangular(rays.origin[j], rays.direction[j], rays.length[j], x, random());
+  const RayPlace place =
+      sample_equiangular(rays.origin[j], rays.direction[j], rays.length[j], x, numbers.place());
   if (!(place.pdf > 0)) return {};
   const Vec3f y = rays.origin[j] + rays.direction[j] * place.t;
   const float d = length(y - x);
@@ -119,12 +120,13 @@ MediaPairs::Entry MediaPairs::ray_to_receiver(std::size_t i, std::size_t j, matr
   if (is_black(value)) return {};
   value *= media::transmittance(there, rays.origin[j], rays.direction[j], place.t, random);
   const bool front = dot(receivers_.ng[i], w) >= 0;
-  return connect(value, {x, receivers_.ng[i], w, d, receivers_.media[i][front ? 0 : 1]}, part, rng);
+  return connect(value, {x, receivers_.ng[i], w, d, receivers_.media[i][front ? 0 : 1]}, part,
+                 numbers.tracking);
 }
 
 Rgb MediaPairs::media_between(std::size_t i, std::size_t j) const {
   const VirtualLights& points = lights_.points;
-  Rng rng = random_of(receivers_.id[i], points.id[j]);
+  Rng rng(settings_.seed, Stage::ray_pairs, receivers_.id[i], points.id[j]);
   const bool far = points.kind[j] == LightKind::directional;
   const Vec3f x = receivers_.position[i];
   const float d = far ? kInfinity : length(points.position[j] - x);

@@ -15,6 +15,10 @@ class MediaPairs {
   struct Settings {
     std::uint64_t seed = 1;
     int max_depth = -1;  // as in SceneMatrixSettings
+    // Where on a ray and on a segment an entry is estimated is decided by the column alone instead of by the
+    // pair: a column is a smooth function of its row, and the matrix of nearly as low a rank as without
+    // sampling. Each entry is without bias all the same.
+    bool shared_places = false;
   };
   MediaPairs(const world::World& world, const Receivers& receivers, const LightsInMedia& lights,
              const Settings& settings)
@@ -41,8 +45,16 @@ class MediaPairs {
   Rgb media_between(std::size_t receiver, std::size_t point) const;
 
  private:
-  Rng random_of(std::uint64_t row, std::uint64_t column) const {
-    return {settings_.seed, Stage::ray_pairs, row, column};
+  // The random numbers of an entry: those of tracking are the pair's, of places the pair's or the column's.
+  struct Numbers {
+    Rng tracking, of_column;
+    bool shared;
+    float place() { return shared ? of_column.next_float() : tracking.next_float(); }
+  };
+  Numbers numbers_of(std::uint64_t row, std::uint64_t column) const {
+    return {{settings_.seed, Stage::ray_pairs, row, column},
+            {settings_.seed, Stage::ray_places, column},
+            settings_.shared_places};
   }
   bool too_deep(int row, int light) const {
     return settings_.max_depth >= 0 && row + light + 1 > settings_.max_depth;
