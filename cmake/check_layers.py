@@ -24,7 +24,7 @@ ROOMS = {
     "scenedesc": ["base"],
     "world": ["scenedesc", "geometry", "scatter", "media", "emitters", "film"],
     "pathtrace": ["world"],
-    "transport": ["world", "matrix"],
+    "transport": ["world", "matrix", "linalg"],
     "settings": ["methods"],
     "pipeline": ["pathtrace", "transport", "methods", "settings"],
     "pages": ["image"],
@@ -36,7 +36,8 @@ ROOMS = {
 # in the room itself, and a file that lies there (a list of what there is) may include all folders.
 FOLDERS = {
     "transport": {
-        "rows": [],
+        "segments": [],
+        "rows": ["segments"],
         "lights": ["rows"],
         "pairs": ["lights"],
         "cpu": ["pairs"],

@@ -14,7 +14,8 @@ the whole motion instead of a chunk: it is measured against all of those as well
 it is measured against itself converged, and against the chunk's truth too. Flicker: mean over frames of ‖(I′ − I) − (R′ − R)‖ / ‖R‖.
 The path tracer's truth comes in two independent halves, so that its own noise counts neither as error nor as flicker.
 Table 2 has few columns (--columns), what is compared at equal time more (--equal-columns).
-Equal time: seconds of tensor clustering's whole process, loading and writing included, divided by the frames; the others' settings are found by trials on two frames.
+Equal time: seconds of tensor clustering's whole process, loading and writing included, divided by the frames; the others' settings are found by trials on two frames and
+put right once by the whole shot.
 OUT gets index.html, tables.md, images/ and parts/. What is finished with the same settings is not run again. --quick: small sizes, minutes instead of hours; its numbers show
 that the script works and nothing else.
 """
@@ -134,19 +135,23 @@ class Shot:
                 times[value] = self.trial(f"{what}_{value:.6g}", settings(value))
         return value
 
+    def at_equal_time(self, what, settings, first, most, described):
+        """Rendered with the fitted setting; once more where the whole shot, unlike the trials, is more than 5 % off the seconds."""
+        value, wanted = self.fitted(what, settings, first, most), self.rival()[2]
+        done = self.render(what, settings(value))
+        if abs(done[2] - wanted) > 0.05 * wanted and (other := min(most, value * wanted / done[2])) != value:
+            again = self.render(f"{what}_again", settings(other))
+            if abs(again[2] - wanted) < abs(done[2] - wanted):
+                value, done = other, again
+        return (*done, described(value))
+
     def row_column(self):
-        def make():
-            settings = lambda c: [*SAME_LIGHTS, "--method", "row-column-sampling", "--set", f"rows={self.of.rows}", "--set", f"columns={round(c)}"]
-            columns = self.fitted("row_column", settings, (200, 800), self.of.lights // 2)
-            return (*self.render("row_column", settings(columns)), f"{self.of.rows} rows, {round(columns)} columns")
-        return self.once("row-column", make)
+        settings = lambda c: [*SAME_LIGHTS, "--method", "row-column-sampling", "--set", f"rows={self.of.rows}", "--set", f"columns={round(c)}"]
+        return self.once("row-column", lambda: self.at_equal_time("row_column", settings, (200, 800), self.of.lights // 2, lambda c: f"{self.of.rows} rows, {round(c)} columns"))
 
     def slice_cuts(self):
-        def make():
-            settings = lambda q: [*SAME_LIGHTS, "--method", "slice-cuts", "--set", f"initial-columns={max(20, round(500 * q))}", "--set", f"alpha={min(1, 0.003 / q):.6g}"]
-            quality = self.fitted("slice_cuts", settings, (0.25, 1), 8)
-            return (*self.render("slice_cuts", settings(quality)), f"initial-columns {max(20, round(500 * quality))}, alpha {0.003 / quality:.3g}")
-        return self.once("slice-cuts", make)
+        settings = lambda q: [*SAME_LIGHTS, "--method", "slice-cuts", "--set", f"initial-columns={max(20, round(500 * q))}", "--set", f"alpha={min(1, 0.003 / q):.6g}"]
+        return self.once("slice-cuts", lambda: self.at_equal_time("slice_cuts", settings, (0.25, 1), 8, lambda q: f"initial-columns {max(20, round(500 * q))}, alpha {0.003 / q:.3g}"))
 
     def denoised(self):
         """(denoised frames, noisy frames, its own truth, seconds for a frame, what was done), or None without --mitsuba-python."""

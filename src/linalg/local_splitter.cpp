@@ -162,9 +162,12 @@ std::uint32_t LocalSplitter::cut(const Node& node) {
   return static_cast<std::uint32_t>(a);
 }
 
-void LocalSplitter::split_to(std::size_t clusters) {
+void LocalSplitter::split_to(std::size_t clusters, double enough) {
   finish_cluster();
-  while (nodes_.size() < clusters && !queue_.empty()) {
+  double weight = 0, remaining = cost();
+  for (const Node& node : nodes_) weight += node.weight;
+  const double least = enough * enough * weight * weight;
+  while (nodes_.size() < clusters && !queue_.empty() && !(enough > 0 && remaining <= least)) {
     std::pop_heap(queue_.begin(), queue_.end());
     const std::uint32_t n = queue_.back().node;
     queue_.pop_back();
@@ -175,6 +178,7 @@ void LocalSplitter::split_to(std::size_t clusters) {
     nodes_.push_back(node_of(at, whole.end, left + padded_ + 1));
     enqueue(n);
     enqueue(static_cast<std::uint32_t>(nodes_.size() - 1));
+    remaining += nodes_[n].cost + nodes_.back().cost - whole.cost;
   }
 }
 

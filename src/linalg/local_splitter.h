@@ -21,7 +21,8 @@ class LocalSplitter {
 
   // Always splits the cluster of highest cost, until there are `clusters` of them or as many as points.
   // Clusters of no cost (their members are parallel) come last, heaviest first. Deterministic.
-  void split_to(std::size_t clusters);
+  // enough: ends earlier, once the root of all clusters' cost is below this share of Σ‖x‖.
+  void split_to(std::size_t clusters, double enough = 0);
 
   std::size_t points() const { return ids_.size(); }
   std::size_t clusters() const { return nodes_.size(); }

@@ -66,6 +66,12 @@ struct MethodContract {
   // It knows what to do with rows and columns of several instants (RowFeatures::instant): others would let a
   // column stand for columns of other instants, of which a row has none.
   bool instants = false;
+  // What rays in media are to be for it.
+  enum class Segments {
+    pieces,  // eye rays in pieces
+    whole,   // eye rays as they are
+    groups   // eye rays and light rays in pieces that know their slices and their tree (RowFeatures::slice)
+  } segments = Segments::pieces;
 };
 // Of a method that asks for entries alone and gives such a combination.
 inline constexpr MethodContract kCombination{{}, true};

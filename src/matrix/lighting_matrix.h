@@ -38,7 +38,10 @@ struct RowFeatures {
   // Moment that it belongs to, by number, where a picture is of several; empty: all of one. Entries of rows
   // and columns of different instants are 0 (block_diagonal.h).
   std::span<const std::uint16_t> instant{};
+  // Rows of one number were found to be alike by whoever made them; kNoSlice: not told.
+  std::span<const std::uint32_t> slice{};
 };
+inline constexpr std::uint32_t kNoSlice = 0xffffffffu;
 
 // Plain numbers about columns. Arrays of length columns(); may be empty if unknown.
 struct ColumnFeatures {
@@ -55,7 +58,11 @@ struct ColumnFeatures {
       emitted;  // what `power` is a scalar of: entries of like columns are in this proportion
   std::span<const std::uint64_t> id{};       // as of rows
   std::span<const std::uint16_t> instant{};  // as of rows
+  // Place in a binary tree that whoever made the columns found: from the highest bit on, 0 is left and 1 is
+  // right. Columns of the same number are together in a leaf; kNoBranch: in no tree.
+  std::span<const std::uint64_t> branch{};
 };
+inline constexpr std::uint64_t kNoBranch = ~std::uint64_t{0};
 
 // The key of a row's or a column's random numbers: its id, or its index where ids are unknown.
 inline std::uint64_t id_of(std::span<const std::uint64_t> ids, std::size_t index) {

@@ -1,6 +1,8 @@
 // The list of methods.
 #include "base/error.h"
+#include "methods/adaptive_lightslice/adaptive_lightslice.h"
 #include "methods/brute_force/brute_force.h"
+#include "methods/column_completion/column_completion.h"
 #include "methods/instant_radiosity/instant_radiosity.h"
 #include "methods/lightcuts/lightcuts.h"
 #include "methods/lightslice/lightslice.h"
@@ -11,6 +13,7 @@
 #include "methods/sampling_recovery/sampling_recovery.h"
 #include "methods/slice_cuts/slice_cuts.h"
 #include "methods/stochastic_lightcuts/stochastic_lightcuts.h"
+#include "methods/virtual_ray_lights/virtual_ray_lights.h"
 #include "methods/visibility_completion/visibility_completion.h"
 
 namespace lumirank::methods {
@@ -45,7 +48,8 @@ const std::vector<MethodInfo>& all_methods() {
   static const std::vector<MethodInfo> methods =
       checked({brute_force_info(), instant_radiosity_info(), power_sampling_info(), row_column_info(),
                lightcuts_info(), multidimensional_lightcuts_info(), stochastic_lightcuts_info(),
-               lightslice_info(), sampling_recovery_info(), slice_cuts_info(), visibility_completion_info()});
+               lightslice_info(), sampling_recovery_info(), slice_cuts_info(), visibility_completion_info(),
+               column_completion_info(), adaptive_lightslice_info(), virtual_ray_lights_info()});
   return methods;
 }
 

@@ -13,6 +13,8 @@
 #include "pipeline/report.h"
 #include "transport/cpu/media_matrix.h"
 #include "transport/lights/ray_lights.h"
+#include "transport/lights/ray_tree.h"
+#include "transport/rows/eye_groups.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -64,6 +66,9 @@ class MediaRun {
   static constexpr std::size_t kLightsOfAPass = 4000;
   static constexpr int kSegmentsOfAPass = 4;
 
+  using Segments = matrix::MethodContract::Segments;
+  Segments of_method() const { return task_.info->contract.segments; }
+
   // Rows, columns and sums, with random numbers of their own; the picture so far is the mean of all.
   void pass() {
     const std::uint64_t number = static_cast<std::uint64_t>(passes_);
@@ -103,10 +108,18 @@ class MediaRun {
     const Timer timer;
     transport::ReceiverSettings settings = receiver_settings(recipe_, task_.view);
     settings.eye_medium = task_.view.sensor.medium,
-    settings.segments = asked_.time > 0 ? kSegmentsOfAPass : kSegmentsPerRay;
+    settings.segments = of_method() == Segments::whole                       ? 1
+                        : asked_.time > 0 && of_method() == Segments::pieces ? kSegmentsOfAPass
+                                                                             : kSegmentsPerRay;
     rows_ = transport::trace_receivers(*task_.world, world::Camera(task_.view.sensor, task_.world->units()),
                                        settings, sinks_);
     seconds_["receivers"] += timer.seconds();
+    if (of_method() != Segments::groups) return;
+    const Timer grouping;
+    transport::EyeGroupSettings groups;
+    groups.seed = recipe_.seed;
+    transport::group_eye_segments(*task_.world, rows_.film, groups, rows_.segments, sinks_);
+    seconds_["segments"] += grouping.seconds();
   }
 
   void columns() {
@@ -121,10 +134,19 @@ class MediaRun {
     settings.indirect = recipe_.only != LightPart::direct;
     asked_lights_ = settings.count;
     lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
+    whole_rays_ = lights_.rays.size();
     seconds_["lights"] += timer.seconds();
+    if (of_method() == Segments::groups) {
+      timer = {};
+      transport::RayTreeSettings tree;
+      tree.seed = recipe_.light_seed;
+      transport::build_ray_tree(*task_.world, tree, lights_.rays, sinks_);
+      seconds_["segments"] += timer.seconds();
+    }
     timer = {};
     matrix_ = std::make_unique<transport::MediaMatrix>(
-        *task_.world, rows_, lights_, transport::MediaMatrixSettings{matrix_settings(recipe_)});
+        *task_.world, rows_, lights_,
+        transport::MediaMatrixSettings{matrix_settings(recipe_), of_method() == Segments::groups});
     seconds_["matrix"] += timer.seconds();
   }
 
@@ -175,7 +197,8 @@ class MediaRun {
     report.choices = choices_.made();
     report.numbers["clamp.removed_fraction"] = matrix::clamped_fraction(cost_);
     report.numbers["eye_segments"] = static_cast<double>(rows_.segments.size());
-    report.numbers["ray_lights"] = static_cast<double>(lights_.rays.size());
+    report.numbers["ray_lights"] = static_cast<double>(whole_rays_);
+    report.numbers["light_segments"] = static_cast<double>(lights_.rays.size());
     const double all =
         static_cast<double>(matrix_->rows()) * static_cast<double>(matrix_->columns()) * std::max(1, passes_);
     Report::Cost cost{cost_.entries, cost_.culled, cost_.rays, 0};
@@ -207,7 +230,7 @@ class MediaRun {
   Recipe recipe_;
   transport::Receivers rows_;
   transport::LightsInMedia lights_;
-  std::size_t asked_lights_ = 0;
+  std::size_t asked_lights_ = 0, whole_rays_ = 0;
   std::unique_ptr<transport::MediaMatrix> matrix_;
   image::Image image_;
   int passes_ = 0;  // that image_ is the mean of

@@ -38,7 +38,8 @@ struct MediaMatrix::Impl {
   std::vector<Vec2f> row_pixel;
   std::vector<Vec3f> row_position, row_normal, column_position, column_normal;
   std::vector<float> row_weight, column_power;
-  std::vector<std::uint64_t> row_id, column_id;
+  std::vector<std::uint64_t> row_id, column_id, column_branch;
+  std::vector<std::uint32_t> row_slice;
   std::vector<std::uint16_t> column_group;
   std::vector<std::uint8_t> column_indirect, column_half;
   std::vector<Rgb> column_emitted;
@@ -74,6 +75,10 @@ struct MediaMatrix::Impl {
       row_weight.push_back(mean(s.weight[k]));
       row_id.push_back(s.id[k]);
     }
+    if (!s.slice.empty()) {
+      row_slice.assign(surfaces, matrix::kNoSlice);
+      row_slice.insert(row_slice.end(), s.slice.begin(), s.slice.end());
+    }
   }
 
   void take_column_features() {
@@ -108,6 +113,10 @@ struct MediaMatrix::Impl {
       column_indirect.push_back(1);
       column_half.push_back(rays.half[j]);
       column_id.push_back(rays.id[j]);
+    }
+    if (!rays.branch.empty()) {
+      column_branch.assign(point_count, matrix::kNoBranch);
+      column_branch.insert(column_branch.end(), rays.branch.begin(), rays.branch.end());
     }
   }
 
@@ -270,13 +279,15 @@ Cost MediaMatrix::accumulate(std::span<const matrix::ScaledColumn> columns, std:
 
 matrix::RowFeatures MediaMatrix::row_features() const {
   const Impl& m = *impl_;
-  return {m.row_pixel, m.row_position, m.row_normal, m.row_weight, m.row_id};
+  return {m.row_pixel, m.row_position, m.row_normal, m.row_weight, m.row_id, {}, {}, m.row_slice};
 }
 
 matrix::ColumnFeatures MediaMatrix::column_features() const {
   const Impl& m = *impl_;
-  return {m.column_position, m.column_normal, m.column_power,   m.column_group,
-          m.column_indirect, m.column_half,   m.column_emitted, m.column_id};
+  return {m.column_position, m.column_normal,   m.column_power,
+          m.column_group,    m.column_indirect, m.column_half,
+          m.column_emitted,  m.column_id,       {},
+          m.column_branch};
 }
 
 std::size_t MediaMatrix::memory_bytes() const {
@@ -285,7 +296,7 @@ std::size_t MediaMatrix::memory_bytes() const {
   return m.points.memory_bytes() + bytes(m.row_pixel) + bytes(m.row_position) + bytes(m.row_normal) +
          bytes(m.row_weight) + bytes(m.row_id) + bytes(m.column_position) + bytes(m.column_normal) +
          bytes(m.column_power) + bytes(m.column_group) + bytes(m.column_indirect) + bytes(m.column_half) +
-         bytes(m.column_emitted) + bytes(m.column_id);
+         bytes(m.column_emitted) + bytes(m.column_id) + bytes(m.column_branch) + bytes(m.row_slice);
 }
 
 }  // namespace lumirank::transport

@@ -26,11 +26,12 @@ struct RayLights {
   std::vector<std::uint32_t> path;     // the particle
   std::vector<std::uint8_t> half;      // as in VirtualLights
   std::vector<std::uint64_t> id;       // who it is, as in VirtualLights
+  std::vector<std::uint64_t> branch;   // place in a tree (ray_tree.h), as matrix::ColumnFeatures; empty: none
 
   std::size_t size() const { return origin.size(); }
   bool empty() const { return origin.empty(); }
   std::size_t memory_bytes() const {
-    return size() * (2 * sizeof(Vec3f) + sizeof(Rgb) + 4 + 2 + 2 + 2 + 4 + 1 + 8);
+    return size() * (2 * sizeof(Vec3f) + sizeof(Rgb) + 4 + 2 + 2 + 2 + 4 + 1 + 8) + 8 * branch.size();
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include "media/tracking.h"
 #include "transport/rows/receivers.h"
+#include "transport/segments/cut_points.h"
 
 namespace lumirank::transport {
 namespace {

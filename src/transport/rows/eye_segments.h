@@ -33,18 +33,15 @@ struct EyeSegments {
   std::vector<std::uint32_t> sample;  // film sample that it belongs to
   std::vector<std::uint16_t> depth;   // path segments from the eye to here (1: seen directly)
   std::vector<std::int16_t> medium;   // index into World::media()
+  std::vector<std::uint32_t> slice;   // of which it is one (eye_groups.h); empty: none were made
 
   std::size_t size() const { return origin.size(); }
   bool empty() const { return origin.empty(); }
-  std::size_t memory_bytes() const { return size() * (2 * sizeof(Vec3f) + 4 + sizeof(Rgb) + 8 + 4 + 2 + 2); }
+  std::size_t memory_bytes() const {
+    return size() * (2 * sizeof(Vec3f) + 4 + sizeof(Rgb) + 8 + 4 + 2 + 2) + 4 * slice.size();
+  }
   void resize(std::size_t count);
   void set(std::size_t i, const EyeSegment& segment);
 };
-
-// Where a ray's way through a medium is cut into `pieces` parts at most: at distances at which it would
-// collide, so that parts are short where much of what is seen is scattered (section 4.1: Woodcock tracking,
-// 17 parts). Ascending, all within (0, length). `rng` is advanced.
-void cut_points(const media::Medium& medium, Vec3f origin, Vec3f direction, float length, int pieces,
-                Rng& rng, std::vector<float>& out);
 
 }  // namespace lumirank::transport

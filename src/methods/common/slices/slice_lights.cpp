@@ -272,7 +272,7 @@ void SliceLights::choose(std::size_t slice, Workspace& w) const {
         static_cast<std::size_t>(std::llround(settings_.zero_share * static_cast<double>(settings_.columns)));
     draws = std::clamp<std::size_t>(draws, 1, w.zero.size());
   }
-  w.splitter.split_to(settings_.columns > draws ? settings_.columns - draws : 1);
+  w.splitter.split_to(settings_.columns > draws ? settings_.columns - draws : 1, settings_.enough);
   double local = 0, global = 0;
   for (std::size_t k = 0; k < w.splitter.clusters(); ++k) {
     for (const float n : w.splitter.norms(k)) local += static_cast<double>(n);

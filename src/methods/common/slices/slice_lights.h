@@ -37,6 +37,7 @@ struct SliceLightSettings {
   double zero_share = 0.02;
   double global_share = 0.1;
   double max_sum_share = 0;
+  double enough = 0;  // of a slice's light: no more columns once its clusters err by less; 0: all `columns`
 };
 
 const Fields<SliceLightSettings>& slice_light_fields();

@@ -1,0 +1,47 @@
+#include "methods/adaptive_lightslice/adaptive_lightslice.h"
+
+#include "methods/common/slices/slice_render.h"
+
+namespace lumirank::methods {
+
+namespace {
+
+struct AdaptiveSettings : SliceLightSettings {
+  // `columns` is but a bound here, and the error decides.
+  AdaptiveSettings() { columns = 3000, initial_clusters = 100, enough = 0.02; }
+};
+
+const Fields<AdaptiveSettings>& adaptive_fields() {
+  static const Fields<AdaptiveSettings> all = with_slice_light_fields<AdaptiveSettings>(
+      {number_field<AdaptiveSettings>({"error", "of a slice's light",
+                                       "A slice splits its clusters until they are estimated to err by less "
+                                       "than this, or there are `columns` "
+                                       "of them."},
+                                      &AdaptiveSettings::enough, 0, 1)});
+  return all;
+}
+
+class AdaptiveLightSlice final : public Method {
+ public:
+  explicit AdaptiveLightSlice(const AdaptiveSettings& settings) : settings_(settings) {}
+  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
+    return render_slices(matrix, options, settings_);
+  }
+
+ private:
+  AdaptiveSettings settings_;
+};
+
+}  // namespace
+
+MethodInfo adaptive_lightslice_info() {
+  return method_info<AdaptiveLightSlice>(
+      {"adaptive-lightslice",
+       "LightSlice whose slices take as many columns as an error needs; for rays in media, whole.",
+       "Frederickx, Bartels, Dutré 2015, Adaptive LightSlice for Virtual Ray Lights",
+       "error or columns",
+       {.needs = {}, .segments = matrix::MethodContract::Segments::whole}},
+      adaptive_fields());
+}
+
+}  // namespace lumirank::methods

@@ -1,0 +1,34 @@
+// Segments in groups of those that are alike, cut anew where groups meet (Huo et al. 2016, sections 4.2.2 and
+// 4.2.3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "transport/segments/segment.h"
+
+namespace lumirank::transport {
+
+// A part of a ray: `length` from `offset` on segment `source` on, over those that are joined to it.
+struct SegmentPiece {
+  std::uint32_t source;
+  float offset, length;
+  std::uint32_t group;
+};
+
+struct SegmentGroupSettings {
+  std::size_t groups = 1;
+  bool refine = true;         // cut at the boundaries of groups, by a support vector machine
+  bool merge = true;          // put together again what is alike, within a group
+  float merge_above = 2.5f;   // similarity
+  double kernel_width = 0.5;  // γ, in units of the root mean square distance of a boundary's points
+  std::uint64_t seed = 1;
+};
+
+// All of all segments, in their order. Joined segments follow each other in the list.
+std::vector<SegmentPiece> group_segments(std::span<const Segment> segments,
+                                         const SegmentSimilarity& similarity,
+                                         const SegmentGroupSettings& settings);
+
+}  // namespace lumirank::transport
