@@ -46,6 +46,20 @@ inline Lane log_positive(Lane x) {
   return k * splat(0.693145751953125f) + (k * splat(1.42860677e-6f) + small);
 }
 
+// Inverse hyperbolic sine, within 2e-7 and as much of its size.
+inline Lane arsinh(Lane x) {
+  const Lane a = abs(x);
+  const Lane r = log_positive(a + sqrt(a * a + splat(1)));
+  return select(x < Lane{}, -r, r);
+}
+
+// Hyperbolic sine for |x| < 87, within 2e-7 and 4e-7 of its size.
+inline Lane sinh(Lane x) {
+  const Lane e = exp_negative(-abs(x));
+  const Lane r = splat(0.5f) * (splat(1) / e - e);
+  return select(x < Lane{}, -r, r);
+}
+
 // The angle in [0, π/2] of a direction with the given cosine and sine; Abramowitz and Stegun 4.4.46, 2e-8.
 inline Lane angle_of(Lane cosine, Lane sine) {
   Lane p = splat(-0.0012624911f);
@@ -96,6 +110,9 @@ inline LaneBits mix(LaneBits x) {
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;
   return x ^ (x >> 16);
+}
+inline LaneBits mix_pair(LaneBits row, LaneBits column, std::uint32_t seed) {
+  return mix(mix(row * 0x9e3779b9u ^ seed) ^ column);
 }
 inline Lane unit_lane(LaneBits x) {
   return __builtin_convertvector(reinterpret_cast<LaneMask>(x >> 8), Lane) * splat(0x1p-24f);

@@ -49,13 +49,6 @@ void run_up(const RayScene::Impl& scene, RTCRay16& rays) {
   }
 }
 
-Ray segment(const ShadowPacket& p, int k) {
-  return {{p.ox[k], p.oy[k], p.oz[k]},
-          {p.dx[k], p.dy[k], p.dz[k]},
-          kShadowEpsilon,
-          p.t_far[k] * (1 - kShadowEpsilon)};
-}
-
 QueryContext context_for(const RayScene::Impl& scene) {
   QueryContext context;
   embree::initialize(context.embree);
@@ -184,38 +177,57 @@ std::uint16_t RayScene::visible16(const ShadowPacket& packet) const {
   return unblocked16(impl_->blocking->scene.get(), packet, context);
 }
 
+void RayScene::crossings(const Ray& ray, std::vector<Hit>& out) const {
+  out.clear();
+  if (!impl_->attenuating) return;
+  QueryContext context = context_for(*impl_);
+  context.crossed = &out;
+  const float start = start_of(*impl_, ray.direction);
+  RTCRay query = to_embree(ray, start);
+  if (!can_trace(query)) return;
+  embree::occluded1(impl_->attenuating->scene.get(), context.embree, query);
+  // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.
+  std::sort(out.begin(), out.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.instance, a.t, a.triangle) < std::tie(b.instance, b.t, b.triangle);
+  });
+  // A ray through the edge between two triangles crosses the surface once.
+  out.erase(std::unique(out.begin(), out.end(),
+                        [](const Hit& last, const Hit& hit) {
+                          return last.instance == hit.instance && hit.t - last.t <= 1e-6f * hit.t;
+                        }),
+            out.end());
+  std::sort(out.begin(), out.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.t, a.instance, a.triangle) < std::tie(b.t, b.instance, b.triangle);
+  });
+  for (Hit& hit : out) hit.t -= start;
+}
+
 Rgb RayScene::transmittance(const Ray& ray) const {
   Rgb product(1);
   if (!impl_->attenuating) return product;
   thread_local std::vector<Hit> crossed;
-  crossed.clear();
-  QueryContext context = context_for(*impl_);
-  context.crossed = &crossed;
-  RTCRay query = to_embree(ray, start_of(*impl_, ray.direction));
-  if (!can_trace(query)) return product;
-  embree::occluded1(impl_->attenuating->scene.get(), context.embree, query);
-  // Neither the order of Embree's traversal nor a triangle reported twice may show in the result.
-  std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
-    return std::tie(a.instance, a.t, a.triangle) < std::tie(b.instance, b.t, b.triangle);
-  });
-  const Hit* last = nullptr;
-  for (const Hit& hit : crossed) {
-    // A ray through the edge between two triangles crosses the surface once.
-    const bool again = last && last->instance == hit.instance && hit.t - last->t <= 1e-6f * hit.t;
-    if (!again) product *= impl_->callbacks.transmittance(hit, ray.direction);
-    last = &hit;
-  }
+  crossings(ray, crossed);
+  for (const Hit& hit : crossed) product *= impl_->callbacks.transmittance(hit, ray.direction);
   return product;
+}
+
+std::uint16_t RayScene::clear16(const ShadowPacket& packet) const {
+  if (!impl_->attenuating) {
+    unsigned valid = 0;
+    for (unsigned k = 0; k < 16; ++k) valid |= unsigned{packet.valid[k] != 0} << k;
+    return static_cast<std::uint16_t>(valid);
+  }
+  QueryContext context = context_for(*impl_);
+  return unblocked16(impl_->attenuating->scene.get(), packet, context);
 }
 
 void RayScene::transmittance16(const ShadowPacket& packet, Rgb out[16]) const {
   std::fill_n(out, 16, Rgb(1));
   if (!impl_->attenuating) return;
   // Most segments meet no attenuating surface, and one packet tells which.
-  QueryContext context = context_for(*impl_);
-  const unsigned clear = unblocked16(impl_->attenuating->scene.get(), packet, context);
+  const unsigned clear = clear16(packet);
   for (int k = 0; k < 16; ++k)
-    if (packet.valid[k] && !(clear >> k & 1)) out[k] = transmittance(segment(packet, k));
+    if (packet.valid[k] && !(clear >> k & 1)) out[k] = transmittance(packet.ray(k));
 }
 
 }  // namespace lumirank::geometry

@@ -63,6 +63,10 @@ struct alignas(64) ShadowPacket {
 
   std::uint64_t key(unsigned k) const { return seed ^ (static_cast<std::uint64_t>(from[k]) << 32 | to[k]); }
   int valid[16];  // -1: trace; 0: leave out
+
+  Ray ray(int k) const {
+    return {{ox[k], oy[k], oz[k]}, {dx[k], dy[k], dz[k]}, kShadowEpsilon, t_far[k] * (1 - kShadowEpsilon)};
+  }
 };
 
 class RayScene {
@@ -109,11 +113,16 @@ class RayScene {
   std::optional<Hit> intersect(const Ray& ray) const;
   // True if something blocks in [t_min, t_max] (no ε is added); cut-outs are decided by `key`.
   bool occluded(const Ray& ray, std::uint64_t key) const;
-  // Product of the attenuating placements' transmittances along the ray (1 if none); ignores everything else.
+  // Where the ray crosses attenuating placements, in the order of t, each crossing once; ignores everything
+  // else.
+  void crossings(const Ray& ray, std::vector<Hit>& out) const;
+  // Product of the attenuating placements' transmittances along the ray (1 if none).
   Rgb transmittance(const Ray& ray) const;
 
   // Bit k of the result: segment k is traced (valid) and unblocked. Neighboring segments should be alike.
   std::uint16_t visible16(const ShadowPacket& packet) const;
+  // The same of the attenuating placements alone: traced and crosses none.
+  std::uint16_t clear16(const ShadowPacket& packet) const;
   // Transmittance of the attenuating placements for 16 segments; only worth calling if has_attenuating().
   void transmittance16(const ShadowPacket& packet, Rgb out[16]) const;
 

@@ -43,6 +43,16 @@ Rgb Grid::at(Vec3f unit) const {
   const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y)),
             z = static_cast<int>(std::floor(p.z));
   const Vec3f f{p.x - static_cast<float>(x), p.y - static_cast<float>(y), p.z - static_cast<float>(z)};
+  if (channels_ == 1 && x >= 0 && y >= 0 && z >= 0 && x + 1 < size_[0] && y + 1 < size_[1] &&
+      z + 1 < size_[2]) {
+    // Most look-ups: one channel, and no face of the box near.
+    const auto row = static_cast<std::size_t>(size_[0]), slice = row * static_cast<std::size_t>(size_[1]);
+    const float* at = values_.data() + (static_cast<std::size_t>(z) * slice +
+                                        static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x));
+    const auto along_x = [&](std::size_t k) { return lerp(at[k], at[k + 1], f.x); };
+    return Rgb(
+        lerp(lerp(along_x(0), along_x(row), f.y), lerp(along_x(slice), along_x(slice + row), f.y), f.z));
+  }
   const auto along_x = [&](int dy, int dz) {
     return lerp(value(x, y + dy, z + dz), value(x + 1, y + dy, z + dz), f.x);
   };
@@ -71,8 +81,7 @@ Grid::Range Grid::range(Vec3f lo, Vec3f hi) const {
   return out;
 }
 
-Rgb Field::at(Vec3f place) const {
-  if (!grid) return scale;
+Rgb Field::in_grid(Vec3f place) const {
   const Vec3f unit = to_unit.point(place);
   if (zero_outside &&
       !(unit.x >= 0 && unit.x <= 1 && unit.y >= 0 && unit.y <= 1 && unit.z >= 0 && unit.z <= 1))

@@ -54,8 +54,11 @@ struct Field {
   Transform to_unit = {};     // from the world to the grid's unit cube
   bool zero_outside = false;  // of the cube; else as on its faces
 
-  Rgb at(Vec3f place) const;
+  Rgb at(Vec3f place) const { return grid ? in_grid(place) : scale; }
   bool zero() const { return is_black(scale); }
+
+ private:
+  Rgb in_grid(Vec3f place) const;
 };
 
 }  // namespace lumirank::media

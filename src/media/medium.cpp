@@ -10,8 +10,6 @@ namespace {
 constexpr int kMaxCells = 32;  // of the bounds, along each axis
 constexpr int kPlacesPerCell = 4;
 
-Rgb not_negative(Rgb c) { return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)}; }
-
 // Bounds of c·x for x within [least, most].
 void add_scaled(ExtinctionBounds::Range& out, const Grid::Range& values, Rgb scale) {
   for (int c = 0; c < 3; ++c) {

@@ -2,6 +2,7 @@
 // coefficients are per length of it, for each channel.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,8 @@
 #include "media/phase.h"
 
 namespace lumirank::media {
+
+inline Rgb not_negative(Rgb c) { return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)}; }
 
 // What a medium is at one place.
 struct Coefficients {
@@ -49,13 +52,18 @@ class Medium {
   Medium(Form form, Field first, Field second, Field emission, const PhaseFunction& phase);
 
   const PhaseFunction& phase() const { return phase_; }
-  bool homogeneous() const { return !bounds_; }
+  bool homogeneous() const { return !bounds_; }  // in what it takes from light
+  bool scatters_evenly() const { return !first_.grid && !second_.grid; }
   bool emits() const { return !emission_.zero(); }
   // Somewhere, perhaps.
   bool scatters() const {
     return !second_.zero() && (form_ == Form::absorption_and_scattering || !first_.zero());
   }
   Coefficients at(Vec3f place) const;
+  Rgb extinction(Vec3f place) const {  // alone, as in at()
+    const Rgb first = not_negative(first_.at(place));
+    return form_ == Form::extinction_and_albedo ? first : first + not_negative(second_.at(place));
+  }
 
   // The cells that a ray passes, one after the other, with bounds of the extinction in them; what it passes
   // before, between and after is empty. A homogeneous medium is one cell.

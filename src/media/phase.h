@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/lanes.h"
 #include "base/rgb.h"
 #include "base/vec.h"
 
@@ -28,6 +29,7 @@ struct PhaseFunction {
 
   // For each channel. `cosine`: of the angle between the directions in which light travels before and after.
   Rgb eval(float cosine) const;
+  Lane3 eval(Lane cosine) const;  // the same bits
   // A direction in which a path goes on that came along `forward` (unit), with the density eval() of one
   // channel.
   Vec3f sample(Vec3f forward, int channel, float u_lobe, Vec2f u) const;

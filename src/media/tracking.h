@@ -70,28 +70,53 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
   return true;
 }
 
-// An unbiased estimate of the transmittance over a distance; exact where the medium is homogeneous. All
-// channels share their random places.
+// What is left of light along several ways, one after the other: exp(-depth) · ratio. The exponential is
+// taken once, of all of them.
+struct OpticalPath {
+  Rgb depth{0}, ratio{1};
+
+  void add_even(Rgb extinction, float distance) {  // where 0 · ∞ is 0
+    for (int c = 0; c < 3; ++c)
+      if (extinction[c] > 0) depth[c] += extinction[c] * distance;
+  }
+  // Along a way through a medium, as an unbiased estimate; exact where it is homogeneous. All channels share
+  // their random places.
+  template <typename Random>
+  void add(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, Random&& random);
+  Rgb left() const { return ratio * exp_minus(depth); }
+};
+
 template <typename Random>
-Rgb transmittance(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, Random&& random) {
+void OpticalPath::add(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, Random&& random) {
+  if (medium.homogeneous()) return add_even(medium.extinction({}), t_max);
   Medium::Walk walk(medium, origin, direction, t_max);
   Medium::Walk::Piece piece;
-  Rgb out{1};
+  float free = -1;  // optical distance by the bounds to the next place; < 0: not drawn yet
   while (walk.next(piece)) {
-    // What is there at least is known; the rest is tracked.
-    out *= passed(piece.least, piece.end - piece.begin);
-    const Rgb rest = piece.most - piece.least;
-    const float bound = max_component(rest);
+    // The middle of what may be there is counted as if it were there, and what differs from it is tracked:
+    // half as many places and half the variance of counting the least.
+    const Rgb middle = (piece.least + piece.most) * 0.5f;
+    const float bound = 0.5f * max_component(piece.most - piece.least);
+    add_even(middle, piece.end - piece.begin);
     if (!(bound > 0)) continue;
-    for (float t = piece.begin;;) {
-      t += -std::log1p(-random()) / bound;
-      if (!(t < piece.end)) break;
-      const Rgb more = medium.at(origin + direction * t).extinction - piece.least;
-      out *= Rgb(1) - more * (1 / bound);
-      if (is_black(out)) return out;
+    if (free < 0) free = -std::log1p(-random());
+    float t = piece.begin;
+    // What is left of the distance goes on in the next piece.
+    while (free < bound * (piece.end - t)) {
+      t += free / bound;
+      ratio *= Rgb(1) - (medium.extinction(origin + direction * t) - middle) * (1 / bound);
+      free = -std::log1p(-random());
     }
+    free -= bound * (piece.end - t);
   }
-  return out;
+}
+
+// An unbiased estimate of the transmittance over a distance.
+template <typename Random>
+Rgb transmittance(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, Random&& random) {
+  OpticalPath path;
+  path.add(medium, origin, direction, t_max, random);
+  return path.left();
 }
 
 }  // namespace lumirank::media

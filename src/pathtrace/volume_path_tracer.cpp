@@ -104,11 +104,8 @@ bool VolumePathTracer::scatter_in_medium(Walk& walk, Vec3f place, const media::C
   if (light.pdf > 0) {
     const Rgb f = phase.eval(dot(forward, light.direct.direction));
     const auto random = [&walk] { return walk.random.next_float(); };
-    const Rgb visible =
-        world::pass_straight(world_,
-                             {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium},
-                             false, random)
-            .left;
+    const Rgb visible = world::pass_straight(
+        world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, random);
     const float pdf = light.direct.delta ? 0.0f : f[walk.hero];
     walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));
   }
@@ -149,10 +146,8 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
     if (!is_black(f)) {
       const int medium = world_.medium_beyond(hit, wi, walk.medium);
       const auto random = [&walk] { return walk.random.next_float(); };
-      const Rgb visible =
-          world::pass_straight(world_, {hit.point.position, hit.point.ng, wi, light.direct.distance, medium},
-                               false, random)
-              .left;
+      const Rgb visible = world::pass_straight(
+          world_, {hit.point.position, hit.point.ng, wi, light.direct.distance, medium}, random);
       const float pdf = light.direct.delta ? 0.0f : scatter::pdf(closure, wo, wi, Lobes::all);
       ++walk.non_delta_vertices;
       walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));

@@ -167,6 +167,10 @@ class World::Builder {
     auto& placement = geometry_.placements[i];
     placement.material = static_cast<std::uint32_t>(material_of_[i]);
     placement.blocking = blocking(w_.materials.passage(material_of_[i]));
+    // Behind the holes of a cut-out that divides media is another one, which rays must learn.
+    if (with_media_ && geometry_.placed[i].shape->media.divides &&
+        placement.blocking == geometry::Blocking::cutout)
+      placement.blocking = geometry::Blocking::attenuating;
     w_.placements.push_back({placement.to_world.is_identity(), w_.materials.is_hair(material_of_[i]),
                              geometry_.flip[i], placement.to_world,
                              placement.to_world.inverse().value_or(Transform{}),

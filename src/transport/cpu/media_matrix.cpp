@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "transport/cpu/media_pair.h"
+#include "transport/cpu/media_batch.h"
 #include "transport/cpu/scene_matrix.h"
 
 namespace lumirank::transport {
@@ -16,8 +16,10 @@ using matrix::Part;
 
 namespace {
 
-// Entries that one task of accumulate() computes between two looks at whether it was cancelled, about.
-constexpr std::size_t kRowsPerTask = 64;
+// Entries of one task. Rows and columns that accumulate() computes at a time: between two looks at whether it
+// was cancelled, and so that what they hold stays in a core's own cache.
+constexpr std::size_t kEntriesPerTask = 4096;
+constexpr std::size_t kRowsAtATime = 64, kColumnsAtATime = 256;
 
 SceneMatrixSettings of_points(SceneMatrixSettings settings) {
   settings.traced_direct_below = 0;
@@ -123,53 +125,37 @@ struct MediaMatrix::Impl {
   bool is_surface(Index i) const { return i < surfaces; }
   bool is_point(Index j) const { return j < point_count; }
 
-  // Of pairs that are not both points. `cost` gets what it took.
-  Rgb entry(Index i, Index j, Part part, Cost& cost) const {
-    MediaPairs::Entry e;
-    if (is_surface(i))
-      e = pairs.ray_to_receiver(i, j - point_count, part);
-    else if (is_point(j))
-      e = pairs.point_to_segment(i - surfaces, j, part);
-    else
-      e = pairs.ray_to_segment(i - surfaces, j - point_count, part);
-    ++cost.entries;
-    if (e.traced)
-      ++cost.rays;
-    else
-      ++cost.culled;
-    return e.of(part);
+  bool both_points(Index i, Index j) const { return is_surface(i) && is_point(j); }
+  PairKind kind(Index i, Index j) const {
+    if (is_surface(i)) return is_point(j) ? PairKind::point_to_receiver : PairKind::ray_to_receiver;
+    return is_point(j) ? PairKind::point_to_segment : PairKind::ray_to_segment;
   }
 
-  // Through media, what was without them.
-  Rgb attenuated(Rgb value, Index i, Index j, Part part) const {
-    return part == Part::visibility || is_black(value) ? value : value * pairs.media_between(i, j);
+  // The entry goes to `out` by the end of the batch; of two points it has been there without media.
+  void add(Index i, Index j, Part part, MediaBatch& batch, Rgb& out) const {
+    const auto row = static_cast<Index>(is_surface(i) ? i : i - surfaces);
+    const auto column = static_cast<Index>(is_point(j) ? j : j - point_count);
+    if (!both_points(i, j))
+      batch.add(kind(i, j), row, column, out);
+    else if (part != Part::visibility && !is_black(out))
+      batch.attenuate(row, column, out);
   }
 
-  static void count_energy(Cost& cost, Rgb value, Part part) {
-    if (part == Part::value) cost.energy += static_cast<double>(value.r + value.g + value.b);
-  }
-
-  // One row for the columns, which begin with all that are points: out[k] = A(i, columns[k]).
-  Cost few(Index i, std::span<const Index> columns, std::span<Rgb> out, Part part,
-           std::vector<Index>& of_points, std::vector<Rgb>& values) const {
-    Cost cost;
-    of_points.clear();
-    if (is_surface(i))
-      for (const Index j : columns)
-        if (is_point(j)) of_points.push_back(j);
-    values.resize(of_points.size());
-    if (!of_points.empty()) {
-      const Cost own = points.block(std::span(&i, 1), of_points, values, part);
-      cost.entries += own.entries, cost.culled += own.culled, cost.rays += own.rays;
-      cost.clamped += own.clamped, cost.lost += own.lost;
-    }
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const bool both = is_surface(i) && is_point(columns[k]);
-      out[k] = both ? attenuated(values[next++], i, columns[k], part) : entry(i, columns[k], part, cost);
-      count_energy(cost, out[k], part);
-    }
-    return cost;
+  // Entries of which those of two points stand in `out` without media; pair(k) gives row and column.
+  template <typename Pair>
+  Cost evaluate(std::span<Rgb> out, Part part, Pair&& pair) const {
+    return parallel_sum(out.size(), kEntriesPerTask, Cost{}, [&](std::size_t begin, std::size_t end) {
+      MediaBatch batch(pairs, part);
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto [i, j] = pair(k);
+        add(i, j, part, batch, out[k]);
+      }
+      Cost cost = batch.finish();
+      if (part == Part::value)
+        for (std::size_t k = begin; k < end; ++k)
+          cost.energy += static_cast<double>(out[k].r + out[k].g + out[k].b);
+      return cost;
+    });
   }
 };
 
@@ -181,39 +167,27 @@ MediaMatrix::~MediaMatrix() = default;
 std::size_t MediaMatrix::rows() const { return impl_->surfaces + impl_->segments; }
 std::size_t MediaMatrix::columns() const { return impl_->point_count + impl_->ray_count; }
 
-namespace {
-
-// Runs work(k, cost) for all k in parallel; the sum of costs does not depend on the threads.
-template <typename Work>
-Cost summed(std::size_t count, std::size_t grain, Work&& work) {
-  std::vector<Cost> costs((count + grain - 1) / grain);
-  parallel_for(count, grain,
-               [&](std::size_t begin, std::size_t end) { work(begin, end, costs[begin / grain]); });
-  Cost total;
-  for (const Cost& cost : costs) total += cost;
-  return total;
-}
-
-}  // namespace
-
 Cost MediaMatrix::block(std::span<const Index> rows, std::span<const Index> columns, std::span<Rgb> out,
                         Part part) const {
   const Impl& m = *impl_;
-  if (columns.empty()) return {};
-  // Long rows are cut, so that one row alone keeps all threads busy.
-  constexpr std::size_t kCut = 256;
-  const std::size_t cuts = (columns.size() + kCut - 1) / kCut;
-  return summed(rows.size() * cuts, std::max<std::size_t>(1, 64 / cuts),
-                [&](std::size_t begin, std::size_t end, Cost& cost) {
-                  std::vector<Index> of_points;
-                  std::vector<Rgb> values;
-                  for (std::size_t k = begin; k < end; ++k) {
-                    const std::size_t a = k / cuts, from = k % cuts * kCut,
-                                      count = std::min(kCut, columns.size() - from);
-                    cost += m.few(rows[a], columns.subspan(from, count),
-                                  out.subspan(a * columns.size() + from, count), part, of_points, values);
-                  }
-                });
+  std::vector<Index> surface_rows, point_columns;
+  std::vector<std::size_t> row_places, column_places;
+  for (std::size_t a = 0; a < rows.size(); ++a)
+    if (m.is_surface(rows[a])) surface_rows.push_back(rows[a]), row_places.push_back(a);
+  for (std::size_t b = 0; b < columns.size(); ++b)
+    if (m.is_point(columns[b])) point_columns.push_back(columns[b]), column_places.push_back(b);
+  Cost cost;
+  if (!surface_rows.empty() && !point_columns.empty()) {
+    std::vector<Rgb> values(surface_rows.size() * point_columns.size());
+    cost = m.points.block(surface_rows, point_columns, values, part);
+    cost.energy = 0;
+    for (std::size_t a = 0; a < row_places.size(); ++a)
+      for (std::size_t b = 0; b < column_places.size(); ++b)
+        out[row_places[a] * columns.size() + column_places[b]] = values[a * column_places.size() + b];
+  }
+  return cost + m.evaluate(out, part, [&](std::size_t k) {
+    return std::pair(rows[k / columns.size()], columns[k % columns.size()]);
+  });
 }
 
 Cost MediaMatrix::row(Index i, std::span<Rgb> out, Part part) const {
@@ -234,46 +208,40 @@ Cost MediaMatrix::entries(std::span<const Index> rows, std::span<const Index> co
   std::vector<Index> surface_rows, point_columns;
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < rows.size(); ++k)
-    if (m.is_surface(rows[k]) && m.is_point(columns[k]))
+    if (m.both_points(rows[k], columns[k]))
       surface_rows.push_back(rows[k]), point_columns.push_back(columns[k]), places.push_back(k);
-  std::vector<Rgb> values(places.size());
   Cost cost;
   if (!places.empty()) {
+    std::vector<Rgb> values(places.size());
     cost = m.points.entries(surface_rows, point_columns, values, part);
     cost.energy = 0;
-    for (std::size_t n = 0; n < places.size(); ++n) {
-      out[places[n]] = m.attenuated(values[n], surface_rows[n], point_columns[n], part);
-      Impl::count_energy(cost, out[places[n]], part);
-    }
+    for (std::size_t n = 0; n < places.size(); ++n) out[places[n]] = values[n];
   }
-  return cost + summed(rows.size(), 64, [&](std::size_t begin, std::size_t end, Cost& own) {
-           for (std::size_t k = begin; k < end; ++k) {
-             if (m.is_surface(rows[k]) && m.is_point(columns[k])) continue;
-             out[k] = m.entry(rows[k], columns[k], part, own);
-             Impl::count_energy(own, out[k], part);
-           }
-         });
+  return cost + m.evaluate(out, part, [&](std::size_t k) { return std::pair(rows[k], columns[k]); });
 }
 
 Cost MediaMatrix::accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
                              const Sinks& sinks) const {
-  const Impl& m = *impl_;
   std::vector<Index> numbers;
   numbers.reserve(columns.size());
   for (const matrix::ScaledColumn& c : columns) numbers.push_back(c.column);
   std::atomic<std::size_t> done{0};
-  return summed(rows(), kRowsPerTask, [&](std::size_t begin, std::size_t end, Cost& cost) {
-    std::vector<Index> of_points;
-    std::vector<Rgb> values, row(columns.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      if (sinks.cancelled()) return;
-      cost += m.few(static_cast<Index>(i), numbers, row, Part::value, of_points, values);
-      Rgb sum = sums[i];
-      for (std::size_t k = 0; k < columns.size(); ++k) sum += row[k] * columns[k].scale;
-      sums[i] = sum;
+  return parallel_sum(rows(), kRowsAtATime, Cost{}, [&](std::size_t begin, std::size_t end) {
+    std::vector<Index> some;
+    for (std::size_t i = begin; i < end; ++i) some.push_back(static_cast<Index>(i));
+    std::vector<Rgb> values(some.size() * std::min(kColumnsAtATime, columns.size()));
+    Cost cost;
+    for (std::size_t from = 0; from < columns.size(); from += kColumnsAtATime) {
+      if (sinks.cancelled()) return cost;
+      const std::size_t count = std::min(kColumnsAtATime, columns.size() - from);
+      const std::span out(values.data(), some.size() * count);
+      cost += block(some, std::span(numbers).subspan(from, count), out, Part::value);
+      for (std::size_t a = 0; a < some.size(); ++a)
+        for (std::size_t k = 0; k < count; ++k) sums[some[a]] += out[a * count + k] * columns[from + k].scale;
     }
     done += end - begin;
     sinks.report("columns", static_cast<double>(done) / static_cast<double>(rows()));
+    return cost;
   });
 }
 
@@ -293,10 +261,11 @@ matrix::ColumnFeatures MediaMatrix::column_features() const {
 std::size_t MediaMatrix::memory_bytes() const {
   const Impl& m = *impl_;
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return m.points.memory_bytes() + bytes(m.row_pixel) + bytes(m.row_position) + bytes(m.row_normal) +
-         bytes(m.row_weight) + bytes(m.row_id) + bytes(m.column_position) + bytes(m.column_normal) +
-         bytes(m.column_power) + bytes(m.column_group) + bytes(m.column_indirect) + bytes(m.column_half) +
-         bytes(m.column_emitted) + bytes(m.column_id) + bytes(m.column_branch) + bytes(m.row_slice);
+  return m.points.memory_bytes() + m.pairs.memory_bytes() + bytes(m.row_pixel) + bytes(m.row_position) +
+         bytes(m.row_normal) + bytes(m.row_weight) + bytes(m.row_id) + bytes(m.column_position) +
+         bytes(m.column_normal) + bytes(m.column_power) + bytes(m.column_group) + bytes(m.column_indirect) +
+         bytes(m.column_half) + bytes(m.column_emitted) + bytes(m.column_id) +
+         bytes(m.column_branch) + bytes(m.row_slice);
 }
 
 }  // namespace lumirank::transport

@@ -1,15 +1,42 @@
-// One entry of a lighting matrix with a ray or a segment in it, or between two points with media between
-// them.
+// Sixteen entries at a time of a lighting matrix with a ray or a segment in them: where on these the integral
+// is estimated, and what light would arrive if nothing were between and along them.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "base/lane_math.h"
 #include "base/random.h"
-#include "matrix/lighting_matrix.h"
 #include "transport/lights/ray_lights.h"
+#include "transport/pairs/ray_sampling.h"
 #include "transport/rows/receivers.h"
-#include "world/straight_path.h"
+#include "world/world.h"
 
 namespace lumirank::transport {
 
+enum class PairKind : std::uint8_t {
+  point_to_receiver,  // equation 6, which is a SceneMatrix's
+  ray_to_receiver,    // equation 5
+  point_to_segment,   // equation 4
+  ray_to_segment,     // equation 3: what of the ray scatters to the segment and there towards the eye
+};
+inline constexpr int kPairKinds = 4;
+constexpr bool has_ray(PairKind kind) {
+  return kind == PairKind::ray_to_receiver || kind == PairKind::ray_to_segment;
+}
+constexpr bool has_segment(PairKind kind) {
+  return kind == PairKind::point_to_segment || kind == PairKind::ray_to_segment;
+}
+
+// Sixteen connections between a place of a row and one of a column.
+struct Connections {
+  std::uint32_t alive = 0;   // lanes with a value
+  Lane3 value;               // E, but for what media and panes take
+  Lane3 from, to;            // the places; to directional light: the direction towards it
+  Lane row_way, column_way;  // from where the segment and the ray begin to the places on them
+};
+
+// Indices of rows and columns count within their kind.
 class MediaPairs {
  public:
   struct Settings {
@@ -21,51 +48,47 @@ class MediaPairs {
     bool shared_places = false;
   };
   MediaPairs(const world::World& world, const Receivers& receivers, const LightsInMedia& lights,
-             const Settings& settings)
-      : world_(world), receivers_(receivers), lights_(lights), settings_(settings) {}
+             const Settings& settings);
 
-  struct Entry {
-    Rgb unoccluded;
-    bool visible = false;
-    bool traced = false;  // a ray was needed
-    Rgb of(matrix::Part part) const {
-      if (part == matrix::Part::visibility) return Rgb(visible ? 1.0f : 0.0f);
-      return part == matrix::Part::unoccluded || visible ? unoccluded : Rgb{0};
-    }
-  };
+  const world::World& world() const { return world_; }
+  const Receivers& receivers() const { return receivers_; }
+  const LightsInMedia& lights() const { return lights_; }
+  std::uint64_t seed() const { return settings_.seed; }
+  bool too_deep(PairKind kind, std::uint32_t row, std::uint32_t column) const;
+  // Of tracking through media.
+  Rng random_of(PairKind kind, std::uint32_t row, std::uint32_t column) const;
+  std::uint32_t row_key(PairKind kind, std::uint32_t row) const;
+  std::uint32_t column_key(PairKind kind, std::uint32_t column) const;
+  std::size_t memory_bytes() const;
 
-  // Equation 3: what of the ray light scatters to the segment and there towards the eye.
-  Entry ray_to_segment(std::size_t segment, std::size_t ray, matrix::Part part) const;
-  // Equation 4.
-  Entry point_to_segment(std::size_t segment, std::size_t point, matrix::Part part) const;
-  // Equation 5.
-  Entry ray_to_receiver(std::size_t receiver, std::size_t ray, matrix::Part part) const;
-  // What media between the two leave of equation 6, whose other factors are a SceneMatrix's. Panes are among
-  // those, so they are left out here.
-  Rgb media_between(std::size_t receiver, std::size_t point) const;
+  // Of one kind, but not point_to_receiver.
+  void connect(PairKind kind, const std::uint32_t rows[16], const std::uint32_t columns[16],
+               Connections& out) const;
 
  private:
-  // The random numbers of an entry: those of tracking are the pair's, of places the pair's or the column's.
+  // How a point sends light.
+  enum class Sends : std::uint8_t { evenly, facing, otherwise };
+
+  void ray_to_receiver(const std::uint32_t* rows, const std::uint32_t* columns, Connections& out) const;
+  void point_to_segment(const std::uint32_t* rows, const std::uint32_t* columns, Connections& out) const;
+  void ray_to_segment(const std::uint32_t* rows, const std::uint32_t* columns, Connections& out) const;
   struct Numbers {
-    Rng tracking, of_column;
-    bool shared;
-    float place() { return shared ? of_column.next_float() : tracking.next_float(); }
+    Lane first, second;
   };
-  Numbers numbers_of(std::uint64_t row, std::uint64_t column) const {
-    return {{settings_.seed, Stage::ray_pairs, row, column},
-            {settings_.seed, Stage::ray_places, column},
-            settings_.shared_places};
-  }
-  bool too_deep(int row, int light) const {
-    return settings_.max_depth >= 0 && row + light + 1 > settings_.max_depth;
-  }
-  const media::Medium& medium(int index) const { return world_.media()[static_cast<std::size_t>(index)]; }
-  Entry connect(Rgb value, const world::StraightSegment& segment, matrix::Part part, Rng& rng) const;
+  Numbers numbers(PairKind kind, const std::uint32_t* rows, const std::uint32_t* columns) const;
+  // What the media that `number` gives for `items` scatter at the places, by the cosine between directions.
+  Lane3 scattered(const std::vector<std::int16_t>& number, const std::uint32_t* items, LaneMask wanted,
+                  const Lane3& places, Lane cosine) const;
+  Lane3 shining(const std::uint32_t* points, LaneMask wanted, const Lane3& w) const;
+  Lane3 reflected(const std::uint32_t* receivers, LaneMask wanted, const Lane3& w) const;
 
   const world::World& world_;
   const Receivers& receivers_;
   const LightsInMedia& lights_;
   Settings settings_;
+  std::vector<std::uint32_t> receiver_key_, segment_key_, point_key_, ray_key_;  // of random numbers
+  std::vector<Sends> sends_;
+  std::vector<Rgb> sent_;  // by points that send evenly, or times the cosine
 };
 
 }  // namespace lumirank::transport

@@ -73,10 +73,8 @@ class Lattice {
 
 inline LaneBits pair_keys(const PairExtras& extras) {
   LaneBits row, column;
-  for (int k = 0; k < kLanes; ++k)
-    row[k] = extras.row_keys[k] * 0x9e3779b9u ^ static_cast<std::uint32_t>(extras.spheres->seed),
-    column[k] = extras.column_keys[k];
-  return mix(mix(row) ^ column);
+  for (int k = 0; k < kLanes; ++k) row[k] = extras.row_keys[k], column[k] = extras.column_keys[k];
+  return mix_pair(row, column, static_cast<std::uint32_t>(extras.spheres->seed));
 }
 
 template <std::uint16_t row_kind, ColumnKind column_kind>
