@@ -49,7 +49,7 @@ FOLDERS = {
         "ies": ["data"],
         "volumes": ["data"],
         "mitsuba": ["meshes", "ies"],
-        "pbrt": ["meshes", "ies"],
+        "pbrt": ["meshes", "ies", "volumes"],
         "gltf": ["meshes", "ies"],
         "writer": ["meshes", "ies", "volumes"],
     },

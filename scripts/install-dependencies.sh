@@ -3,8 +3,9 @@
 set -eu
 
 build="g++ make cmake ninja-build pkg-config libtbb-dev libeigen3-dev libnanoflann-dev libopenblas-dev libpugixml-dev zlib1g-dev \
-libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev libcli11-dev nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev libmetis-dev libsvm-dev"
-test="libgtest-dev clang libclang-rt-dev clang-format clang-tidy python3 git"
+libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev libcli11-dev nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev libmetis-dev \
+libsvm-dev libopenvdb-dev libboost-dev"
+test="libgtest-dev libnanovdb-dev clang libclang-rt-dev clang-format clang-tidy python3 git"
 
 case "${1:-build}" in
   build) wanted="$build" ;;

@@ -22,6 +22,9 @@ namespace {
 // Parts of a ray's way through a medium (Huo et al. 2016, section 4.1: 16 points).
 constexpr int kSegmentsPerRay = 17;
 
+// Columns for emitters where rays are grouped: segments are longer then than those pieces.
+constexpr std::size_t kLeastDirect = 32;
+
 class MediaRun {
  public:
   MediaRun(RenderTask task, const RenderSettings& asked, const Sinks& sinks, const PreviewCallback& preview)
@@ -132,6 +135,7 @@ class MediaRun {
     settings.eye_medium = task_.view.sensor.medium;
     settings.direct = recipe_.only != LightPart::indirect,
     settings.indirect = recipe_.only != LightPart::direct;
+    if (of_method() == Segments::groups) settings.least_direct = kLeastDirect;
     asked_lights_ = settings.count;
     lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
     whole_rays_ = lights_.rays.size();

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "scenedesc/volumes/vol_file.h"
 
 namespace lumirank::world {
 
@@ -55,21 +54,26 @@ const MediaBuilder::Volume& MediaBuilder::volume(int index, const SourceLocation
   const auto [at, fresh] = volumes_.try_emplace(index);
   if (!fresh) return at->second;
   const sd::VolumeDesc& desc = desc_.volumes[static_cast<std::size_t>(index)];
-  std::shared_ptr<const sd::GridData> data;
+  const sd::GridData* data = nullptr;
   bool use_box = true;
+  Transform to_file;
   if (const auto* file = std::get_if<sd::GridFileDesc>(&desc.kind)) {
-    auto& known = files_[file->filename];
-    if (!known) known = std::make_shared<const sd::GridData>(sd::read_vol(file->filename));
-    data = known, use_box = file->use_grid_box;
+    const auto [known, first] = files_.try_emplace({file->filename, file->grid});
+    if (first) {
+      known->second = sd::read_grid_file(*file);
+      if (!known->second.too_fine.empty())
+        notes_.warn(desc.where, known->second.too_fine, known->second.coarser);
+    }
+    data = &known->second.numbers, use_box = file->use_grid_box, to_file = known->second.to_file;
   } else {
-    data = std::get<std::shared_ptr<const sd::GridData>>(desc.kind);
+    data = std::get<std::shared_ptr<const sd::GridData>>(desc.kind).get();
   }
   Volume& out = at->second;
   const auto [least, most] = std::minmax_element(data->values.begin(), data->values.end());
   out.least = *least, out.most = *most;
   if (use_box) {
     const Vec3f size = data->hi - data->lo;
-    out.box = Transform::translate(data->lo) * Transform::scale(size.x, size.y, size.z);
+    out.box = to_file * Transform::translate(data->lo) * Transform::scale(size.x, size.y, size.z);
   }
   out.grid = std::make_shared<const media::Grid>(data->size, data->channels, data->values,
                                                  sampling(desc.sampling), desc.nearest);

@@ -4,10 +4,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "media/medium.h"
 #include "scenedesc/schema/scene_desc.h"
+#include "scenedesc/volumes/grid_file.h"
 #include "world/notes.h"
 #include "world/units.h"
 
@@ -36,7 +38,7 @@ class MediaBuilder {
   const scenedesc::SceneDesc& desc_;
   Notes& notes_;
   std::map<int, Volume> volumes_;
-  std::map<std::string, std::shared_ptr<const scenedesc::GridData>> files_;
+  std::map<std::pair<std::string, std::string>, scenedesc::GridFile> files_;  // by name and grid
   std::size_t memory_bytes_ = 0;
 };
 

@@ -233,6 +233,49 @@ def vol():
     write("vol", "directions.vol", grid(4, (1, 1, 1), 3, bytes(2)))
 
 
+def nanovdb():
+    def about(kind, size, stored, name, grid_class):
+        return struct.pack("<4Q2I6d6i3dI4I3I2HI", size, stored, 0, 0, kind, grid_class, *[0.0] * 6, *[0] * 6, 1, 1, 1, len(name) + 1,
+                           1, 1, 1, 1, 0, 0, 0, 0, 0, 32 << 21) + name + b"\0"
+
+    # A root with one child and a tile; a chain of nodes down to one leaf of numbers; the rest is the background, 0.
+    def grid(kind, leaf, grid_class=2):
+        root_size, leaf_table = (96, 128) if kind == 2 else (64, 96)
+        head = bytearray(672 + 64 + root_size + 64)
+        head[0:8] = b"NanoVDB0"
+        struct.pack_into("<2I", head, 632, grid_class, kind)
+        struct.pack_into("<9d", head, 384, .5, 0, 0, 0, .25, 0, 0, 0, 1)
+        struct.pack_into("<3d", head, 528, 1, 2, 3)
+        struct.pack_into("<Q", head, 672 + 24, 64)
+        root = 672 + 64
+        struct.pack_into("<6iI", head, root, 0, 0, 0, 7, 7, 7, 2)
+        struct.pack_into("<QqI", head, root + root_size, 0, root_size + 64, 0)
+        struct.pack_into("<QqI", head, root + root_size + 32, 1 << 42, 0, 1)
+        upper, lower = bytearray(270400), bytearray(33856)
+        upper[4128] = lower[544] = 1
+        struct.pack_into("<q", upper, 8256, len(upper))
+        struct.pack_into("<q", lower, 1088, len(lower))
+        return bytes(head + upper + lower) + leaf.ljust(leaf_table, b"\0")[:leaf_table] + leaf[leaf_table:]
+
+    def file(*grids):
+        stored = [struct.pack("<Q", len(z)) + z for z in (zlib.compress(body, 9) for _, _, body in grids)]
+        return (b"NanoVDB0" + struct.pack("<I2H", 32 << 21, len(grids), 1) +
+                b"".join(about(kind, len(body), len(z), name, 2) for (name, kind, body), z in zip(grids, stored)) + b"".join(stored))
+
+    floats = bytes(96) + struct.pack("<512f", *(k / 512 for k in range(512)))
+    packed = bytes(80) + struct.pack("<2f4H", 1, .5, 0, 0, 0, 0)
+    write("nanovdb", "floats.nvdb", file((b"density", 1, grid(1, floats))))
+    write("nanovdb", "doubles.nvdb", file((b"density", 2, grid(2, bytes(128) + struct.pack("<512d", *range(512))))))
+    write("nanovdb", "fp4.nvdb", file((b"heat", 13, grid(13, packed + bytes(range(256))))))
+    bits = bytearray(packed)
+    bits[15] = 1 << 5  # two for each number
+    write("nanovdb", "fpn.nvdb", file((b"density", 16, grid(16, bytes(bits) + bytes(range(128)))), (b"heat", 1, grid(1, floats))))
+    # Changes to files of the fuzz target: the tree refers to a root elsewhere, the root says that it has many parts, a box is large.
+    for name, changes in {"root": [(896, 255)], "parts": [(960, 9), (961, 1)], "box": [(950, 127)], "none": []}.items():
+        for kind in range(4):
+            write("nanovdb", f"{name}_{kind}", bytes([kind]) + b"".join(struct.pack("<IB", *c) for c in changes))
+
+
 def images():
     # The JPEG seeds beside these are of write_sample_jpeg in tests/film.
     def png(name, depth, color, interlace, rows, *more):
@@ -261,6 +304,7 @@ def main():
     serialized()
     ies()
     vol()
+    nanovdb()
     gltf()
     for name, text in SCENES.items():
         write("mitsuba", name, text)

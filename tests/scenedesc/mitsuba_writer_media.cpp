@@ -6,6 +6,7 @@
 #include "mesh_builders.h"
 #include "round_trip.h"
 #include "scenedesc/volumes/vol_file.h"
+#include "sparse_files.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -227,6 +228,43 @@ TEST(WrittenMedia, FilesOfBytesAreWrittenAnew) {
     const GridData back = numbers_of(trip.again.volumes.at(0));
     EXPECT_EQ(back.values, (std::vector<float>{0.2f, 1}));
     EXPECT_EQ(back.hi, (own_box ? Vec3f{1, 4, 3} : Vec3f{1, 1, 1}));
+  }
+}
+
+// A sparse grid goes out as the dense one that it is in memory, where its file's transform has it.
+TEST(WrittenMedia, SparseGridsAreWrittenAnew) {
+  const test::TemporaryFolder folder;
+  test_files::Grid sparse;
+  sparse.voxels = {{{3, 0, 0}, 0.5f}, {{4, 0, 0}, 1}};
+  sparse.to_file = Transform::translate(1, 2, 3) * Transform::scale(2, 2, 2);
+  test_files::write_vdb(folder / "smoke.vdb", {sparse});
+  for (const bool own_box : {true, false}) {
+    SceneDesc scene = cube_of_a_medium();
+    VolumeDesc& v = scene.volumes.emplace_back();
+    v.sampling = GridSampling::corners, v.to_world = Transform::translate(10, 0, 0);
+    v.kind = GridFileDesc{folder / "smoke.vdb", own_box};
+    scene.volumes.push_back(v);
+    scene.media[0].extinction.volume = 0;
+    scene.media.push_back(scene.media[0]);
+    scene.media[1].extinction.volume = 1;
+    const RoundTrip trip(scene, folder);
+    EXPECT_EQ(all_warnings(trip.first), "");
+    ASSERT_FALSE(trip.first.files.empty());
+    EXPECT_TRUE(trip.first.files[0].name.ends_with(".vol"));
+    const VolumeDesc& back = trip.again.volumes.at(0);
+    const GridData numbers = numbers_of(back);
+    EXPECT_EQ(numbers.size, (std::array{4, 3, 3}));
+    EXPECT_EQ(numbers.values.at((1 * 3 + 1) * 4 + 1), 0.5f);
+    EXPECT_EQ(numbers.values.at((1 * 3 + 1) * 4 + 2), 1.0f);
+    // In the middle of its cell is each number.
+    Vec3d place;
+    for (int axis = 0; axis < 3; ++axis)
+      place[axis] = numbers.lo[axis] + (axis == 0 ? 2.5 : 1.5) /
+                                           numbers.size[static_cast<std::size_t>(axis)] *
+                                           (numbers.hi[axis] - numbers.lo[axis]);
+    const Vec3f at = back.to_world.point(Vec3f(place)),
+                wanted = own_box ? Vec3f{19, 2, 3} : Vec3f{10 + 2.0f / 3, 0.5f, 0.5f};
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(at[axis], wanted[axis], 1e-5f);
   }
 }
 

@@ -147,7 +147,8 @@ TEST(PbrtWarnings, AreErrorsUnderStrictAndNameLineAndParameter) {
 
 TEST(PbrtWarnings, WhatThereIsNot) {
   for (const char* world :
-       {"MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"fog\" \"\"\n",
+       {"MakeNamedMedium \"fog\" \"string type\" \"cloud\" \"float frequency\" 1 MediumInterface \"fog\" "
+        "\"\"\n",
         "LightSource \"projection\" \"string filename\" \"x.png\"\n",
         "Material \"measured\" \"string filename\" \"x.bsdf\"\n",
         "Material \"subsurface\" \"rgb mfp\" [ 1 1 1 ]\n",

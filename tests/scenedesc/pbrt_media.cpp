@@ -1,6 +1,7 @@
 // Participating media of pbrt scenes, and what is between them.
 #include <cmath>
 
+#include "base/spectrum.h"
 #include "scenedesc/pbrt_scene.h"
 
 namespace lumirank::scenedesc {
@@ -137,20 +138,25 @@ TEST(PbrtMedium, GridsOfColors) {
   EXPECT_NE(half.scattering.volume, kNone);
 }
 
-TEST(PbrtMedium, WhatThereIsNotIsEmptySpace) {
-  for (const char* type : {"\"cloud\" \"float wispiness\" 2", "\"nanovdb\" \"string filename\" \"x.nvdb\""}) {
-    const SceneDesc scene =
-        pbrt_world(medium_text("c", type) + "MediumInterface \"c\" \"\"\nMaterial \"interface\"\n" + kSphere);
-    const Warning warning = only_warning(scene);
-    EXPECT_EQ(warning.where.line, 3);
-    EXPECT_EQ(warning.used_instead, "empty space");
-    EXPECT_TRUE(scene.media.empty());
-    EXPECT_EQ(scene.shapes.at(0).media.inside, kNone);
-  }
+TEST(PbrtMedium, GridsOfNumbersThatGlow) {
   const SceneDesc hot = pbrt_world(medium_text(
-      "fire", "\"uniformgrid\" \"float density\" 1 \"float temperature\" 1000 \"float temperaturescale\" 2"));
-  EXPECT_EQ(only_warning(hot).used_instead, "dark ones");
-  EXPECT_EQ(hot.media.at(0).emission.volume, kNone);
+      "fire",
+      "\"uniformgrid\" \"integer nx\" 2 \"float density\" [ 1 3 ] \"float temperature\" [ 1000 40 ] \"float "
+      "temperaturescale\" 2 \"float Lescale\" [ .5 1 ] \"rgb sigma_a\" [ 4 4 4 ]"));
+  EXPECT_TRUE(hot.warnings.empty()) << describe(hot);
+  const MediumDesc& m = hot.media.at(0);
+  EXPECT_NEAR(m.emission.value.g, 4 * 106.856895f, 1e-2f);
+  const GridData& glow = grid(hot, m.emission);
+  EXPECT_EQ(glow.channels, 3);
+  const Rgb color = blackbody_to_rgb(2000) * static_cast<float>(0.5 / planck(1448.8859775, 2000));
+  expect_near({glow.values.at(0), glow.values[1], std::max(glow.values[2], 0.0f)},
+              {color.r, color.g, std::max(color.b, 0.0f)}, 1e-5f);
+  EXPECT_EQ(glow.values.at(3), 0) << "80 K is dark";
+  EXPECT_THROW(
+      pbrt_world(medium_text("fire",
+                             "\"uniformgrid\" \"float density\" 1 \"float temperature\" 1000 \"rgb Le\" "
+                             "[ 1 1 1 ]")),
+      InputError);
 }
 
 TEST(PbrtMediumInterface, DividesWhereTheSidesDiffer) {

@@ -80,6 +80,32 @@ TEST(Media, AGridIsWhereItsBoxIs) {
   EXPECT_EQ(thickness(1.1), 0);
 }
 
+// A file of a sparse grid: a leaf of the numbers k/512 whose voxels are half as wide and a quarter as high as
+// a unit, from (1, 2, 3) on.
+TEST(Media, ASparseGridIsWhereItsFileSays) {
+  sd::SceneDesc desc = cube_of_fog(20);
+  sd::VolumeDesc volume;
+  volume.sampling = sd::GridSampling::corners;
+  volume.to_world = Transform::translate(-1, 0, 0);
+  volume.kind =
+      sd::GridFileDesc{std::string(LUMIRANK_TEST_DATA) + "/../fuzz/corpus/nanovdb/floats.nvdb", true};
+  desc.volumes.push_back(volume);
+  desc.media[0].extinction = {Rgb(1), 0};
+  std::vector<sd::Warning> warnings;
+  const World world = built(desc, true, warnings);
+  EXPECT_TRUE(warnings.empty());
+  const auto thickness = [&](Vec3d voxel) {
+    const Vec3d place{voxel.x * 0.5, 2 + voxel.y * 0.25, 3 + voxel.z};
+    return static_cast<double>(world.media()[0].at(world.units().to_world(place)).extinction.r) *
+           world.units().scale();
+  };
+  EXPECT_NEAR(thickness({1, 2, 3}), 83 / 512.0, 1e-5);
+  EXPECT_NEAR(thickness({7, 7, 7}), 511 / 512.0, 1e-5);
+  EXPECT_NEAR(thickness({6.5, 7, 7}), 479 / 512.0, 1e-5);
+  EXPECT_NEAR(thickness({7.5, 7, 7}), 511 / 1024.0, 1e-5) << "it fades over one voxel";
+  EXPECT_EQ(thickness({8.1, 7, 7}), 0);
+}
+
 TEST(Media, AreLeftOutWithAWarning) {
   std::vector<sd::Warning> warnings;
   const World world = built(cube_of_fog(1), false, warnings);

@@ -72,9 +72,12 @@ VolumeInput Reader::volume_input(const Element& element) {
   GridFileDesc grid;
   const auto file = this->file(p.required_text("filename"), p.where_of("filename"), "volume", "1 everywhere");
   // In 0.6 a grid is where its file says, and the first and the last number lie on the faces of its box.
+  // Sparse grids, which Mitsuba does not have, are where their files say in 3.x as well.
   const bool old = dialect().camel_case();
-  grid.filename = file.name, grid.use_grid_box = p.flag("use_grid_bbox", old);
-  out.sampling = old ? GridSampling::corners : GridSampling::centers;
+  grid.filename = file.name;
+  grid.use_grid_box = p.flag("use_grid_bbox", old || grid.sparse());
+  if (grid.sparse()) grid.grid = p.text("grid").value_or("");
+  out.sampling = old || grid.sparse() ? GridSampling::corners : GridSampling::centers;
   const std::string filter = p.text("filter_type").value_or("trilinear");
   out.nearest = filter == "nearest";
   if (filter != "nearest" && filter != "trilinear")

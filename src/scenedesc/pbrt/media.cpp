@@ -3,27 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenedesc/data/media.h"
+#include "scenedesc/pbrt/glow.h"
+#include "scenedesc/pbrt/media_parts.h"
 #include "scenedesc/pbrt/reader.h"
 
 namespace lumirank::scenedesc::pbrt {
 
 namespace {
-
-// The integral of the CIE 1931 observer's ȳ, which is what pbrt's film makes of an illuminant. All lights are
-// divided by it but the "Le" of rgbgrid (RGBGridMedium::Create).
-constexpr float kUndivided = 106.856895f;
-
-float not_negative(Params& p, const char* name, float fallback) {
-  const float value = p.number(name, fallback);
-  if (!(value >= 0)) p.fail(name, "is negative", "give 0 or more");
-  return value;
-}
-
-Rgb constant(Params& p, const char* name, Rgb fallback, Intent intent) {
-  if (p.is_texture(name)) p.fail(name, "is a texture", "give a color or a spectrum");
-  return constant_color(p, name, intent).value_or(fallback);
-}
 
 VolumeInput even(Rgb value) { return {value, kNone}; }
 
@@ -76,15 +62,7 @@ class GridMaker {
  public:
   GridMaker(Reader& reader, Params& p, const Transform& to_world)
       : reader_(reader), p_(p), size_(grid_size(p)) {
-    const Vec3d a = p.point3("p0", {0, 0, 0}), b = p.point3("p1", {1, 1, 1});
-    const Vec3d lo{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
-    const Vec3d hi{std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-    if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
-      p.fail("p1", "leaves no room above \"p0\"", "they are opposite corners of a box");
-    // In double precision: the box may be small, and far away.
-    to_world_ = to_world * Transform::translate(lo) * Transform::scale(hi.x - lo.x, hi.y - lo.y, hi.z - lo.z);
-    if (!to_world_.is_finite() || !to_world_.inverse())
-      throw InputError(p.where(), "the transform of " + p.title() + " is singular", "a Scale by 0 perhaps");
+    to_world_ = read_box(p).to_world(p, to_world);
   }
 
   void uniform(MediumDesc& out) {
@@ -98,7 +76,8 @@ class GridMaker {
     const Rgb shine = constant(p_, "Le", Rgb(0), Intent::illuminant) * absorption;
     const std::vector<float> shares = numbers(p_, "Lescale", size_);
     if (!is_black(shine)) out.emission = {shine, add_volume(shining(density, shares))};
-    temperature();
+    if (p_.has("temperature")) glowing(density, shares, absorption, out);
+    p_.ignore({"temperaturescale", "temperatureoffset", "temperaturecutoff"});
     const int volume = add_volume(std::move(density));
     out.absorption = {absorption, volume}, out.scattering = {scattering, volume};
   }
@@ -144,13 +123,17 @@ class GridMaker {
     return out;
   }
 
-  void temperature() {
-    if (p_.has("temperature")) {
-      if (p_.has("Le")) p_.fail("temperature", "is given beside \"Le\"", "keep one of them");
-      numbers(p_, "temperature", size_);
-      reader_.warn(p_.where_of("temperature"), "media that glow with their temperature", "dark ones");
-    }
-    p_.ignore({"temperature", "temperaturescale", "temperatureoffset", "temperaturecutoff"});
+  // Unlike "Le", what shines by its temperature is not divided by its luminance.
+  void glowing(const std::vector<float>& density, const std::vector<float>& shares, Rgb absorption,
+               MediumDesc& out) {
+    if (p_.has("Le")) p_.fail("temperature", "is given beside \"Le\"", "keep one of them");
+    const std::vector<float> given = numbers(p_, "temperature", size_);
+    const Glow glow(TemperatureScale(p_), given);
+    if (glow.is_dark() || is_black(absorption)) return;
+    const std::vector<float> thickness = shining(density, shares);
+    std::vector<Rgb> cells(given.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = glow.at(given[i]) * thickness[i];
+    out.emission = {absorption * kUndivided, add_volume(cells)};
   }
 
   int add_volume(std::vector<float> values, int channels = 1) {
@@ -180,39 +163,10 @@ class GridMaker {
   Transform to_world_;
 };
 
-// "preset": coefficients and the mean cosine that goes with them.
-struct Preset {
-  Rgb absorption{1}, scattering{1};
-  std::optional<Rgb> mean_cosine;
-};
-
-Preset preset(Reader& reader, Params& p) {
-  const std::string name = p.text("preset", "");
-  if (name.empty()) return {};
-  if (const auto known = named_medium(name)) {
-    // As in pbrt, a preset comes before what is stated.
-    p.ignore({"sigma_a", "sigma_s"});
-    return {known->absorption, known->scattering, known->mean_cosine};
-  }
-  const bool stated = p.has("sigma_a") && p.has("sigma_s");
-  reader.warn(p.where_of("preset"), "the preset " + in_quotes(name) + " of media",
-              stated ? "\"sigma_a\" and \"sigma_s\"" : "whole milk");
-  // Jensen et al. 2001, table 2: what pbrt-v3 takes for a medium of which nothing is stated.
-  return {Rgb(0.0011f, 0.0024f, 0.014f), Rgb(2.55f, 3.21f, 3.77f), std::nullopt};
-}
-
 void homogeneous(Reader& reader, Params& p, MediumDesc& out) {
-  const Preset start = preset(reader, p);
-  const float scale = not_negative(p, "scale", 1);
-  const auto coefficient = [&](const char* name, Rgb value) {
-    return (start.mean_cosine ? value : constant(p, name, value, Intent::unbounded)) * scale;
-  };
-  out.absorption = even(coefficient("sigma_a", start.absorption));
-  out.scattering = even(coefficient("sigma_s", start.scattering));
+  coefficients(reader, p, out);
   const Rgb shine = constant(p, "Le", Rgb(0), Intent::illuminant) * not_negative(p, "Lescale", 1);
   out.emission = even(shine * out.absorption.value);
-  if (start.mean_cosine && !p.has("g"))
-    out.phase = {{PhaseLobeDesc::Kind::henyey_greenstein, *start.mean_cosine, 1}};
 }
 
 void phase_function(Params& p, MediumDesc& out) {
@@ -225,11 +179,6 @@ void phase_function(Params& p, MediumDesc& out) {
 
 int Reader::make_medium(Params& p, const std::string& name) {
   const std::string type = p.required_text("type");
-  if (type == "cloud" || type == "nanovdb") {
-    warn(p.where(), "the medium " + in_quotes(type) + " (" + p.title() + ")", "empty space");
-    p.ignore_all();
-    return kNone;
-  }
   MediumDesc out;
   out.id = name, out.where = p.where();
   out.form = MediumDesc::Form::absorption_and_scattering;
@@ -239,6 +188,10 @@ int Reader::make_medium(Params& p, const std::string& name) {
     GridMaker(*this, p, to_world(p.where())).uniform(out);
   } else if (type == "rgbgrid") {
     GridMaker(*this, p, to_world(p.where())).colored(out);
+  } else if (type == "cloud") {
+    add_cloud(*this, p, to_world(p.where()), out);
+  } else if (type == "nanovdb") {
+    if (!add_sparse_grids(*this, p, to_world(p.where()), out)) return kNone;
   } else {
     p.fail("type", "is " + in_quotes(type),
            type == "heterogeneous" ? "pbrt-v4 calls it \"uniformgrid\""

@@ -214,17 +214,22 @@ std::string show(const PhaseLobeDesc& lobe) {
 
 std::string kind(const VolumeDesc& v) {
   constexpr const char* kSamplings[] = {", from face to face", "", ", fading at the faces"};
-  const auto show_grid = Overloaded{
-      [](const GridFileDesc& x) { return "grid " + x.filename + (x.use_grid_box ? ", in its own box" : ""); },
-      [](const std::shared_ptr<const GridData>& x) {
-        const auto& [nx, ny, nz] = x->size;
-        std::string text = "grid of " + std::to_string(nx) + " × " + std::to_string(ny) + " × " +
-                           std::to_string(nz) + (x->channels == 1 ? " numbers" : " colors");
-        if (!(x->lo == Vec3f{0, 0, 0} && x->hi == Vec3f{1, 1, 1}))
-          text += ", box " + show(x->lo) + " to " + show(x->hi);
-        return text;
-      }};
-  return std::visit(show_grid, v.kind) + kSamplings[static_cast<int>(v.sampling)] +
+  const auto show_grid = Overloaded{[](const GridFileDesc& x) {
+                                      return "grid " + (x.grid.empty() ? "" : "\"" + x.grid + "\" of ") +
+                                             x.filename + (x.use_grid_box ? ", in its own box" : "");
+                                    },
+                                    [](const std::shared_ptr<const GridData>& x) {
+                                      const auto& [nx, ny, nz] = x->size;
+                                      std::string text = "grid of " + std::to_string(nx) + " × " +
+                                                         std::to_string(ny) + " × " + std::to_string(nz) +
+                                                         (x->channels == 1 ? " numbers" : " colors");
+                                      if (!(x->lo == Vec3f{0, 0, 0} && x->hi == Vec3f{1, 1, 1}))
+                                        text += ", box " + show(x->lo) + " to " + show(x->hi);
+                                      return text;
+                                    }};
+  const auto* file = std::get_if<GridFileDesc>(&v.kind);
+  return std::visit(show_grid, v.kind) +
+         (file && file->sparse() ? "" : kSamplings[static_cast<int>(v.sampling)]) +
          (v.nearest ? ", nearest" : "") + show(v.to_world);
 }
 

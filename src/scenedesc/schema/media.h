@@ -2,7 +2,9 @@
 // directions. Lengths are the file's; coefficients are per length of the file.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
 #include <string>
 #include <variant>
@@ -33,8 +35,17 @@ struct GridData {
 };
 
 struct GridFileDesc {
-  std::string filename;       // Mitsuba's .vol
+  std::string filename;       // Mitsuba's .vol, OpenVDB's .vdb or NanoVDB's .nvdb
   bool use_grid_box = false;  // the file's box is where the grid is; false: the unit cube
+  std::string grid = {};      // which of several in a sparse file; "": "density", or the only one
+
+  // By the name of the file. Numbers of sparse grids belong to whole indices: their volumes are sampled at
+  // corners.
+  bool sparse() const {
+    std::string end = filename.substr(filename.size() - std::min<std::size_t>(filename.size(), 5));
+    for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return end == ".nvdb" || end.ends_with(".vdb");
+  }
 };
 
 // A quantity that varies in space. Beyond its box it is 0 if it is a density, and otherwise what its

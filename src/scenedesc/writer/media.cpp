@@ -3,7 +3,9 @@
 // becomes that: exactly where it can.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "scenedesc/volumes/grid_file.h"
 #include "scenedesc/volumes/vol_file.h"
 #include "scenedesc/writer/writer.h"
 
@@ -42,6 +44,18 @@ GridData with_numbers(const GridData& at, const std::vector<Rgb>& colors) {
   return out;
 }
 
+// Whether all its outermost numbers are 0.
+bool dark_outside(const GridData& grid) {
+  std::size_t k = 0;
+  const auto outermost = [&](int n, std::size_t axis) { return n == 0 || n == grid.size[axis] - 1; };
+  for (int z = 0; z < grid.size[2]; ++z)
+    for (int y = 0; y < grid.size[1]; ++y)
+      for (int x = 0; x < grid.size[0]; ++x, ++k)
+        if ((outermost(x, 0) || outermost(y, 1) || outermost(z, 2)) && !is_black(color_at(grid, k)))
+          return false;
+  return true;
+}
+
 // With zeros all around, in the same box.
 GridData with_rim(const GridData& grid) {
   GridData out;
@@ -61,6 +75,31 @@ GridData with_rim(const GridData& grid) {
 }
 
 }  // namespace
+
+void MitsubaWriter::take_sparse_grids() {
+  struct Taken {
+    std::shared_ptr<const GridData> grid;
+    Transform to_file;
+  };
+  std::map<std::pair<std::string, std::string>, Taken> taken;
+  for (VolumeDesc& volume : volumes_) {
+    const auto* file = std::get_if<GridFileDesc>(&volume.kind);
+    if (!file || !file->sparse()) continue;
+    const auto [at, fresh] = taken.try_emplace({file->filename, file->grid});
+    Taken& known = at->second;
+    if (fresh) {
+      GridFile read = read_grid_file(*file);
+      if (!read.too_fine.empty()) out_.warnings.push_back({volume.where, read.too_fine, read.coarser});
+      known.to_file = read.to_file, known.grid = std::make_shared<const GridData>(std::move(read.numbers));
+    }
+    const Vec3d lo(known.grid->lo), size = Vec3d(known.grid->hi) - lo;
+    volume.to_world =
+        volume.to_world * (file->use_grid_box ? known.to_file
+                                              : Transform::scale(1 / size.x, 1 / size.y, 1 / size.z) *
+                                                    Transform::translate(lo * -1));
+    volume.kind = known.grid;
+  }
+}
 
 const MitsubaWriter::VolumeNumbers& MitsubaWriter::numbers(const VolumeDesc& volume) {
   if (const auto* held = std::get_if<std::shared_ptr<const GridData>>(&volume.kind)) {
@@ -100,7 +139,7 @@ int MitsubaWriter::centered(int index, bool ends) {
     if (fading) stretch[axis] = (n + 2.0) / n;
   }
   const bool larger = !(stretch == Vec3d{1, 1, 1});
-  if (ends && larger && corners)
+  if (ends && larger && corners && !dark_outside(grid))
     warn(v.where, "a density that ends at the outermost numbers of its grid",
          "a grid that goes on for half a cell and is the same up to there");
   if (ends && fading)

@@ -25,6 +25,7 @@ MitsubaWriter::MitsubaWriter(const SceneDesc& scene, const std::string& filename
 }
 
 WrittenScene MitsubaWriter::write() {
+  take_sparse_grids();
   xml_.open("scene", {{"version", "3.0.0"}});
   // Mitsuba's path tracer does not see media.
   xml_.open("integrator", {{"type", scene_.media.empty() ? "path" : "volpathmis"}});

@@ -88,6 +88,8 @@ class MitsubaWriter {
     VolumeInput extinction, albedo;
   };
   const VolumeNumbers& numbers(const VolumeDesc& volume);
+  // Sparse grids, which Mitsuba does not read, are taken into memory.
+  void take_sparse_grids();
   // The index of a new one: where `volume` is, with these numbers.
   int add_volume(VolumeDesc volume, GridData grid);
   int centered(int volume, bool ends);

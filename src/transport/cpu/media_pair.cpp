@@ -188,8 +188,11 @@ void MediaPairs::connect(PairKind kind, const std::uint32_t rows[16], const std:
 
 MediaPairs::Numbers MediaPairs::numbers(PairKind kind, const std::uint32_t* rows,
                                         const std::uint32_t* columns) const {
-  const LaneBits row =
-      settings_.shared_places ? LaneBits{} : Picker(rows)(has_segment(kind) ? segment_key_ : receiver_key_);
+  LaneBits row = Picker(rows)(has_segment(kind) ? segment_key_ : receiver_key_);
+  // Emitters are few, and an error that all rows share would not go away in their sum.
+  if (settings_.shared_places)
+    for (int k = 0; k < 16; ++k)
+      if (has_ray(kind) || lights_.points.depth[columns[k]] > 0) row[k] = 0;
   const LaneBits column = Picker(columns)(has_ray(kind) ? ray_key_ : point_key_);
   const LaneBits key = mix_pair(row, column, static_cast<std::uint32_t>(mix64(settings_.seed)));
   return {unit_lane(key), unit_lane(mix(key ^ 0x68bc21ebu))};

@@ -267,6 +267,19 @@ std::size_t lights_in(std::span<const MediaBatch> batches) {
   return count;
 }
 
+// As MediaLightSettings::least_direct says.
+void repeat(std::vector<LightRecord>& lights, std::size_t least) {
+  if (lights.empty() || lights.size() >= least) return;
+  const std::size_t own = lights.size(), copies = (least + own - 1) / own;
+  for (LightRecord& light : lights) light.power *= 1 / static_cast<float>(copies);
+  for (std::size_t copy = 1; copy < copies; ++copy)
+    for (std::size_t j = 0; j < own; ++j) {
+      LightRecord again = lights[j];
+      again.id = mix64(again.id + copy);
+      lights.push_back(again);
+    }
+}
+
 }  // namespace
 
 LightsInMedia trace_lights_in_media(const world::World& world, const MediaLightSettings& settings,
@@ -286,6 +299,7 @@ LightsInMedia trace_lights_in_media(const world::World& world, const MediaLightS
     const std::size_t wanted = indirect ? std::max<std::size_t>(1, settings.count / 4) : settings.count;
     direct = std::max(need.min_count, need.sampled ? wanted : need.min_count);
     points.push_back(emitter_lights(world, choice, settings.seed, direct));
+    repeat(points[0].lights, settings.least_direct);
     out.points.direct_count = points[0].lights.size();
   }
   std::vector<MediaBatch> batches;

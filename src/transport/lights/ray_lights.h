@@ -47,6 +47,9 @@ struct MediaLightSettings {
   int max_depth = -1;          // Mitsuba's count
   int eye_medium = -1;         // what emitters stand in where no surface around them tells
   bool direct = true, indirect = true;
+  // Emitters' columns, at least: where there are fewer of them each stands there several times, with its part
+  // of the power, and what a segment gets from it is estimated at as many places.
+  std::size_t least_direct = 0;
 };
 
 // Deterministic in the seed. Emitters get a quarter of the lights where they can use so many; the number of
