@@ -212,12 +212,14 @@ std::string show(const PhaseLobeDesc& lobe) {
   return (lobe.kind == PhaseLobeDesc::Kind::schlick ? "schlick " : "hg ") + show(lobe.g);
 }
 
+std::string show(const GridFileDesc& file) {
+  return "grid " + (file.grid.empty() ? "" : "\"" + file.grid + "\" of ") + file.filename +
+         (file.use_grid_box ? ", in its own box" : "");
+}
+
 std::string kind(const VolumeDesc& v) {
   constexpr const char* kSamplings[] = {", from face to face", "", ", fading at the faces"};
-  const auto show_grid = Overloaded{[](const GridFileDesc& x) {
-                                      return "grid " + (x.grid.empty() ? "" : "\"" + x.grid + "\" of ") +
-                                             x.filename + (x.use_grid_box ? ", in its own box" : "");
-                                    },
+  const auto show_grid = Overloaded{[](const GridFileDesc& x) { return show(x); },
                                     [](const std::shared_ptr<const GridData>& x) {
                                       const auto& [nx, ny, nz] = x->size;
                                       std::string text = "grid of " + std::to_string(nx) + " × " +
