@@ -107,7 +107,7 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
     valid[k] = good ? packet.valid[k] : 0;
   }
   if (context.scene->run_up > 0) run_up(*context.scene, rays);
-  embree::occluded16(valid, scene, context.embree, rays, !context.scene->has_instances());
+  embree::occluded16(valid, scene, context.embree, rays, packet.alike && !context.scene->has_instances());
   unsigned visible = 0;
   for (unsigned k = 0; k < 16; ++k) visible |= (unsigned{valid[k] != 0} & unsigned{rays.tfar[k] >= 0}) << k;
   return static_cast<std::uint16_t>(visible);

@@ -63,6 +63,8 @@ struct alignas(64) ShadowPacket {
 
   std::uint64_t key(unsigned k) const { return seed ^ (static_cast<std::uint64_t>(from[k]) << 32 | to[k]); }
   int valid[16];  // -1: trace; 0: leave out
+  // The segments share an end or a direction, and find their way faster together than one by one.
+  bool alike = true;
 
   Ray ray(int k) const {
     return {{ox[k], oy[k], oz[k]}, {dx[k], dy[k], dz[k]}, kShadowEpsilon, t_far[k] * (1 - kShadowEpsilon)};

@@ -7,7 +7,12 @@
 namespace lumirank::media {
 
 Grid::Grid(std::array<int, 3> size, int channels, std::vector<float> values, Sampling sampling, bool nearest)
-    : size_(size), channels_(channels), values_(std::move(values)), sampling_(sampling), nearest_(nearest) {}
+    : size_(size), channels_(channels), values_(std::move(values)), sampling_(sampling), nearest_(nearest) {
+  const float beside = sampling == Sampling::corners ? 1.0f : 0.0f;
+  steps_ = {static_cast<float>(size[0]) - beside, static_cast<float>(size[1]) - beside,
+            static_cast<float>(size[2]) - beside};
+  shift_ = sampling == Sampling::corners ? 0.0f : -0.5f;
+}
 
 Rgb Grid::value(int x, int y, int z) const {
   if (sampling_ == Sampling::fading_cells) {
@@ -24,15 +29,10 @@ Rgb Grid::value(int x, int y, int z) const {
   return channels_ == 1 ? Rgb(values_[at]) : Rgb{values_[at], values_[at + 1], values_[at + 2]};
 }
 
-// In numbers along each axis: at 0 is the first one, at size - 1 the last.
 Vec3f Grid::index(Vec3f unit) const {
-  Vec3f out;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto n = static_cast<float>(size_[static_cast<std::size_t>(axis)]);
-    const float u = std::clamp(unit[axis], 0.0f, 1.0f);
-    out[axis] = sampling_ == Sampling::corners ? u * (n - 1) : u * n - 0.5f;
-  }
-  return out;
+  return {std::clamp(unit.x, 0.0f, 1.0f) * steps_.x + shift_,
+          std::clamp(unit.y, 0.0f, 1.0f) * steps_.y + shift_,
+          std::clamp(unit.z, 0.0f, 1.0f) * steps_.z + shift_};
 }
 
 Rgb Grid::at(Vec3f unit) const {

@@ -38,6 +38,7 @@ class Grid {
 
  private:
   Rgb value(int x, int y, int z) const;
+  // In numbers along each axis: at 0 is the first one, at size - 1 the last.
   Vec3f index(Vec3f unit) const;
 
   std::array<int, 3> size_;
@@ -45,6 +46,8 @@ class Grid {
   std::vector<float> values_;
   Sampling sampling_;
   bool nearest_;
+  Vec3f steps_;  // numbers along the unit cube
+  float shift_;  // of the first one from its face
 };
 
 // A quantity of a medium: a constant, times a grid if there is one.

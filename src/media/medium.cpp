@@ -27,7 +27,10 @@ Medium::Medium(Form form, Field first, Field second, Field emission, const Phase
       emission_(std::move(emission)),
       phase_(phase) {
   const bool sum = form == Form::absorption_and_scattering;
-  if (!first_.grid && !(sum && second_.grid)) return;
+  if (!first_.grid && !(sum && second_.grid)) {
+    even_ = extinction({});
+    return;
+  }
   const Field& box = first_.grid ? first_ : second_;
   to_unit_ = box.to_unit;
   std::array<int, 3> size{};
@@ -70,9 +73,10 @@ Coefficients Medium::at(Vec3f place) const {
 std::size_t Medium::memory_bytes() const { return sizeof(Medium) + (bounds_ ? bounds_->memory_bytes() : 0); }
 
 Medium::Walk::Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_max)
-    : medium_(medium), t_end_(t_max) {
+    : medium_(medium), origin_(origin), direction_(direction), t_end_(t_max) {
   if (medium.homogeneous()) return;
-  const Vec3f o = medium.to_unit_.point(origin), d = medium.to_unit_.vector(direction);
+  unit_origin_ = medium.to_unit_.point(origin), unit_direction_ = medium.to_unit_.vector(direction);
+  const Vec3f o = unit_origin_, d = unit_direction_;
   for (int axis = 0; axis < 3; ++axis) {
     if (d[axis] == 0) {
       if (!(o[axis] >= 0 && o[axis] <= 1)) t_end_ = -1;
@@ -87,41 +91,24 @@ Medium::Walk::Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_
     return;
   }
   const auto& size = medium.bounds_->size();
+  const int strides[3] = {1, size[0], size[0] * size[1]};
   for (int axis = 0; axis < 3; ++axis) {
     const auto count = size[static_cast<std::size_t>(axis)];
     const auto n = static_cast<float>(count);
     const float p = (o[axis] + t_ * d[axis]) * n;
-    cell_[axis] = std::clamp(static_cast<int>(p), 0, count - 1);
-    step_[axis] = d[axis] > 0 ? 1 : (d[axis] < 0 ? -1 : 0);
-    if (step_[axis] == 0) {
+    const int cell = std::clamp(static_cast<int>(p), 0, count - 1);
+    index_ += cell * strides[axis];
+    if (d[axis] == 0) {
       next_t_[axis] = delta_t_[axis] = kInfinity;
       continue;
     }
-    const float face = static_cast<float>(cell_[axis] + (step_[axis] > 0 ? 1 : 0)) / n;
-    next_t_[axis] = (face - o[axis]) / d[axis];
-    delta_t_[axis] = 1 / (n * std::abs(d[axis]));
+    const bool up = d[axis] > 0;
+    const float one = 1 / d[axis];
+    left_[axis] = up ? count - cell : cell + 1;
+    stride_[axis] = up ? strides[axis] : -strides[axis];
+    next_t_[axis] = (static_cast<float>(cell + (up ? 1 : 0)) / n - o[axis]) * one;
+    delta_t_[axis] = std::abs(one) / n;
   }
-}
-
-bool Medium::Walk::next(Piece& piece) {
-  if (done_) return false;
-  if (medium_.homogeneous()) {
-    const Rgb extinction = medium_.at({}).extinction;
-    piece = {0, t_end_, extinction, extinction};
-    done_ = true;
-    return true;
-  }
-  const int axis =
-      next_t_[0] < next_t_[1] ? (next_t_[0] < next_t_[2] ? 0 : 2) : (next_t_[1] < next_t_[2] ? 1 : 2);
-  const float end = std::min(t_end_, std::max(t_, next_t_[axis]));
-  const auto& cell = medium_.bounds_->cell(cell_[0], cell_[1], cell_[2]);
-  piece = {t_, end, cell.least, cell.most};
-  t_ = end;
-  cell_[axis] += step_[axis];
-  next_t_[axis] += delta_t_[axis];
-  const int count = medium_.bounds_->size()[static_cast<std::size_t>(axis)];
-  if (!(t_ < t_end_) || cell_[axis] < 0 || cell_[axis] >= count) done_ = true;
-  return true;
 }
 
 }  // namespace lumirank::media

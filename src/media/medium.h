@@ -29,13 +29,15 @@ class ExtinctionBounds {
  public:
   struct Range {
     Rgb least, most;
+    // What is between: within `half` of the middle in every channel.
+    Rgb middle() const { return (least + most) * 0.5f; }
+    float half() const { return 0.5f * max_component(most - least); }
   };
   ExtinctionBounds(std::array<int, 3> size, std::vector<Range> cells)
       : size_(size), cells_(std::move(cells)) {}
   const std::array<int, 3>& size() const { return size_; }
-  const Range& cell(int x, int y, int z) const {
-    return cells_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
-  }
+  int index(int x, int y, int z) const { return (z * size_[1] + y) * size_[0] + x; }
+  const Range& operator[](int index) const { return cells_[static_cast<std::size_t>(index)]; }
   std::size_t memory_bytes() const { return cells_.size() * sizeof(Range); }
 
  private:
@@ -52,7 +54,8 @@ class Medium {
   Medium(Form form, Field first, Field second, Field emission, const PhaseFunction& phase);
 
   const PhaseFunction& phase() const { return phase_; }
-  bool homogeneous() const { return !bounds_; }  // in what it takes from light
+  bool homogeneous() const { return !bounds_; }         // in what it takes from light
+  const Rgb& even_extinction() const { return even_; }  // where it is homogeneous
   bool scatters_evenly() const { return !first_.grid && !second_.grid; }
   bool emits() const { return !emission_.zero(); }
   // Somewhere, perhaps.
@@ -71,17 +74,26 @@ class Medium {
    public:
     struct Piece {
       float begin = 0, end = 0;
-      Rgb least, most;  // extinction
+      ExtinctionBounds::Range extinction{};
     };
     // `direction`: unit.
     Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_max);
     bool next(Piece& piece);
+    // At origin + t·direction, which lies in one of the pieces.
+    Rgb extinction(float t) const {
+      const bool one = medium_.form_ == Form::extinction_and_albedo;
+      return one ? not_negative(medium_.first_.scale *
+                                medium_.first_.grid->at(unit_origin_ + unit_direction_ * t))
+                 : medium_.extinction(origin_ + direction_ * t);
+    }
 
    private:
     const Medium& medium_;
+    Vec3f origin_, direction_, unit_origin_, unit_direction_;  // in the world and in the box of the bounds
     bool done_ = false;
     float t_ = 0, t_end_ = 0;
-    int cell_[3]{}, step_[3]{};
+    // Along each axis: cells until the box ends, how the index changes with one, and where the next begins.
+    int left_[3]{}, stride_[3]{}, index_ = 0;
     float next_t_[3]{}, delta_t_[3]{};
   };
 
@@ -94,6 +106,25 @@ class Medium {
   PhaseFunction phase_;
   std::optional<ExtinctionBounds> bounds_;
   Transform to_unit_;  // of the box of bounds_
+  Rgb even_;
 };
+
+inline bool Medium::Walk::next(Piece& piece) {
+  if (done_) return false;
+  if (medium_.homogeneous()) {
+    piece = {0, t_end_, {medium_.even_, medium_.even_}};
+    done_ = true;
+    return true;
+  }
+  const int axis =
+      next_t_[0] < next_t_[1] ? (next_t_[0] < next_t_[2] ? 0 : 2) : (next_t_[1] < next_t_[2] ? 1 : 2);
+  const float end = std::min(t_end_, std::max(t_, next_t_[axis]));
+  piece = {t_, end, (*medium_.bounds_)[index_]};
+  t_ = end;
+  index_ += stride_[axis];
+  next_t_[axis] += delta_t_[axis];
+  done_ = !(t_ < t_end_) || --left_[axis] == 0;
+  return true;
+}
 
 }  // namespace lumirank::media

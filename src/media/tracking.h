@@ -52,7 +52,7 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
   Medium::Walk::Piece piece;
   while (walk.next(piece)) {
     float t = piece.begin;
-    const Rgb bound = piece.most;
+    const Rgb bound = piece.extinction.most;
     while (true) {
       const float step = bound[hero] > 0 ? -std::log1p(-random()) / bound[hero] : kInfinity;
       if (!(t + step < piece.end)) {
@@ -75,9 +75,13 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
 struct OpticalPath {
   Rgb depth{0}, ratio{1};
 
-  void add_even(Rgb extinction, float distance) {  // where 0 · ∞ is 0
+  void add_even(Rgb extinction, float distance) {
+    if (distance < kInfinity) {
+      depth += extinction * distance;
+      return;
+    }
     for (int c = 0; c < 3; ++c)
-      if (extinction[c] > 0) depth[c] += extinction[c] * distance;
+      if (extinction[c] > 0) depth[c] = kInfinity;
   }
   // Along a way through a medium, as an unbiased estimate; exact where it is homogeneous. All channels share
   // their random places.
@@ -88,24 +92,24 @@ struct OpticalPath {
 
 template <typename Random>
 void OpticalPath::add(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, Random&& random) {
-  if (medium.homogeneous()) return add_even(medium.extinction({}), t_max);
+  if (medium.homogeneous()) return add_even(medium.even_extinction(), t_max);
   Medium::Walk walk(medium, origin, direction, t_max);
   Medium::Walk::Piece piece;
   float free = -1;  // optical distance by the bounds to the next place; < 0: not drawn yet
   while (walk.next(piece)) {
     // The middle of what may be there is counted as if it were there, and what differs from it is tracked:
     // half as many places and half the variance of counting the least.
-    const Rgb middle = (piece.least + piece.most) * 0.5f;
-    const float bound = 0.5f * max_component(piece.most - piece.least);
-    add_even(middle, piece.end - piece.begin);
+    const Rgb middle = piece.extinction.middle();
+    const float bound = piece.extinction.half();
+    depth += middle * (piece.end - piece.begin);
     if (!(bound > 0)) continue;
-    if (free < 0) free = -std::log1p(-random());
+    if (free < 0) free = -std::log(1 - random());
     float t = piece.begin;
     // What is left of the distance goes on in the next piece.
     while (free < bound * (piece.end - t)) {
       t += free / bound;
-      ratio *= Rgb(1) - (medium.extinction(origin + direction * t) - middle) * (1 / bound);
-      free = -std::log1p(-random());
+      ratio *= Rgb(1) - (walk.extinction(t) - middle) * (1 / bound);
+      free = -std::log(1 - random());
     }
     free -= bound * (piece.end - t);
   }

@@ -143,8 +143,8 @@ TEST(Medium, PiecesOfAWalkCoverTheLineAndBoundTheExtinction) {
           continue;
         }
         for (int c = 0; c < 3; ++c) {
-          EXPECT_LE(in->least[c], extinction[c] + 1e-5f);
-          EXPECT_GE(in->most[c], extinction[c] - 1e-5f);
+          EXPECT_LE(in->extinction.least[c], extinction[c] + 1e-5f);
+          EXPECT_GE(in->extinction.most[c], extinction[c] - 1e-5f);
         }
       }
     }

@@ -100,6 +100,7 @@ void MediaBatch::wait(const Connection& connection) {
 void MediaBatch::trace() {
   geometry::ShadowPacket packet;
   packet.seed = pairs_.seed();
+  packet.alike = false;  // both ends are places of their own on rays and segments
   for (std::size_t k = 0; k < kLanes; ++k) {
     const auto count = static_cast<std::size_t>(waiting_count_);
     const Connection& c = waiting_[k < count ? k : 0];

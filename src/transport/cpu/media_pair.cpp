@@ -285,10 +285,12 @@ void MediaPairs::point_to_segment(const std::uint32_t* rows, const std::uint32_t
   const Way way = between(out.from, target);
   const Lane3 w = select(far, column(points.normal) * splat(-1), way.w);
   out.to = select(far, w, target);
-  const LaneMask alive = (place.pdf > Lane{}) & (far | way.some);
+  LaneMask alive = (place.pdf > Lane{}) & (far | way.some);
+  const Lane3 light = shining(columns, alive, w);
+  alive &= max_component(light) > Lane{};
   const Lane3 here = scattered(segments.medium, rows, alive, out.from, dot(along, w));
   const Lane d2 = select(far, splat(1), way.d2);
-  keep(out, shining(columns, alive, w) * here * inverse(d2 * place.pdf, alive), alive);
+  keep(out, light * here * inverse(d2 * place.pdf, alive), alive);
 }
 
 void MediaPairs::ray_to_segment(const std::uint32_t* rows, const std::uint32_t* columns,
@@ -305,8 +307,9 @@ void MediaPairs::ray_to_segment(const std::uint32_t* rows, const std::uint32_t* 
   out.from = start + along * on_segment.t;
   out.row_way = on_segment.t, out.column_way = on_ray.t;
   const Way way = between(out.from, out.to);
-  const LaneMask alive = (on_ray.pdf > Lane{}) & (on_segment.pdf > Lane{}) & way.some;
+  LaneMask alive = (on_ray.pdf > Lane{}) & (on_segment.pdf > Lane{}) & way.some;
   const Lane3 there = scattered(rays.medium, columns, alive, out.to, -dot(flight, way.w));
+  alive &= max_component(there) > Lane{};
   const Lane3 here = scattered(segments.medium, rows, alive, out.from, dot(along, way.w));
   keep(out, column(rays.power) * there * here * inverse(way.d2 * on_ray.pdf * on_segment.pdf, alive), alive);
 }
