@@ -1,40 +1,17 @@
 // Where along rays the integrals of pairs with a ray in them are sampled.
 //
-// A point and a ray: equiangular (Kulla, Fajardo, "Importance sampling techniques for path tracing in
-// participating media", 2012). Two rays: jointly, first on the light by the integral of 1/d² over the whole
-// of the other line, then equiangular on the other (Novák et al. 2012, section 4.2: "joint importance
-// sampling" for isotropic media).
+// A point and a ray: equiangular (base/equiangular.h). Two rays: jointly, first on the light by the integral
+// of 1/d² over the whole of the other line, then equiangular on the other (Novák et al. 2012, section 4.2:
+// "joint importance sampling" for isotropic media).
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/equiangular.h"
 #include "base/vec.h"
 
 namespace lumirank::transport {
-
-struct RayPlace {
-  float t = 0;    // along the ray
-  float pdf = 0;  // per length; 0: nothing can be drawn
-};
-
-// On origin + t·direction, 0 ≤ t ≤ length, with a density in proportion to 1/d² from `point`.
-inline RayPlace sample_equiangular(Vec3f origin, Vec3f direction, float length, Vec3f point, float u) {
-  const float closest = dot(point - origin, direction);
-  const float h = std::max(lumirank::length(point - origin - direction * closest), 1e-6f * length);
-  const float begin = std::atan((0 - closest) / h), end = std::atan((length - closest) / h);
-  if (!(end > begin)) return {};
-  const float along = h * std::tan(begin + (end - begin) * u);
-  return {std::clamp(closest + along, 0.0f, length), h / ((end - begin) * (h * h + along * along))};
-}
-
-inline float pdf_equiangular(Vec3f origin, Vec3f direction, float length, Vec3f point, float t) {
-  const float closest = dot(point - origin, direction);
-  const float h = std::max(lumirank::length(point - origin - direction * closest), 1e-6f * length);
-  const float begin = std::atan((0 - closest) / h), end = std::atan((length - closest) / h);
-  if (!(end > begin)) return 0;
-  return h / ((end - begin) * (h * h + (t - closest) * (t - closest)));
-}
 
 // On the first of two rays, with a density in proportion to 1/(distance to the second's line):
 // ∫ 1/d² over a line is π over the distance to it.
