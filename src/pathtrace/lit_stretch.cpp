@@ -62,6 +62,17 @@ bool LitStretch::worthwhile(Vec3f lamp) const {
   return aside2 + square(farthest) > kLeastSpread * (aside2 + square(nearest));
 }
 
+bool LitStretch::near(const Bounds3f& lamps) const {
+  Vec3f away;
+  const Vec3f begin = origin_ + direction_ * begin_;
+  for (int axis = 0; axis < 3; ++axis)
+    away[axis] = std::max({lamps.lo[axis] - begin[axis], begin[axis] - lamps.hi[axis], 0.0f});
+  // Beyond twice its length from where it begins, its farthest place is less than twice as far as its
+  // nearest.
+  static_assert(kLeastSpread >= 4);
+  return length_squared(away) <= square(2 * length_);
+}
+
 RayPlace LitStretch::sample(Vec3f lamp, float u) const {
   if (empty() || !worthwhile(lamp)) return {};
   RayPlace place = sample_equiangular(origin_ + direction_ * begin_, direction_, length_, lamp, u);

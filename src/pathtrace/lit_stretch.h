@@ -27,6 +27,8 @@ class LitStretch {
   // in every flight, so that each lamp along the way is near it in some.
   const emitters::LitPoint& chosen_for() const { return chosen_for_; }
 
+  // False where every place within `lamps` is so far away that sample() would not find it worthwhile.
+  bool near(const Bounds3f& lamps) const;
   // A distance along the flight for light from a place; its density is 0 where all of the stretch is about as
   // far from the lamp, and collisions do as well for half of the price.
   RayPlace sample(Vec3f lamp, float u) const;

@@ -92,6 +92,7 @@ VolumePathTracer::Flight VolumePathTracer::fly(Walk& walk, float distance) const
     // What the eye sees of a medium is seen by itself; later flights are worth what lamps are among lights.
     const float share = walk.non_delta_vertices == 0 ? 1.0f : lights_.place_share();
     lit = LitStretch(medium, walk.ray.origin, walk.ray.direction, distance, share, walk.random.next_float());
+    if (!lit.near(lights_.place_bounds())) lit = {};
     if (!lit.empty() && (share >= 1 || walk.random.next_float() < share))
       sample_lamp_along(walk, medium, lit);
   }

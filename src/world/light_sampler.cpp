@@ -99,6 +99,8 @@ LightSampler::LightSampler(const World& world) : world_(world) {
     }
   }
   tree_ = emitters::LightTree(bounds);
+  for (const LightBound& b : bounds)
+    if (b.intensity > 0) place_bounds_.extend(b.bounds);
   far_choice_ = Distribution1D(far_weights);
   near_share_ = near_power > 0 ? static_cast<float>(near_power / (near_power + far_power)) : 0.0f;
   if (near_power > 0 && far_power > 0) near_share_ = std::clamp(near_share_, kGroupFloor, 1 - kGroupFloor);

@@ -46,6 +46,7 @@ class LightSampler {
   };
   // The part of all samples that near lights are worth; 0 without any.
   float place_share() const { return tree_.empty() ? 0.0f : near_share_; }
+  const Bounds3f& place_bounds() const { return place_bounds_; }
   Place sample_place(const emitters::LitPoint& at, double u_light, Vec2f u) const;
   // Light from there at another point, with the pdf with which sample() finds it there.
   Sample from_place(const emitters::LitPoint& at, const Place& place) const;
@@ -69,6 +70,7 @@ class LightSampler {
   std::vector<int> far_;
   Distribution1D far_choice_;
   float near_share_ = 1;
+  Bounds3f place_bounds_;  // of near lights
 };
 
 // Light through whatever lets it pass straight: the fraction that arrives over the open segment from `from`
