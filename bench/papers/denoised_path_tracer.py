@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Frames of a shot by Mitsuba 3's `path` and Intel's Open Image Denoise, at a given time for each: the rival of tensor_clustering_2008.py, which calls it.
+"""Pictures by Mitsuba 3's path tracers and Intel's Open Image Denoise, at a given time for each: the rival of tensor_clustering_2008.py (frames of a shot) and of
+column_completion_2016.py (--integrator volpath), which call it.
 
     denoised_path_tracer.py OUT SCENE_0000.xml [SCENE_0001.xml …] --size 320x240 --seconds 2.5 [--lines 24,72,120] [--truth 1024]
 
@@ -7,7 +8,7 @@ Needs the packages mitsuba, pyoidn and numpy, and for its LLVM variant a libLLVM
 Of the variants (--variants) the one that is faster on the first frame is used. Paths per pixel are as many as take the seconds together with the denoiser, found by trials there when
 everything is compiled; loading and compiling are not counted, which is in its favor. The same seed is used in every frame. Denoised with albedo and normals, rendered along.
 OUT gets frame_0000.pfm (denoised), noisy_0000.pfm, with --lines truth_0000.pfm and other_truth_0000.pfm (those scanlines alone, one below the other, each with half of
---truth paths per pixel), and shot.json.
+--truth paths per pixel; "all": the whole picture), and shot.json.
 """
 import argparse
 import json
@@ -19,8 +20,10 @@ import numpy as np
 
 import pyoidn
 
-PATH = {"type": "path", "max_depth": 17, "rr_depth": 6}
-FEATURES = {"type": "aov", "aovs": "al:albedo,nn:sh_normal", "img": PATH}
+def integrators(kind):
+    """Alone, and with what the denoiser wants to know of surfaces. `kind`: name and depth."""
+    path = {"type": kind[0], "max_depth": kind[1], "rr_depth": 6}
+    return mi.load_dict(path), mi.load_dict({"type": "aov", "aovs": "al:albedo,nn:sh_normal", "img": path})
 
 
 def write_pfm(path, image):
@@ -39,8 +42,9 @@ def load(path, size, crop=None):
     if crop:
         film |= {"crop_offset_x": crop[0], "crop_offset_y": crop[1], "crop_width": crop[2], "crop_height": crop[3]}
     fov = float(np.array(mi.traverse(sensor)["x_fov"]).ravel()[0])
+    medium = {"medium": sensor.get_medium()} if sensor.get_medium() else {}
     return scene, mi.load_dict({"type": "perspective", "fov": fov, "fov_axis": "x", "to_world": mi.ScalarTransform4f(np.array(sensor.world_transform().matrix).reshape(4, 4)),
-                                "film": film, "sampler": {"type": "independent"}, "near_clip": sensor.near_clip(), "far_clip": sensor.far_clip()})
+                                "film": film, "sampler": {"type": "independent"}, "near_clip": sensor.near_clip(), "far_clip": sensor.far_clip()} | medium)
 
 
 def render(scene, sensor, integrator, paths, seed):
@@ -58,10 +62,10 @@ def denoise(image):
     return np.asarray(pyoidn.denoise(color, np.clip(albedo, 0, 1), normal, hdr=True))
 
 
-def pace(file, size):
+def pace(file, size, kind):
     """Seconds for one path in each pixel, and a picture."""
     scene, sensor = load(file, size)
-    integrator = mi.load_dict(FEATURES)
+    _, integrator = integrators(kind)
     for paths in (1, 8, 8):  # the first two compile
         start = time.monotonic()
         image = render(scene, sensor, integrator, paths, 1)
@@ -69,9 +73,10 @@ def pace(file, size):
     return each, image
 
 
-def fitting_paths(file, size, seconds, first):
+def fitting_paths(file, size, kind, seconds, first):
     """How many paths for each pixel take the seconds, with the denoiser: a path among few costs more than one among many, so what was found is tried."""
-    integrator, paths = mi.load_dict(FEATURES), max(1, round(first))
+    paths = max(1, round(first))
+    _, integrator = integrators(kind)
     for _ in range(3):
         scene, sensor = load(file, size)
         render(scene, sensor, integrator, 1, 1)
@@ -94,24 +99,27 @@ def main():
     parser.add_argument("scenes", nargs="+", type=pathlib.Path)
     parser.add_argument("--size", required=True)
     parser.add_argument("--seconds", type=float, required=True, help="for each frame")
-    parser.add_argument("--lines", default="", help="scanlines of which the truth is wanted, from the top")
+    parser.add_argument("--lines", default="", help="scanlines of which the truth is wanted, from the top, or \"all\"")
     parser.add_argument("--truth", type=int, default=1024, help="paths per pixel for it")
+    parser.add_argument("--integrator", default="path", help="path, volpath or volpathmis")
+    parser.add_argument("--depth", type=int, default=17)
     parser.add_argument("--variants", default="llvm_ad_rgb,scalar_rgb", help="of Mitsuba, to choose from; with hundreds of instances LLVM compiles for minutes")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
+    kind = (args.integrator, args.depth)
     size = tuple(map(int, args.size.split("x")))
     paces = {}
     for variant in args.variants.split(","):
         mi.set_variant(variant)
-        paces[variant], noisy = pace(args.scenes[0], size)
+        paces[variant], noisy = pace(args.scenes[0], size, kind)
     variant = min(paces, key=paces.get)
     mi.set_variant(variant)
-    integrator, plain = mi.load_dict(FEATURES), mi.load_dict(PATH)
+    plain, integrator = integrators(kind)
     denoise(noisy)
     start = time.monotonic()
     denoise(noisy)
     of_denoiser = time.monotonic() - start
-    paths = fitting_paths(args.scenes[0], size, args.seconds, (args.seconds - of_denoiser) / paces[variant])
+    paths = fitting_paths(args.scenes[0], size, kind, args.seconds, (args.seconds - of_denoiser) / paces[variant])
     seconds = []
     for k, file in enumerate(args.scenes):
         scene, sensor = load(file, size)
@@ -125,7 +133,8 @@ def main():
         if args.lines:
             # Two independent halves: what is measured against both is free of their noise (shot_measures.py).
             for name, seed in (("truth", 1001), ("other_truth", 500_001)):
-                lines = [render(*load(file, size, (0, int(y), size[0], 1)), plain, max(1, args.truth // 2), seed) for y in args.lines.split(",")]
+                crops = [None] if args.lines == "all" else [(0, int(y), size[0], 1) for y in args.lines.split(",")]
+                lines = [render(*load(file, size, crop), plain, max(1, args.truth // 2), seed) for crop in crops]
                 write_pfm(args.out / f"{name}_{k:04d}.pfm", np.concatenate([line[..., :3] for line in lines]))
     (args.out / "shot.json").write_text(json.dumps({"paths": paths, "seconds": seconds, "denoiser": of_denoiser, "paces": paces, "mitsuba": mi.__version__}))
 

@@ -141,6 +141,25 @@ class Runs:
         return read_pfm(picture), json.loads(report.read_text()) | {"wall": wall}
 
 
+def best(curve, x, y):
+    """The points (x, y) of the runs that none beats in both, by x."""
+    points = []
+    for point in sorted((r[x], r[y]) for r in curve if r[y] > 0 and r[x] > 0):
+        if not points or point[1] < points[-1][1]:
+            points.append(point)
+    return points
+
+
+def at_level(curve, level, x, y):
+    """Where a curve of runs, the best of them, reaches y = level: x there, by straight lines in logarithms; None outside of what was measured."""
+    points = sorted((b, a) for a, b in best(curve, x, y))
+    for (y0, x0), (y1, x1) in zip(points, points[1:]):
+        if y0 <= level <= y1 and y1 > y0:
+            t = math.log(level / y0) / math.log(y1 / y0)
+            return math.exp(math.log(x0) + t * math.log(x1 / x0))
+    return None
+
+
 def percent(x):
     return f"{100 * x:.1f} %"
 

@@ -27,7 +27,7 @@ import pathlib
 import subprocess
 import sys
 
-from experiment_page import Page, bars, percent, plot, read_pfm, run_parts, to_display
+from experiment_page import Page, at_level, bars, best, percent, plot, read_pfm, run_parts, to_display
 
 HERE = pathlib.Path(__file__).resolve().parent
 OWN = ("courtyard", "fair", "room", "arcade")
@@ -51,25 +51,6 @@ LADDERS = {
 PREDICTORS = {"nearest": "Nearest samples", "plane": "Plane", "bayes": "Naive Bayes", "all": "Best of the three"}
 SAMPLED = (("guessed", (20, 20, 30)), ("sampled", (235, 235, 220)), ("uncertain", (250, 170, 40)), ("corrected", (225, 50, 60)))
 STEPS = ("prediction", "calibration", "separation", "correction", "constraint")
-
-
-def best(curve, x, y):
-    """The points (x, y) of the runs that none beats in both, by x."""
-    points = []
-    for point in sorted((r[x], r[y]) for r in curve if r[y] > 0 and r[x] > 0):
-        if not points or point[1] < points[-1][1]:
-            points.append(point)
-    return points
-
-
-def at_level(curve, level, x, y):
-    """Where a curve of runs, the best of them, reaches y = level: x there, by straight lines in logarithms; None outside of what was measured."""
-    points = sorted((b, a) for a, b in best(curve, x, y))
-    for (y0, x0), (y1, x1) in zip(points, points[1:]):
-        if y0 <= level <= y1 and y1 > y0:
-            t = math.log(level / y0) / math.log(y1 / y0)
-            return math.exp(math.log(x0) + t * math.log(x1 / x0))
-    return None
 
 
 def exposure(values):

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pathtrace/found_emission.h"
+#include "pathtrace/lit_stretch.h"
 #include "scatter/closure.h"
 
 namespace lumirank::pathtrace {
@@ -11,6 +12,27 @@ namespace lumirank::pathtrace {
 using scatter::Closure;
 using scatter::LobeKind;
 using scatter::Lobes;
+
+// The last vertex that scattered, and what weighs the ways to the light seen from there against each other:
+// light sampling, the direction taken, and, of collisions in a medium, light sampling along the flight that
+// led there. Balance heuristic over the three, each by the mean of its densities over the channels.
+struct VolumePathTracer::Vertex {
+  emitters::LitPoint at{};
+  Rgb reached{1};       // relative densities of the channels for getting here
+  Rgb direction{0};     // of the direction taken
+  Rgb started{0};       // as `reached`, at the start of the flight
+  LitStretch flight{};  // empty: nothing was sampled along it
+  float t = 0;          // where on it this is
+
+  float along(Vec3f lamp, float place_pdf) const {
+    return place_pdf > 0 ? place_pdf * flight.pdf(lamp, t) : 0.0f;
+  }
+  // Of everything that could have found light by light sampling with density `light`, by direction with
+  // `turned`, and along the flight with `along`.
+  float all(float light, Rgb turned, float along) const {
+    return mean(reached * (turned + Rgb(light)) + started * along);
+  }
+};
 
 // The state of a path between two vertices.
 struct VolumePathTracer::Walk {
@@ -22,8 +44,7 @@ struct VolumePathTracer::Walk {
   int segments = 1;            // so far, the current one included; straight passes do not count
   int non_delta_vertices = 0;  // passed
   bool specular = true;        // the last vertex was specular (or the eye)
-  float pdf = 0;               // of the direction taken at the last non-delta vertex
-  emitters::LitPoint from{};   // that vertex
+  Vertex vertex{};             // the last non-delta one
   float traveled = 0;          // since then
   float eta_scale = 1;         // undoes refraction's scaling for Russian roulette
   Radiance sum{};
@@ -66,6 +87,16 @@ Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::ui
 VolumePathTracer::Flight VolumePathTracer::fly(Walk& walk, float distance) const {
   if (walk.medium < 0) return Flight::arrived;
   const media::Medium& medium = world_.media()[static_cast<std::size_t>(walk.medium)];
+  LitStretch lit;
+  if (lights_.place_share() > 0 && medium.scatters() && (max_depth_ < 0 || walk.segments < max_depth_)) {
+    // What the eye sees of a medium is seen by itself; later flights are worth what lamps are among lights.
+    const float share = walk.non_delta_vertices == 0 ? 1.0f : lights_.place_share();
+    lit = LitStretch(medium, walk.ray.origin, walk.ray.direction, distance, share, walk.random.next_float());
+    if (!lit.near(lights_.place_bounds())) lit = {};
+    if (!lit.empty() && (share >= 1 || walk.random.next_float() < share))
+      sample_lamp_along(walk, medium, lit);
+  }
+  const Rgb started = walk.path.likelihood;
   bool scattered = false;
   const auto random = [&walk] { return walk.random.next_float(); };
   const bool arrived =
@@ -84,37 +115,91 @@ VolumePathTracer::Flight VolumePathTracer::fly(Walk& walk, float distance) const
                    }
                    walk.path.event(at.scattering, at.extinction, walk.hero);
                    walk.traveled += t;
-                   scattered = scatter_in_medium(walk, walk.ray.origin + walk.ray.direction * t, at);
+                   walk.vertex = {.at = {walk.ray.origin + walk.ray.direction * t, Vec3f{}, true},
+                                  .reached = walk.path.likelihood};
+                   if (lit.covers(t)) {
+                     const Rgb reached = started * lit.collision_density(t, at.extinction);
+                     if (mean(reached) > 0)
+                       walk.vertex.reached = reached, walk.vertex.started = started, walk.vertex.flight = lit,
+                       walk.vertex.t = t;
+                   }
+                   scattered = scatter_in_medium(walk, at);
                    return false;
                  });
   if (arrived) return Flight::arrived;
   return scattered ? Flight::scattered : Flight::ended;
 }
 
-bool VolumePathTracer::scatter_in_medium(Walk& walk, Vec3f place, const media::Coefficients& at) const {
+// Direct light of a lamp at a place of the flight that is drawn for the lamp.
+void VolumePathTracer::sample_lamp_along(Walk& walk, const media::Medium& medium,
+                                         const LitStretch& lit) const {
+  const auto [u_light, u_place] = walk.random.next_fine();
+  const auto lamp = lights_.sample_place(lit.chosen_for(), u_light, walk.random.next_2d());
+  if (!(lamp.choice > 0)) return;
+  const RayPlace on_flight = lit.sample(lamp.position, u_place);
+  if (!(on_flight.pdf > 0)) return;
+  const Vec3f place = walk.ray.origin + walk.ray.direction * on_flight.t;
+  const media::Coefficients at = medium.at(place);
+  if (is_black(at.scattering)) return;
+  const Rgb reached = walk.path.likelihood * lit.collision_density(on_flight.t, at.extinction);
+  if (!(mean(reached) > 0)) return;
+  const auto light = lights_.from_place({place, Vec3f{}, true}, lamp);
+  if (!(light.direct.pdf > 0) || is_black(light.direct.radiance)) return;
+  const Rgb f = medium.phase().eval(dot(walk.ray.direction, light.direct.direction));
+  const Vertex vertex{.at = {}, .reached = reached, .started = walk.path.likelihood};
+  const float all =
+      vertex.all(light.pdf, light.direct.delta ? Rgb{0} : f, lamp.choice * light.direct.pdf * on_flight.pdf);
+  const auto random = [&walk] { return walk.random.next_float(); };
+  const Rgb before = media::transmittance(medium, walk.ray.origin, walk.ray.direction, on_flight.t, random);
+  const Rgb visible =
+      world::pass_straight(
+          world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, false, random)
+          .left;
+  ++walk.non_delta_vertices;
+  walk.add(walk.path.throughput * before * at.scattering * f * light.direct.radiance * visible * (1 / all));
+  --walk.non_delta_vertices;
+}
+
+// At walk.vertex.
+bool VolumePathTracer::scatter_in_medium(Walk& walk, const media::Coefficients& at) const {
   if (is_black(at.scattering)) return false;
   if (max_depth_ >= 0 && walk.segments >= max_depth_) return false;
   const media::PhaseFunction& phase = world_.media()[static_cast<std::size_t>(walk.medium)].phase();
   const Vec3f forward = walk.ray.direction;
+  Vertex& vertex = walk.vertex;
+  const Vec3f place = vertex.at.position;
   ++walk.non_delta_vertices;
-  walk.from = {place, Vec3f{}, true};
 
   const auto [u_light, u_lobe] = walk.random.next_fine();
-  const auto light = lights_.sample(walk.from, u_light, walk.random.next_2d());
+  const auto light = lights_.sample(vertex.at, u_light, walk.random.next_2d());
   if (light.pdf > 0) {
     const Rgb f = phase.eval(dot(forward, light.direct.direction));
     const auto random = [&walk] { return walk.random.next_float(); };
+<<<<<<< HEAD
     const Rgb visible = world::pass_straight(
         world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, random);
     const float pdf = light.direct.delta ? 0.0f : f[walk.hero];
     walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));
+=======
+    const Rgb visible =
+        world::pass_straight(world_,
+                             {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium},
+                             false, random)
+            .left;
+    const float along = vertex.flight.empty()
+                            ? 0.0f
+                            : vertex.along(place + light.direct.direction * light.direct.distance,
+                                           lights_.pdf_place(vertex.flight.chosen_for(), light));
+    const float all = vertex.all(light.pdf, light.direct.delta ? Rgb{0} : f, along);
+    walk.add(walk.path.weight() * f * light.direct.radiance * visible * (mean(vertex.reached) / all));
+>>>>>>> media-experiments
   }
 
   const Vec3f next = phase.sample(forward, walk.hero, u_lobe, walk.random.next_2d());
   const Rgb f = phase.eval(dot(forward, next));
   if (!(f[walk.hero] > 0)) return false;
   walk.path.event(f, f, walk.hero);
-  walk.pdf = f[walk.hero];
+  vertex.direction = f;
   walk.specular = false;
   walk.traveled = 0;
   ++walk.segments;
@@ -122,12 +207,21 @@ bool VolumePathTracer::scatter_in_medium(Walk& walk, Vec3f place, const media::C
   return survives(walk);
 }
 
-// What shines at the end of the current segment, weighted against light sampling (balance heuristic).
+// What shines at the end of the current segment, weighted against light sampling.
 void VolumePathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
-  const FoundEmission found = found_emission(world_, lights_, walk.specular ? nullptr : &walk.from, hit,
+  const Vertex& vertex = walk.vertex;
+  const FoundEmission found = found_emission(world_, lights_, walk.specular ? nullptr : &vertex.at, hit,
                                              walk.ray.direction, walk.traveled);
   if (is_black(found.radiance)) return;
-  const float weight = walk.specular ? 1.0f : walk.pdf / (walk.pdf + found.light_pdf);
+  float weight = 1;
+  if (!walk.specular) {
+    const float along =
+        vertex.flight.empty() || !hit
+            ? 0.0f
+            : vertex.along(hit->point.position, lights_.pdf_place(vertex.flight.chosen_for(), *hit,
+                                                                  walk.ray.direction, walk.traveled));
+    weight = mean(vertex.reached * vertex.direction) / vertex.all(found.light_pdf, vertex.direction, along);
+  }
   walk.add(walk.path.weight() * found.radiance * weight);
 }
 
@@ -139,8 +233,8 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
   if (walk.non_delta_vertices == 0) scatter::face_viewer(closure, wo);  // as rows are
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_non_delta() && may_continue) {
-    walk.from = world::lit_point(hit.point.position, closure, wo);
-    const auto light = lights_.sample(walk.from, u_light, walk.random.next_2d());
+    walk.vertex = {.at = world::lit_point(hit.point.position, closure, wo)};
+    const auto light = lights_.sample(walk.vertex.at, u_light, walk.random.next_2d());
     const Vec3f wi = light.direct.direction;
     const Rgb f = light.pdf > 0 ? scatter::eval(closure, wo, wi) : Rgb{0};
     if (!is_black(f)) {
@@ -165,7 +259,7 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
     walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;
     walk.specular = next->delta;
-    walk.pdf = next->pdf;
+    walk.vertex.direction = Rgb(next->pdf);
     if (!next->delta) ++walk.non_delta_vertices;
     if (!survives(walk)) return false;
   }

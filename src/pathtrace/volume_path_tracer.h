@@ -2,9 +2,10 @@
 // them, with next-event estimation and multiple importance sampling. Like PathTracer it shares no estimator
 // with the methods.
 //
-// Distances are drawn for one channel of each path and weighted over all three (media/tracking.h). Light
-// sampling and directions are weighted against each other by their solid angles alone: both estimate the same
-// transmittance, so leaving it out of the weights keeps them a partition of one.
+// Distances are drawn for one channel of each path and weighted over all three (media/tracking.h). Light of
+// lamps is also sampled along each flight (lit_stretch.h). The ways to find it are weighted against each
+// other without the transmittance towards the lamp: all estimate the same, so leaving it out keeps the
+// weights a partition of one.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,8 @@
 #include "world/straight_path.h"
 
 namespace lumirank::pathtrace {
+
+class LitStretch;
 
 class VolumePathTracer {
  public:
@@ -27,10 +30,12 @@ class VolumePathTracer {
   Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
 
  private:
+  struct Vertex;
   struct Walk;
   enum class Flight { arrived, scattered, ended };
   Flight fly(Walk& walk, float distance) const;
-  bool scatter_in_medium(Walk& walk, Vec3f place, const media::Coefficients& at) const;
+  void sample_lamp_along(Walk& walk, const media::Medium& medium, const LitStretch& lit) const;
+  bool scatter_in_medium(Walk& walk, const media::Coefficients& at) const;
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   bool scatter_on_surface(Walk& walk, const world::SurfaceHit& hit) const;
   bool survives(Walk& walk) const;

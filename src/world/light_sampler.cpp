@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/rgb.h"
+#include "base/warp.h"
 #include "emitters/area.h"
 
 namespace lumirank::world {
@@ -98,6 +99,8 @@ LightSampler::LightSampler(const World& world) : world_(world) {
     }
   }
   tree_ = emitters::LightTree(bounds);
+  for (const LightBound& b : bounds)
+    if (b.intensity > 0) place_bounds_.extend(b.bounds);
   far_choice_ = Distribution1D(far_weights);
   near_share_ = near_power > 0 ? static_cast<float>(near_power / (near_power + far_power)) : 0.0f;
   if (near_power > 0 && far_power > 0) near_share_ = std::clamp(near_share_, kGroupFloor, 1 - kGroupFloor);
@@ -109,23 +112,28 @@ float LightSampler::near_share(const emitters::LitPoint& at) const {
   return tree_.reaches(at) ? near_share_ : 0.0f;
 }
 
+LightSampler::Sample LightSampler::sample_leaf(std::uint32_t leaf, Vec3f at, Vec2f u) const {
+  Sample s;
+  const auto [emitter, triangle] = leaves_[leaf];
+  s.emitter = emitter;
+  const auto& kind = world_.emitters()[static_cast<std::size_t>(emitter)].kind;
+  if (const auto* area = std::get_if<emitters::AreaEmitter>(&kind)) {
+    s.direct = emitters::sample_direct_triangle(area->triangles[triangle], at, u);
+    s.direct.triangle = triangle;
+    if (s.direct.pdf > 0) s.direct.radiance = world_.emitted(emitter, triangle, s.direct.barycentric);
+  } else {
+    s.direct = world_.sample_direct(emitter, at, 0, u);
+  }
+  return s;
+}
+
 LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u_light, Vec2f u) const {
   Sample s;
   const float near = near_share(at);
   if (u_light < near) {
     const auto pick = tree_.sample(at, u_light / near);
     if (!(pick.pmf > 0)) return s;
-    const Leaf leaf = leaves_[pick.light];
-    s.emitter = leaf.emitter;
-    const auto& kind = world_.emitters()[static_cast<std::size_t>(leaf.emitter)].kind;
-    if (const auto* area = std::get_if<emitters::AreaEmitter>(&kind)) {
-      s.direct = emitters::sample_direct_triangle(area->triangles[leaf.triangle], at.position, u);
-      s.direct.triangle = leaf.triangle;
-      if (s.direct.pdf > 0)
-        s.direct.radiance = world_.emitted(leaf.emitter, leaf.triangle, s.direct.barycentric);
-    } else {
-      s.direct = world_.sample_direct(leaf.emitter, at.position, 0, u);
-    }
+    s = sample_leaf(pick.light, at.position, u);
     s.pdf = s.direct.pdf * near * pick.pmf;
   } else if (far_choice_.total() > 0) {
     const auto pick = far_choice_.sample(static_cast<float>((u_light - near) / (1.0 - near)));
@@ -138,14 +146,50 @@ LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u
 
 float LightSampler::pdf_hit(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction,
                             float distance) const {
+  const float pdf = pdf_place(at, hit, direction, distance);
+  return pdf > 0 ? pdf * near_share(at) : 0.0f;
+}
+
+LightSampler::Place LightSampler::sample_place(const emitters::LitPoint& at, double u_light, Vec2f u) const {
+  const auto pick = tree_.sample(at, u_light);
+  if (!(pick.pmf > 0)) return {};
+  const Leaf leaf = leaves_[pick.light];
+  Place place{.position = {}, .choice = pick.pmf, .leaf = pick.light, .u = u};
+  std::visit(
+      [&](const auto& emitter) {
+        if constexpr (requires { emitter.triangles; }) {
+          const auto& triangle = emitter.triangles[leaf.triangle];
+          const Vec2f b = warp_triangle(u);  // as sample_direct_triangle() does
+          place.position = triangle.p0 + triangle.e1 * b.x + triangle.e2 * b.y;
+        } else if constexpr (requires { emitter.position; }) {
+          place.position = emitter.position;
+        }
+      },
+      world_.emitters()[static_cast<std::size_t>(leaf.emitter)].kind);
+  return place;
+}
+
+LightSampler::Sample LightSampler::from_place(const emitters::LitPoint& at, const Place& place) const {
+  Sample s = sample_leaf(place.leaf, at.position, place.u);
+  s.pdf = s.direct.pdf * near_share(at) * tree_.pmf(at, place.leaf);
+  return s;
+}
+
+float LightSampler::pdf_place(const emitters::LitPoint& at, const Sample& found) const {
+  if (!std::isfinite(found.direct.distance)) return 0;
+  return found.direct.pdf *
+         tree_.pmf(at, first_leaf_[static_cast<std::size_t>(found.emitter)] + found.direct.triangle);
+}
+
+float LightSampler::pdf_place(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction,
+                              float distance) const {
   if (hit.emitter < 0) return 0;
   const auto e = static_cast<std::size_t>(hit.emitter);
   const auto* area = std::get_if<emitters::AreaEmitter>(&world_.emitters()[e].kind);
   // Triangle t of an area emitter is triangle t of its mesh.
   if (!area || hit.hit.triangle >= area->triangles.size()) return 0;
   const float pdf = emitters::pdf_direct_triangle(area->triangles[hit.hit.triangle], direction, distance);
-  if (!(pdf > 0)) return 0;
-  return pdf * near_share(at) * tree_.pmf(at, first_leaf_[e] + hit.hit.triangle);
+  return pdf > 0 ? pdf * tree_.pmf(at, first_leaf_[e] + hit.hit.triangle) : 0.0f;
 }
 
 float LightSampler::pdf_background(const emitters::LitPoint& at, Vec3f direction) const {

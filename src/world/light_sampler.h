@@ -36,7 +36,27 @@ class LightSampler {
   // The same for a ray that leaves the scene.
   float pdf_background(const emitters::LitPoint& at, Vec3f direction) const;
 
+  // A place on a near light, drawn for one point and to shine on others: where along a flight its light is
+  // worth looking for is known only once the place is.
+  struct Place {
+    Vec3f position;
+    float choice = 0;  // probability of its light; 0: nothing found
+    std::uint32_t leaf = 0;
+    Vec2f u;
+  };
+  // The part of all samples that near lights are worth; 0 without any.
+  float place_share() const { return tree_.empty() ? 0.0f : near_share_; }
+  const Bounds3f& place_bounds() const { return place_bounds_; }
+  Place sample_place(const emitters::LitPoint& at, double u_light, Vec2f u) const;
+  // Light from there at another point, with the pdf with which sample() finds it there.
+  Sample from_place(const emitters::LitPoint& at, const Place& place) const;
+  // Density of sample_place() for `at` of the place that a sample, or a hit as in pdf_hit, found; per solid
+  // angle from where it was found, like its own pdf. 0 for far lights.
+  float pdf_place(const emitters::LitPoint& at, const Sample& found) const;
+  float pdf_place(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction, float distance) const;
+
  private:
+  Sample sample_leaf(std::uint32_t leaf, Vec3f at, Vec2f u) const;
   float near_share(const emitters::LitPoint& at) const;
 
   const World& world_;
@@ -50,6 +70,7 @@ class LightSampler {
   std::vector<int> far_;
   Distribution1D far_choice_;
   float near_share_ = 1;
+  Bounds3f place_bounds_;  // of near lights
 };
 
 // Light through whatever lets it pass straight: the fraction that arrives over the open segment from `from`

@@ -57,6 +57,44 @@ LitPoint random_point(const World& world, Rng& rng) {
   return {position, normal, rng.next_below(4) == 0};
 }
 
+TEST(LightSampler, APlaceShinesAsASampleFromElsewhere) {
+  // A place drawn for one point lights another as what is sampled there, with that density; and the density
+  // of the place itself is the same asked of its light as of a ray that hits it.
+  for (const char* name : {"lamps", "interior", ""}) {
+    const World world = *name ? example(name) : every_emitter();
+    const LightSampler lights(world);
+    int hits = 0, points = 0;
+    for (std::uint64_t i = 0; i < 4000; ++i) {
+      Rng rng(4, Stage::test, i);
+      const LitPoint chosen_for = random_point(world, rng), at = random_point(world, rng);
+      const double u = rng.next_double();
+      const auto place = lights.sample_place(chosen_for, u, rng.next_2d());
+      if (!(place.choice > 0)) continue;
+      const auto s = lights.from_place(at, place);
+      if (!(s.pdf > 0)) continue;
+      EXPECT_NEAR(length(at.position + s.direct.direction * s.direct.distance - place.position), 0,
+                  1e-3 * length(world.bounds().diagonal()));
+      EXPECT_NEAR(lights.pdf_place(chosen_for, s) / (place.choice * s.direct.pdf), 1, 1e-4)
+          << name << " " << i;
+      if (s.direct.delta) {
+        ++points;
+        continue;
+      }
+      const auto hit = world.intersect({at.position, s.direct.direction});
+      if (!hit || hit->emitter != s.emitter || hit->hit.triangle != s.direct.triangle) continue;
+      ++hits;
+      EXPECT_NEAR(lights.pdf_place(chosen_for, *hit, s.direct.direction, s.direct.distance) /
+                      lights.pdf_place(chosen_for, s),
+                  1, 1e-4)
+          << name << " " << i;
+      EXPECT_NEAR(lights.pdf_hit(at, *hit, s.direct.direction, s.direct.distance) / s.pdf, 1, 1e-4)
+          << name << " " << i;
+    }
+    EXPECT_GT(hits, 10) << name;  // in the closed interior random points see few of the places
+    EXPECT_TRUE(*name || points > 50);
+  }
+}
+
 TEST(LightSampler, AHitHasTheDensityOfItsSample) {
   for (const char* name : {"lamps", "interior", ""}) {
     const World world = *name ? example(name) : every_emitter();

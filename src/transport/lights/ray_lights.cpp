@@ -267,17 +267,26 @@ std::size_t lights_in(std::span<const MediaBatch> batches) {
   return count;
 }
 
-// As MediaLightSettings::least_direct says.
-void repeat(std::vector<LightRecord>& lights, std::size_t least) {
-  if (lights.empty() || lights.size() >= least) return;
-  const std::size_t own = lights.size(), copies = (least + own - 1) / own;
-  for (LightRecord& light : lights) light.power *= 1 / static_cast<float>(copies);
-  for (std::size_t copy = 1; copy < copies; ++copy)
-    for (std::size_t j = 0; j < own; ++j) {
-      LightRecord again = lights[j];
-      again.id = mix64(again.id + copy);
-      lights.push_back(again);
+// As MediaLightSettings::least_direct says. What shines from infinitely far is taken to light a disc of the
+// scene's size.
+void repeat(std::vector<LightRecord>& lights, std::size_t least, float radius) {
+  const auto sent = [&](const LightRecord& light) {
+    const float area = light.kind == LightKind::directional ? kPi * radius * radius : 4 * kPi;
+    return static_cast<double>(area * mean(light.power));
+  };
+  double all = 0;
+  for (const LightRecord& light : lights) all += sent(light);
+  if (!(all > 0)) return;
+  const std::size_t own = lights.size();
+  for (std::size_t j = 0; j < own; ++j) {
+    const double parts = static_cast<double>(least) * sent(lights[j]) / all;
+    const auto copies = static_cast<std::size_t>(std::max(1.0, std::ceil(parts)));
+    lights[j].power *= 1 / static_cast<float>(copies);
+    for (std::size_t copy = 1; copy < copies; ++copy) {
+      lights.push_back(lights[j]);
+      lights.back().id = mix64(lights[j].id + copy);
     }
+  }
 }
 
 }  // namespace
@@ -299,7 +308,7 @@ LightsInMedia trace_lights_in_media(const world::World& world, const MediaLightS
     const std::size_t wanted = indirect ? std::max<std::size_t>(1, settings.count / 4) : settings.count;
     direct = std::max(need.min_count, need.sampled ? wanted : need.min_count);
     points.push_back(emitter_lights(world, choice, settings.seed, direct));
-    repeat(points[0].lights, settings.least_direct);
+    repeat(points[0].lights, settings.least_direct, world.bounds().radius());
     out.points.direct_count = points[0].lights.size();
   }
   std::vector<MediaBatch> batches;

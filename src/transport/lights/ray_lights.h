@@ -47,8 +47,8 @@ struct MediaLightSettings {
   int max_depth = -1;          // Mitsuba's count
   int eye_medium = -1;         // what emitters stand in where no surface around them tells
   bool direct = true, indirect = true;
-  // Emitters' columns, at least: where there are fewer of them each stands there several times, with its part
-  // of the power, and what a segment gets from it is estimated at as many places.
+  // An emitter's column with more than one part of so many of all emitters' light stands there several times,
+  // each time with a part of the power, and what a segment gets from it is estimated at as many places.
   std::size_t least_direct = 0;
 };
 
