@@ -234,7 +234,7 @@ class Experiments:
                     shown.append((method, picture, f"{report['seconds.total']:.1f}", f"{report.get('passes', 1):.0f} passes, {words(AT_EQUAL_TIME[method])}"))
                 picture, report = self.runs.run(f"{self.label(name)}_equal_reference_{seconds:g}", "reference", self.scene(name),
                                                 ["--size", f"{truth.width}x{truth.height}", "--max-depth", DEPTH, "--time", seconds])
-                shown.append(("reference", picture, f"{report['wall']:.1f}", "our path tracer"))
+                shown.append(("our path tracer", picture, f"{report['wall']:.1f}", ""))
                 if found := self.volpath(name, seconds):
                     noisy, clean, done, _ = found
                     took, how = f"{done['seconds'][0]:.1f}", f"{done['paths']} paths per pixel"
