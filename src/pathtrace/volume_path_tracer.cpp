@@ -151,10 +151,8 @@ void VolumePathTracer::sample_lamp_along(Walk& walk, const media::Medium& medium
       vertex.all(light.pdf, light.direct.delta ? Rgb{0} : f, lamp.choice * light.direct.pdf * on_flight.pdf);
   const auto random = [&walk] { return walk.random.next_float(); };
   const Rgb before = media::transmittance(medium, walk.ray.origin, walk.ray.direction, on_flight.t, random);
-  const Rgb visible =
-      world::pass_straight(
-          world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, false, random)
-          .left;
+  const Rgb visible = world::pass_straight(
+      world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, random);
   ++walk.non_delta_vertices;
   walk.add(walk.path.throughput * before * at.scattering * f * light.direct.radiance * visible * (1 / all));
   --walk.non_delta_vertices;
@@ -175,24 +173,14 @@ bool VolumePathTracer::scatter_in_medium(Walk& walk, const media::Coefficients& 
   if (light.pdf > 0) {
     const Rgb f = phase.eval(dot(forward, light.direct.direction));
     const auto random = [&walk] { return walk.random.next_float(); };
-<<<<<<< HEAD
     const Rgb visible = world::pass_straight(
         world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, random);
-    const float pdf = light.direct.delta ? 0.0f : f[walk.hero];
-    walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));
-=======
-    const Rgb visible =
-        world::pass_straight(world_,
-                             {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium},
-                             false, random)
-            .left;
     const float along = vertex.flight.empty()
                             ? 0.0f
                             : vertex.along(place + light.direct.direction * light.direct.distance,
                                            lights_.pdf_place(vertex.flight.chosen_for(), light));
     const float all = vertex.all(light.pdf, light.direct.delta ? Rgb{0} : f, along);
     walk.add(walk.path.weight() * f * light.direct.radiance * visible * (mean(vertex.reached) / all));
->>>>>>> media-experiments
   }
 
   const Vec3f next = phase.sample(forward, walk.hero, u_lobe, walk.random.next_2d());

@@ -36,14 +36,13 @@ TEST(ColumnCompletion, ConvergesToAllColumns) {
 TEST(ColumnCompletion, KnowsColumnsOfLowRankByFewRows) {
   const auto m = matrix::low_rank_matrix({2000, 4000, 1}, 6);
   const auto e = complete(m, {{"slice-rows", "500"}, {"beta", "0.003"}});
-  EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 0.02);
+  EXPECT_LT(relative_l1_difference(e.sums, m.exact_sums()), 0.03);
   EXPECT_LE(e.trace.numbers.at("completion.max_rank"), 18);
   EXPECT_LT(e.trace.numbers.at("completion.rows_sampled"), 100);
   EXPECT_LT(e.trace.numbers.at("sampling_rate"), 0.05);
 }
 
-// Decisions hang on what was drawn, so the estimate is not exactly unbiased; what is left is far below its
-// noise.
+// What completion leaves out of a column is not estimated, so there is a bias; it is far below the noise.
 TEST(ColumnCompletion, HasHardlyAnyBias) {
   const auto m = matrix::low_rank_matrix({300, 1500, 1}, 6);
   double error = 0, bias = 0, total = 0;
@@ -59,33 +58,37 @@ TEST(ColumnCompletion, HasHardlyAnyBias) {
     bias += mean[i] - static_cast<double>(luminance(exact[i]));
     total += static_cast<double>(luminance(exact[i]));
   }
-  EXPECT_LT(std::abs(bias / total), 0.5 * error) << error;
+  EXPECT_LT(std::abs(bias / total), 0.25 * error) << error;
 }
 
-TEST(ColumnTree, DrawsInProportionToPowerAndChildrenShareThem) {
-  const auto m = matrix::low_rank_matrix({10, 400, 2}, 3);
-  constexpr std::size_t kDraws = 50;
-  std::vector<double> drawn(m.columns(), 0.0);
-  double total = 0;
-  for (std::size_t j = 0; j < m.columns(); ++j) total += static_cast<double>(m.column_features().power[j]);
-  constexpr int kTrees = 200;
-  for (std::uint64_t seed = 1; seed <= kTrees; ++seed) {
-    const ColumnTree tree(m, kDraws, seed);
-    ASSERT_EQ(tree.roots().size(), 1u);
-    const auto root = tree.roots()[0].node;
-    for (const matrix::Index j : tree.drawn(root)) drawn[j] += 1;
-    const auto left = tree.drawn(tree.left(root)), right = tree.drawn(tree.right(root));
-    for (std::size_t k = 0; k < kDraws; ++k)
-      EXPECT_TRUE(tree.drawn(root)[k] == left[k] || tree.drawn(root)[k] == right[k]);
+// Every column is drawn as often as its probability says, which adds up to 1, and a node's draws among the
+// columns of a child are draws of the child.
+TEST(ColumnTree, DrawsAsItsProbabilitiesSay) {
+  const auto m = matrix::occluded_matrix({10, 200, 2}, 3);
+  const ColumnTree tree(m, 8);
+  ASSERT_EQ(tree.roots().size(), 1u);
+  const auto root = tree.roots()[0].node;
+  const ColumnTree::Place place{{0.3f, 0.2f, 0.1f}, 0.1f};
+  Rng rng(1, Stage::test);
+  std::vector<double> drawn(200, 0.0), probability(200, 0.0);
+  constexpr int kDraws = 100000;
+  int to_left = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    const auto d = tree.draw(root, place, rng);
+    drawn[d.place] += 1, probability[d.place] = d.probability;
+    to_left += tree.holds(tree.left(root), d.place);
   }
-  double chi2 = 0, columns = 0;
-  for (std::size_t j = 0; j < m.columns(); ++j) {
-    const double expected = kTrees * kDraws * static_cast<double>(m.column_features().power[j]) / total;
+  double chi2 = 0, seen = 0, sum = 0;
+  for (std::size_t j = 0; j < 200; ++j) {
+    sum += probability[j];
+    const double expected = kDraws * probability[j];
     if (expected < 5) continue;
-    chi2 += (drawn[j] - expected) * (drawn[j] - expected) / expected, columns += 1;
+    chi2 += (drawn[j] - expected) * (drawn[j] - expected) / expected, seen += 1;
   }
-  ASSERT_GT(columns, 50);
-  EXPECT_LT(chi2, columns + 4 * std::sqrt(2 * columns));
+  EXPECT_NEAR(sum, 1, 1e-3);
+  ASSERT_GT(seen, 100);
+  EXPECT_LT(chi2, seen + 4 * std::sqrt(2 * seen));
+  EXPECT_NEAR(static_cast<double>(to_left) / kDraws, tree.left_probability(root, place), 0.01);
 }
 
 // One work space for all of them, whatever their sizes.

@@ -33,7 +33,7 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
       number_field<S>({"beta", "of a slice's light",
                        "A node of columns that errs by more, as those drawn tell, is divided."},
                       &S::beta, 0, 1),
-      count_field<S>({"samples", "columns", "Drawn of each node."}, &S::samples, 1, 1000),
+      count_field<S>({"samples", "columns", "Drawn of each node (the paper: 10)."}, &S::samples, 1, 1000),
       count_field<S>({"slice-rows", "rows", "Of a slice by place, at most."}, &S::slice_rows, 1, kMaxRows),
       experiment(choice_field<S>(
           {"partition", "",
@@ -46,7 +46,7 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
 struct ColumnCompletionWorkspace {
   ColumnCompletionWorkspace(const matrix::LightingMatrix& matrix, const ColumnTree& tree,
                             const CompletionSpaceSettings& settings)
-      : reader(matrix.reader()), estimate(tree, settings) {}
+      : reader(matrix.reader()), estimate(tree, matrix.row_features(), settings) {}
   std::unique_ptr<matrix::EntryReader> reader;
   SliceEstimate estimate;
 };
@@ -62,7 +62,7 @@ class ColumnCompletion final : public Method {
     Turns turns(matrix, options, timer, estimate.sums);
     RowsForError rows(matrix, options, timer);
     const double before_tree = timer.seconds();
-    ColumnTree tree(matrix, settings_.samples, options.seed);
+    const ColumnTree tree(matrix, settings_.samples);
     const Slices slices =
         completion_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows, settings_.partition);
     auto& numbers = estimate.trace.numbers;
@@ -70,14 +70,7 @@ class ColumnCompletion final : public Method {
     numbers["slices"] = static_cast<double>(slices.count());
     WorkspacePool<ColumnCompletionWorkspace> pool(
         [&] { return std::make_unique<ColumnCompletionWorkspace>(matrix, tree, settings_); });
-    TurnMethod method{.entries_per_row = 0.05 * static_cast<double>(matrix.columns())};
-    // Trials of a turn that is to come draw for it.
-    std::uint64_t drawn_for = 0;
-    method.prepare = [&](const Turn& turn) {
-      if (turn.number == drawn_for) return;
-      drawn_for = turn.number;
-      tree.draw(drawn_for == 0 ? options.seed : hash_ids(options.seed, Stage::representatives, drawn_for));
-    };
+    const TurnMethod method{.entries_per_row = 0.05 * static_cast<double>(matrix.columns())};
     const RowGroupResult pass = run_in_turns(
         turns, RowGroups(slices.rows, slices.first), {options, timer, 0, "columns"}, method, estimate.sums,
         pool, [&](std::size_t s, ColumnCompletionWorkspace& w, const Turn& turn, std::span<Rgb> sums) {

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <limits>
 
 #include "base/bounds.h"
-#include "base/parallel.h"
-#include "base/random.h"
 
 namespace lumirank::methods {
 
@@ -31,9 +27,12 @@ struct ColumnTree::Builder {
     const Node node = static_cast<Node>(tree.nodes_.size());
     tree.nodes_.push_back({begin, end});
     double power = 0;
-    for (std::uint32_t k = begin; k < end; ++k) power += static_cast<double>(lights[k].intensity);
+    for (std::uint32_t k = begin; k < end; ++k) {
+      power += static_cast<double>(lights[k].intensity);
+      tree.nodes_[node].box.extend(lights[k].position);
+    }
     tree.nodes_[node].power = power;
-    if (end - begin <= tree.draws_) {
+    if (end - begin <= tree.leaf_) {
       for (std::uint32_t k = begin; k < end; ++k) tree.order_[k] = lights[k].column;
       return;
     }
@@ -64,16 +63,13 @@ struct ColumnTree::Builder {
   }
 };
 
-ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t draws, std::uint64_t seed)
-    : features_(matrix.column_features()), draws_(draws) {
+ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf)
+    : features_(matrix.column_features()), leaf_(leaf) {
   std::vector<SplitLight> given, others;
   Bounds3f box;
   for (Index j = 0; j < matrix.columns(); ++j) {
     if (!(power_of(j) > 0)) continue;
-    const Vec3f place =
-        features_.position.empty() ? Vec3f{static_cast<float>(j), 0, 0} : features_.position[j];
-    const SplitLight light{is_finite(place) ? place : Vec3f{},
-                           features_.normal.empty() ? Vec3f{} : features_.normal[j],
+    const SplitLight light{place_of(j), features_.normal.empty() ? Vec3f{} : features_.normal[j],
                            static_cast<float>(std::min(power_of(j), 1e30)), j};
     box.extend(light.position);
     const bool in_tree = !features_.branch.empty() && features_.branch[j] != matrix::kNoBranch;
@@ -96,45 +92,58 @@ ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t draws, 
     roots_.push_back({static_cast<Node>(nodes_.size()), true});
     Builder{*this, all, features_.branch, across}.build(first_given, count, 0);
   }
-  draw(seed);
 }
 
-// An exponential variate at the rate of the column's power: of any set of columns each is the first to arrive
-// with a probability in proportion to its power.
-double ColumnTree::arrival(Index j, std::size_t draw) const {
-  const double u = unit_double(hash_ids(seed_, Stage::representatives, matrix::id_of(features_.id, j), draw));
-  return -std::log1p(-u) / power_of(j);
+Vec3f ColumnTree::place_of(Index j) const {
+  if (features_.position.empty()) return {static_cast<float>(j), 0, 0};
+  const Vec3f place = features_.position[j];
+  return is_finite(place) ? place : Vec3f{};
 }
 
-void ColumnTree::race(Node node) {
-  for (std::size_t k = 0; k < draws_; ++k) {
-    Index& first = drawn_[node * draws_ + k];
-    if (!is_leaf(node)) {
-      const Index a = drawn_[left(node) * draws_ + k], b = drawn_[right(node) * draws_ + k];
-      first = arrival(a, k) <= arrival(b, k) ? a : b;
-      continue;
-    }
-    first = columns(node).front();
-    double earliest = std::numeric_limits<double>::infinity();
-    for (const Index j : columns(node))
-      if (const double at = arrival(j, k); at < earliest) earliest = at, first = j;
+namespace {
+
+// What light falls off by from what fills a ball to rows that fill another: no more than if both were next to
+// each other.
+double nearness(Vec3f center, float radius, const ColumnTree::Place& from) {
+  const double reach = static_cast<double>(radius + from.radius);
+  return 1 / (static_cast<double>(length_squared(center - from.center)) + reach * reach + 1e-30);
+}
+
+}  // namespace
+
+double ColumnTree::left_probability(Node node, const Place& from) const {
+  const auto weight = [&](Node child) {
+    const Inner& n = nodes_[child];
+    return n.power * nearness(n.box.center(), n.box.radius(), from);
+  };
+  const double left_weight = weight(left(node)), right_weight = weight(right(node));
+  return left_weight / (left_weight + right_weight);
+}
+
+ColumnTree::Drawn ColumnTree::draw(Node node, const Place& from, Rng& rng) const {
+  double probability = 1;
+  while (!is_leaf(node)) {
+    const double to_left = left_probability(node, from);
+    const bool goes_left = rng.next_double() < to_left;
+    probability *= goes_left ? to_left : 1 - to_left;
+    node = goes_left ? left(node) : right(node);
   }
-}
-
-void ColumnTree::draw(std::uint64_t seed) {
-  seed_ = seed;
-  drawn_.resize(nodes_.size() * draws_);
-  constexpr std::size_t kGrain = 64;
-  parallel_for(nodes_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n)
-      if (is_leaf(static_cast<Node>(n))) race(static_cast<Node>(n));
-  });
-  for (std::size_t n = nodes_.size(); n-- > 0;)
-    if (!is_leaf(static_cast<Node>(n))) race(static_cast<Node>(n));
+  const auto weight = [&](Index j) { return power_of(j) * nearness(place_of(j), 0, from); };
+  double all = 0;
+  for (const Index j : columns(node)) all += weight(j);
+  const double at = rng.next_double() * all;
+  double sum = 0;
+  std::uint32_t place = nodes_[node].begin;
+  for (; place + 1 < nodes_[node].end; ++place) {
+    const double own = weight(order_[place]);
+    if (at < sum + own) break;
+    sum += own;
+  }
+  return {place, probability * weight(order_[place]) / all};
 }
 
 std::size_t ColumnTree::memory_bytes() const {
-  return nodes_.capacity() * sizeof(Inner) + (order_.capacity() + drawn_.capacity()) * sizeof(Index);
+  return nodes_.capacity() * sizeof(Inner) + order_.capacity() * sizeof(Index);
 }
 
 }  // namespace lumirank::methods

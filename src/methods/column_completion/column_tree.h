@@ -1,14 +1,14 @@
-// A binary tree over columns for adaptive sampling (Huo et al. 2016, section 5): what it needs of a node is a
-// few of its columns, drawn in proportion to power. Unlike the light tree of cuts it needs no bounds.
+// A binary tree over columns for adaptive sampling (Huo et al. 2016, section 5). Unlike the light tree of
+// cuts it needs no bounds: what it knows of a node is where its columns are and their power.
 //
 // Columns that are in a tree already (ColumnFeatures::branch) keep it; what has the same branch, and all
 // other columns, are divided by place and direction as in the light tree. These two kinds have roots of their
 // own.
 //
-// Every node has `draws` columns, drawn with replacement. The k-th of a node is the first to arrive in a race
-// of all its columns, and the k-th of its parent is one of its children's: half of what a node needs is known
-// from above, and slices that have the same node draw the same columns, so that what these err by has no
-// edges between slices.
+// Columns are drawn for a slice of rows by walks down the tree, on which a child is chosen in proportion to
+// its power over the square of its distance from the slice. The paper draws in proportion to power alone: of
+// a node around the slice the few columns next to it, which bring most of its light, are then seldom drawn,
+// and a node of which none was drawn seems to be known (docs/participating-media.md).
 #pragma once
 
 #include <cstddef>
@@ -16,6 +16,8 @@
 #include <span>
 #include <vector>
 
+#include "base/bounds.h"
+#include "base/random.h"
 #include "matrix/lighting_matrix.h"
 #include "methods/common/light_tree/split.h"
 
@@ -28,26 +30,36 @@ class ColumnTree {
     Node node;
     bool given;  // of columns that came with their branches
   };
+  // Of a node's columns one, and the probability with which it was drawn among them.
+  struct Drawn {
+    std::uint32_t place;  // in the order of the tree
+    double probability;
+  };
+  // Where the rows are for which columns are drawn.
+  struct Place {
+    Vec3f center;
+    float radius = 0;
+  };
 
-  // Columns without power are left out. Deterministic in the seed, whatever the number of threads.
-  ColumnTree(const matrix::LightingMatrix& matrix, std::size_t draws, std::uint64_t seed);
-  // Draws anew.
-  void draw(std::uint64_t seed);
+  // Columns without power are left out. A node with at most `leaf` columns is not divided. Deterministic.
+  ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf);
 
   std::span<const Root> roots() const { return roots_; }
-  std::size_t draws() const { return draws_; }
-  // A node that is not divided has at most as many columns as are drawn.
   bool is_leaf(Node node) const { return nodes_[node].right == 0; }
   Node left(Node node) const { return node + 1; }
   Node right(Node node) const { return nodes_[node].right; }
   std::span<const matrix::Index> columns(Node node) const {
     return {order_.data() + nodes_[node].begin, order_.data() + nodes_[node].end};
   }
-  std::span<const matrix::Index> drawn(Node node) const { return {drawn_.data() + node * draws_, draws_}; }
-  double power(Node node) const { return nodes_[node].power; }
-  double power_of(matrix::Index j) const {
-    return features_.power.empty() ? 1.0 : static_cast<double>(features_.power[j]);
+  // Whether a place is among the columns of the node.
+  bool holds(Node node, std::uint32_t place) const {
+    return place >= nodes_[node].begin && place < nodes_[node].end;
   }
+  matrix::Index column(std::uint32_t place) const { return order_[place]; }
+  Drawn draw(Node node, const Place& from, Rng& rng) const;
+  // Of an inner node, that a walk goes to the left.
+  double left_probability(Node node, const Place& from) const;
+  double power(Node node) const { return nodes_[node].power; }
   std::size_t memory_bytes() const;
 
  private:
@@ -55,16 +67,18 @@ class ColumnTree {
     std::uint32_t begin, end;
     Node right = 0;  // 0: not divided
     double power = 0;
+    Bounds3f box{};
   };
   struct Builder;
-  void race(Node node);
-  double arrival(matrix::Index j, std::size_t draw) const;
+  double power_of(matrix::Index j) const {
+    return features_.power.empty() ? 1.0 : static_cast<double>(features_.power[j]);
+  }
+  Vec3f place_of(matrix::Index j) const;
 
   matrix::ColumnFeatures features_;
-  std::size_t draws_;
-  std::uint64_t seed_ = 0;
+  std::size_t leaf_;
   std::vector<Inner> nodes_;  // a node before its children, the left one at once after it
-  std::vector<matrix::Index> order_, drawn_;
+  std::vector<matrix::Index> order_;
   std::vector<Root> roots_;
 };
 

@@ -16,10 +16,10 @@
 namespace lumirank::methods {
 
 struct CompletionSpaceSettings {
-  double rho = 0;        // of a column's rows that are sampled; 0: found for each slice
-  double sigma = 0.005;  // of the slice's light that completion may miss in what a column stands for
-  double beta = 0.01;    // of the slice's light by which a node's columns may err
-  std::size_t samples = 10;
+  double rho = 0;            // of a column's rows that are sampled; 0: found for each slice
+  double sigma = 0.005;      // of the slice's light that completion may miss in what a column stands for
+  double beta = 0.01;        // of the slice's light by which a node's columns may err
+  std::size_t samples = 20;  // the paper: 10
 };
 
 // Deviations from the paper, and why (docs/participating-media.md has the measurements):
@@ -30,11 +30,18 @@ struct CompletionSpaceSettings {
 // - Points and rays have spaces of their own (the paper's sub-matrices), and share the measure of light.
 // - The rows in which columns are sampled stay until more of them are needed: the paper draws them anew for
 //   every direction, and factors them anew.
+// - Columns are drawn by power and distance (column_tree.h), and those of a node that lie in one of its
+// children
+//   are draws of the child as well, which needs so many less.
+// - A node that need not be divided is estimated once more by other columns before that is believed: dark
+// ones
+//   let it seem well known, and up to a third of the light in fog was lost.
 // - A node with no more columns than would be drawn gets them all. The first nodes are divided by power.
 class SliceEstimate {
  public:
-  SliceEstimate(const ColumnTree& tree, const CompletionSpaceSettings& settings)
-      : tree_(tree), settings_(settings), kinds_(tree.roots().size()) {}
+  SliceEstimate(const ColumnTree& tree, const matrix::RowFeatures& features,
+                const CompletionSpaceSettings& settings)
+      : tree_(tree), features_(features), settings_(settings), kinds_(tree.roots().size()) {}
 
   // Writes sums[i] of all `rows`. `quality`: both tolerances are divided by it. `seed`: of the rows drawn.
   void run(std::span<const matrix::Index> rows, matrix::EntryReader& reader, double quality,
@@ -61,24 +68,30 @@ class SliceEstimate {
     std::uint32_t kind;
     double error;
     std::vector<double> sum;  // coordinates
+    std::vector<ColumnTree::Drawn> drawn;
     friend bool operator<(const Estimated& a, const Estimated& b) {
       return a.error != b.error ? a.error < b.error : a.node > b.node;
     }
   };
 
-  Estimated estimate(Node node, std::uint32_t kind);
+  // `parent`: whose draws among the node's columns are draws of the node; may be nullptr.
+  Estimated estimate(Node node, std::uint32_t kind, const Estimated* parent);
   const std::vector<float>& complete(matrix::Index j, double scale, Kind& kind);
   const std::vector<float>& sample_wholly(matrix::Index j, Kind& kind);
+  void find_place();
   void draw_rows(Kind& kind, std::size_t count);
   double light() const;
   void refine();
+  void confirm(Estimated&& e);
   void write(std::span<Rgb> sums);
 
   const ColumnTree& tree_;
+  matrix::RowFeatures features_;
   CompletionSpaceSettings settings_;
   // Of the slice that is being estimated.
   std::span<const matrix::Index> rows_;
   matrix::EntryReader* reader_ = nullptr;
+  ColumnTree::Place place_;
   double sigma_ = 0, beta_ = 0;
   Rng rng_{0, Stage::method};
   std::vector<Kind> kinds_;
