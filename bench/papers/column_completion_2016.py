@@ -33,7 +33,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 # Methods and parameters, as the program names them.
 OURS, SLICES, ALL, PLAIN, TRUTH = "column-completion", "adaptive-lightslice", "virtual-ray-lights", "row-column-sampling", "brute-force"
-PARTITIONS = ("graph", "kmeans", "none")
+PARTITIONS = ("graph", "places", "stretches")
 SIGMAS, RHOS = (0.05, 0.01, 0.005), (0.1, 0.05, 0.01)
 STATUE = [(g, rho) for g in (0, 0.5, 0.9) for rho in (0.1, 0.2)]
 EVERY_COLUMN = {"beta": 0}  # section 6.2: completion alone, without choosing among columns
@@ -43,7 +43,7 @@ LADDERS = {  # of part scaling, from poor to good
     SLICES: [{"error": e} for e in (0.2, 0.1, 0.05, 0.02, 0.01)],
     PLAIN: [{"rows": r, "columns": 3 * r} for r in (50, 100, 200, 400, 800)],
 }
-TOLD = ("sampling_rate", "rank", "columns", "passes")  # numbers of the report that tables show where there are such
+TOLD = ("sampling_rate", "completion.rank", "columns", "passes")  # numbers of the report that tables show where there are such
 
 SIZES = {"fog": (320, 240), "street": (320, 240), "liquids": (480, 200), "statue": (240, 240), "studio": (320, 240)}
 DEPTH = 32
