@@ -13,7 +13,9 @@ constexpr float kDeepest = 7;
 // Of the squares of the distances to a lamp, from the nearest place to the farthest.
 constexpr float kLeastSpread = 4;
 
-Rgb middle(const media::Medium::Walk::Piece& piece) { return (piece.extinction.least + piece.extinction.most) * 0.5f; }
+Rgb middle(const media::Medium::Walk::Piece& piece) {
+  return (piece.extinction.least + piece.extinction.most) * 0.5f;
+}
 
 // Where the last of the channels that are attenuated at all gets to kDeepest.
 float where_dark(const media::Medium::Walk::Piece& piece, Rgb depth, Rgb extinction) {

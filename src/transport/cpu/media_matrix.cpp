@@ -264,8 +264,8 @@ std::size_t MediaMatrix::memory_bytes() const {
   return m.points.memory_bytes() + m.pairs.memory_bytes() + bytes(m.row_pixel) + bytes(m.row_position) +
          bytes(m.row_normal) + bytes(m.row_weight) + bytes(m.row_id) + bytes(m.column_position) +
          bytes(m.column_normal) + bytes(m.column_power) + bytes(m.column_group) + bytes(m.column_indirect) +
-         bytes(m.column_half) + bytes(m.column_emitted) + bytes(m.column_id) +
-         bytes(m.column_branch) + bytes(m.row_slice);
+         bytes(m.column_half) + bytes(m.column_emitted) + bytes(m.column_id) + bytes(m.column_branch) +
+         bytes(m.row_slice);
 }
 
 }  // namespace lumirank::transport

@@ -1,8 +1,8 @@
 // Where along rays the integrals of pairs with a ray in them are sampled, 16 pairs at a time.
 //
-// A point and a ray: equiangular (as in base/equiangular.h). Two rays: jointly, first on the light by the integral
-// of 1/d² over the whole of the other line, then equiangular on the other (Novák et al. 2012, section 4.2:
-// "joint importance sampling" for isotropic media).
+// A point and a ray: equiangular (as in base/equiangular.h). Two rays: jointly, first on the light by the
+// integral of 1/d² over the whole of the other line, then equiangular on the other (Novák et al. 2012,
+// section 4.2: "joint importance sampling" for isotropic media).
 #pragma once
 
 #include "base/lane_math.h"
