@@ -1,7 +1,6 @@
 #include "linalg/column_space.h"
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +27,21 @@ double inner(const float* a, const float* b, std::size_t n) {
 // y += factor · x
 void add_scaled(float factor, const float* x, float* y, std::size_t n) {
   Eigen::Map<Eigen::VectorXf>(y, static_cast<Eigen::Index>(n)) += factor * vector(x, n);
+}
+
+// Of a positive definite matrix of few rows, in place: Gauss and Jordan without pivots.
+void invert_positive(std::vector<double>& m, std::size_t n) {
+  for (std::size_t p = 0; p < n; ++p) {
+    const double pivot = m[p * n + p];
+    m[p * n + p] = 1;
+    for (std::size_t j = 0; j < n; ++j) m[p * n + j] /= pivot;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == p) continue;
+      const double factor = m[i * n + p];
+      m[i * n + p] = 0;
+      for (std::size_t j = 0; j < n; ++j) m[i * n + j] -= factor * m[p * n + j];
+    }
+  }
 }
 
 }  // namespace
@@ -104,21 +118,15 @@ void ColumnSpace::factor() {
 
 void ColumnSpace::invert_leverages() {
   // A row that is left out is off by (I − H)⁻¹ of its residual, H the block of Q·Qᵀ that belongs to it.
-  const auto width = static_cast<Eigen::Index>(width_);
+  const std::size_t size = width_ * width_;
   open_.resize(leverage_.size());
-  Eigen::MatrixXd open(width, width);
+  std::vector<double> open(size);
   for (std::size_t a = 0; a < rows_.size(); ++a) {
+    for (std::size_t k = 0; k < size; ++k) open[k] = -static_cast<double>(leverage_[a * size + k]);
     // A row without which a direction would not be seen foretells itself: as good as infinitely far off.
-    open.setIdentity();
-    open *= 1 + kSelfForetold;
-    const std::size_t at = a * width_ * width_;
-    for (Eigen::Index i = 0; i < width; ++i)
-      for (Eigen::Index j = 0; j < width; ++j)
-        open(i, j) -= static_cast<double>(leverage_[at + static_cast<std::size_t>(i * width + j)]);
-    const Eigen::MatrixXd inverse = open.inverse();
-    for (Eigen::Index i = 0; i < width; ++i)
-      for (Eigen::Index j = 0; j < width; ++j)
-        open_[at + static_cast<std::size_t>(i * width + j)] = static_cast<float>(inverse(i, j));
+    for (std::size_t i = 0; i < width_; ++i) open[i * width_ + i] += 1 + kSelfForetold;
+    invert_positive(open, width_);
+    for (std::size_t k = 0; k < size; ++k) open_[a * size + k] = static_cast<float>(open[k]);
   }
 }
 
