@@ -1,5 +1,9 @@
 #include "linalg/column_space.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
