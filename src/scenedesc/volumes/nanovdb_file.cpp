@@ -136,6 +136,7 @@ std::vector<Entry> entries(const Bytes& file) {
 
 std::vector<std::string> names_of(const std::vector<Entry>& grids) {
   std::vector<std::string> out;
+  out.reserve(grids.size());
   for (const Entry& grid : grids) out.push_back(grid.name);
   return out;
 }
