@@ -1,5 +1,6 @@
 // Environments of pbrt-v4: equal-area octahedral maps.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -52,7 +53,9 @@ TEST(EqualArea, ResamplingKeepsTheMeanAndTheIlluminanceOfTheSky) {
   EXPECT_NEAR(illuminance_of_pole(image::Image(8, 4, Rgb(2))), 2 * M_PI, 1e-5);
 }
 
-const std::string kFile = ::testing::TempDir() + "lumirank_world_equal_area.pfm";
+// Of this process alone: tests run side by side.
+const std::string kFile =
+    ::testing::TempDir() + "lumirank_world_equal_area_" + std::to_string(getpid()) + ".pfm";
 
 World sky(const image::Image& image, const sd::EnvironmentMapDesc& map,
           std::vector<sd::Warning>* warnings = nullptr) {
