@@ -17,6 +17,10 @@ constexpr double kInside = 1e-5;
 // Of a direction's norm in the sampled rows: less than this outside of the others' is too little to tell it
 // by, and what it would be multiplied by is mostly noise.
 constexpr double kUnseen = 1e-2;
+// Of what the sampled rows would see of a direction that is spread evenly over all rows: one of which they
+// see less lies in a few rows that are not sampled, and these would be foretold by a multiple of next to
+// nothing.
+constexpr double kLeastSeen = 0.3;
 constexpr double kSelfForetold = 1e-5;
 
 // Single precision: vectors are orthogonalized twice, and what is left of one is compared with far more than
@@ -90,6 +94,7 @@ void ColumnSpace::factor() {
   if (factored_ == rank_ && !open_.empty()) return;
   const std::size_t n = rows_.size() * width_;
   q_.resize(rank_ * n), seen_.resize(rank_, 0), r_.resize(rank_);
+  const double least = kLeastSeen * std::sqrt(static_cast<double>(n) / static_cast<double>(length_));
   for (std::size_t d = factored_; d < rank_; ++d) {
     float* q = q_.data() + d * n;
     const float* direction = basis_.data() + d * length_;
@@ -106,7 +111,7 @@ void ColumnSpace::factor() {
         r_[d][e] += share;
       }
     const double left = std::sqrt(inner(q, q, n));
-    if (!(left > kUnseen * size) || !(left > 0)) continue;
+    if (!(left > std::max(kUnseen * size, least))) continue;
     seen_[d] = 1;
     r_[d][d] = static_cast<float>(left);
     const auto scale = static_cast<float>(1 / left);

@@ -34,7 +34,8 @@ class ColumnSpace {
     double size = 0, residual = 0, left_out = 0;
   };
   // Least squares by the QR factors of the sampled part of the basis, never by normal equations. `values`: of
-  // the sampled rows; `coordinates` gets rank() numbers. Directions that the sampled rows hardly see get 0.
+  // the sampled rows; `coordinates` gets rank() numbers. Directions that the sampled rows hardly see, by
+  // themselves or beside those before them, get 0.
   Fit fit(std::span<const float> values, std::vector<float>& coordinates);
 
   // out = Σ coordinate · direction; fewer coordinates than directions: the others are 0.

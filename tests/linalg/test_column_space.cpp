@@ -126,6 +126,21 @@ TEST(ColumnSpace, SampledRowsThatSeeNothingGiveNothing) {
   EXPECT_NEAR(fit.left_out, fit.size, 1e-4 * fit.size);
 }
 
+// A speck in a row that is not sampled, with a little beside it that is: a column with that little in it is
+// no reason to foretell a hundred specks.
+TEST(ColumnSpace, SpecksOutsideOfTheSampledRowsAreNotMultiplied) {
+  ColumnSpace space;
+  space.begin(kRows, kWidth);
+  std::vector<float> speck(kLength, 1e-3f), coordinates, out(kLength);
+  speck[kWidth] = 1;
+  space.add(speck, coordinates);
+  const auto rows = every(8);
+  space.sample(rows);
+  space.fit(std::vector<float>(rows.size() * kWidth, 1.0f), coordinates);
+  space.combine(coordinates, out);
+  for (const float x : out) EXPECT_LT(std::abs(x), 2);
+}
+
 TEST(ColumnSpace, DarkColumnsAddNoDirection) {
   ColumnSpace space;
   space.begin(kRows, kWidth);
