@@ -32,7 +32,6 @@ enum class Stage : std::uint32_t {
   shutter,
   ray_pairs,
   passes,
-  ray_places,
   segments,
 };
 

@@ -22,7 +22,8 @@ namespace {
 // Parts of a ray's way through a medium (Huo et al. 2016, section 4.1: 16 points).
 constexpr int kSegmentsPerRay = 17;
 
-// Columns for emitters where rays are grouped: segments are longer then than those pieces.
+// At so many places of a segment at least the light of all emitters together is estimated: one place for the
+// sun made noise of its shafts.
 constexpr std::size_t kLeastDirect = 32;
 
 class MediaRun {
@@ -135,7 +136,7 @@ class MediaRun {
     settings.eye_medium = task_.view.sensor.medium;
     settings.direct = recipe_.only != LightPart::indirect,
     settings.indirect = recipe_.only != LightPart::direct;
-    if (of_method() == Segments::groups) settings.least_direct = kLeastDirect;
+    settings.least_direct = kLeastDirect;
     asked_lights_ = settings.count;
     lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
     whole_rays_ = lights_.rays.size();

@@ -35,11 +35,12 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
                       &S::beta, 0, 1),
       count_field<S>({"samples", "columns", "Drawn of each node (the paper: 10)."}, &S::samples, 1, 1000),
       count_field<S>({"slice-rows", "rows", "Of a slice by place, at most."}, &S::slice_rows, 1, kMaxRows),
-      experiment(choice_field<S>(
-          {"partition", "",
-           "graph: slices of eye segments as the scene's graph has them; places: by place and direction; "
-           "stretches: by number, along the film."},
-          &S::partition, {"graph", "places", "stretches"}))};
+      experiment(choice_field<S>({"partition", "",
+                                  "graph: slices of eye segments as the scene's graph has them, of "
+                                  "receivers, and without media of all rows, "
+                                  "by place; places: all by place and direction; "
+                                  "stretches: by number, along the film."},
+                                 &S::partition, {"graph", "places", "stretches"}))};
   return fields;
 }
 

@@ -23,7 +23,11 @@ struct CompletionSpaceSettings {
 };
 
 // Deviations from the paper, and why (docs/participating-media.md has the measurements):
-// - What a column may miss is measured by what it stands for, its share of a node's power included: its own
+// - Norms are Euclidean, since the basis is orthonormal and coordinates then have the norm of the column; the
+//   paper's are sums of absolute values. Equation 17 is a square and is compared with a norm; here its root,
+//   the standard error of the mean, is.
+// - Equation 16: what a column may miss is measured by what it stands for, its share of a node's power
+// included: its own
 //   light alone is never much of all.
 // - A column is judged by rows that took no part in its fit, each foretold by the others; a residual over the
 //   rows that were fitted would be 0 when the space has as many directions as there are rows.

@@ -16,7 +16,8 @@ struct RayTreeSettings {
 
 // Each ray light becomes segments of it, whose powers are what of the ray's arrives at their origins, and
 // RayLights::branch is filled: from the whole graph on, groups are divided in two by their graph until they
-// are small. Deterministic in the seed.
+// are small (section 4.3 stops where all segments are alike enough; sampling divides further where it needs
+// to, by place). Deterministic in the seed.
 void build_ray_tree(const world::World& world, const RayTreeSettings& settings, RayLights& rays,
                     const Sinks& sinks = {});
 

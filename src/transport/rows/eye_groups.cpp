@@ -14,6 +14,9 @@ namespace lumirank::transport {
 namespace {
 
 constexpr std::uint32_t kRaysOfStretch = 4096;
+// From which a stretch has as many groups as its rays ask for: one at the edge of a medium has fewer, of the
+// same size.
+constexpr std::size_t kFullStretch = std::size_t{kRaysOfStretch} * 4;
 // Weights below this were put up by roulette (eye_chain.cpp), so that what they stand for is not known from
 // the segment before.
 constexpr float kCertainWeight = 0.01f;
@@ -90,10 +93,9 @@ void group_eye_segments(const world::World& world, std::span<const Vec2f> film,
   std::atomic<std::size_t> done{0};
   parallel_for(stretches, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end && !sinks.cancelled(); ++t) {
-      // A stretch with fewer segments, at the edge of a medium, has fewer groups of the same size.
-      const std::size_t own = first[t + 1] - first[t], usual = std::size_t{kRaysOfStretch} * 4;
+      const std::size_t own = first[t + 1] - first[t];
       grouped[t] = group_stretch(world, segments, film, first[t], first[t + 1],
-                                 std::clamp<std::size_t>(groups * own / usual, 1, groups), settings);
+                                 std::clamp<std::size_t>(groups * own / kFullStretch, 1, groups), settings);
       sinks.report("segments", static_cast<double>(++done) / static_cast<double>(stretches));
     }
   });

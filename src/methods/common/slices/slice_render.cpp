@@ -1,6 +1,23 @@
 #include "methods/common/slices/slice_render.h"
 
+#include <memory>
+#include <vector>
+
+#include "matrix/entry_reader.h"
+
 namespace lumirank::methods {
+
+namespace {
+
+struct SliceRenderWorkspace {
+  explicit SliceRenderWorkspace(const matrix::LightingMatrix& matrix) : reader(matrix.reader()) {}
+  std::unique_ptr<matrix::EntryReader> reader;
+  SliceLights::Workspace lights;
+  SliceCosts costs;
+  std::vector<Rgb> entries;
+};
+
+}  // namespace
 
 Estimate render_slices(const matrix::LightingMatrix& matrix, const RunOptions& options,
                        const SliceLightSettings& settings) {
