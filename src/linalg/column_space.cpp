@@ -64,13 +64,17 @@ void ColumnSpace::add(std::span<const float> column, std::vector<float>& coordin
   basis_.insert(basis_.end(), column.begin(), column.end());
   float* rest = basis_.data() + rank_ * length_;
   const double size = std::sqrt(inner(rest, rest, length_));
-  for (int pass = 0; pass < 2; ++pass)
-    for (std::size_t d = 0; d < rank_; ++d) {
-      const float* direction = basis_.data() + d * length_;
-      const auto share = static_cast<float>(inner(direction, rest, length_));
-      add_scaled(-share, direction, rest, length_);
-      coordinates[d] += share;
-    }
+  // All directions at once, so that the basis is read by blocks; what rounding leaves goes in the second
+  // pass.
+  const Eigen::Map<const Eigen::MatrixXf> basis(basis_.data(), static_cast<Eigen::Index>(length_),
+                                                static_cast<Eigen::Index>(rank_));
+  Eigen::Map<Eigen::VectorXf> remainder(rest, static_cast<Eigen::Index>(length_));
+  Eigen::Map<Eigen::VectorXf> shares(coordinates.data(), static_cast<Eigen::Index>(rank_));
+  for (int pass = 0; pass < 2 && rank_ > 0; ++pass) {
+    const Eigen::VectorXf share = basis.transpose() * remainder;
+    remainder.noalias() -= basis * share;
+    shares += share;
+  }
   const double left = std::sqrt(inner(rest, rest, length_));
   if (!(left > kInside * size)) {
     basis_.resize(rank_ * length_);

@@ -1,8 +1,10 @@
 // Adaptive column sampling and completion on matrices whose structure is known.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "matrix/synthetic.h"
-#include "methods/column_completion/column_tree.h"
+#include "methods/column_completion/column_draws.h"
 #include "methods/column_completion/completion_slices.h"
 #include "methods/common/column_pass.h"
 #include "methods/method.h"
@@ -62,20 +64,25 @@ TEST(ColumnCompletion, HasHardlyAnyBias) {
   EXPECT_LT(std::abs(bias / total), 0.75 * error) << error;
 }
 
-// Every column is drawn as often as its probability says, which adds up to 1, and a node's draws among the
-// columns of a child are draws of the child.
-TEST(ColumnTree, DrawsAsItsProbabilitiesSay) {
+// Every column is drawn as often as its probability says, which adds up to 1, and walks go left as often as
+// they say.
+void expect_draws_as_foretold(std::size_t asked) {
   const auto m = matrix::occluded_matrix({10, 200, 2}, 3);
-  const ColumnTree tree(m, 8);
+  const ColumnTree tree(m, 4, 16);
   ASSERT_EQ(tree.roots().size(), 1u);
   const auto root = tree.roots()[0].node;
-  const ColumnTree::Place place{{0.3f, 0.2f, 0.1f}, 0.1f};
+  std::vector<matrix::Index> rows(10);
+  std::iota(rows.begin(), rows.end(), matrix::Index{0});
+  const auto reader = m.reader();
+  reader->set_rows(rows);
   Rng rng(1, Stage::test);
+  ColumnDraws draws(tree, m.row_features(), asked);
+  EXPECT_EQ(draws.begin(rows, *reader, rng), asked * tree.coarse_cut().size());
   std::vector<double> drawn(200, 0.0), probability(200, 0.0);
   constexpr int kDraws = 100000;
   int to_left = 0;
   for (int k = 0; k < kDraws; ++k) {
-    const auto d = tree.draw(root, place, rng);
+    const auto d = draws.draw(root, rng);
     drawn[d.place] += 1, probability[d.place] = d.probability;
     to_left += tree.holds(tree.left(root), d.place);
   }
@@ -89,7 +96,45 @@ TEST(ColumnTree, DrawsAsItsProbabilitiesSay) {
   EXPECT_NEAR(sum, 1, 1e-3);
   ASSERT_GT(seen, 100);
   EXPECT_LT(chi2, seen + 4 * std::sqrt(2 * seen));
-  EXPECT_NEAR(static_cast<double>(to_left) / kDraws, tree.left_probability(root, place), 0.01);
+  EXPECT_NEAR(static_cast<double>(to_left) / kDraws, draws.left_probability(root), 0.01);
+}
+
+TEST(ColumnDraws, ByPowerAndDistanceAreAsForetold) { expect_draws_as_foretold(0); }
+TEST(ColumnDraws, ByWhatRowsGetAreAsForetold) { expect_draws_as_foretold(3); }
+
+// A tenth of the columns, behind one another on one side, are all that is seen; half of the walks and more go
+// there once rows were asked, and a tenth before.
+TEST(ColumnDraws, GoWhereRowsGetLight) {
+  constexpr std::size_t kRows = 8, kColumns = 400, kSeen = 40;
+  std::vector<Rgb> entries(kRows * kColumns, Rgb(1));
+  std::vector<float> visible(kRows * kColumns, 0.0f);
+  for (std::size_t i = 0; i < kRows; ++i)
+    std::fill_n(visible.begin() + static_cast<std::ptrdiff_t>(i * kColumns), kSeen, 1.0f);
+  matrix::DenseMatrix m(kRows, kColumns, entries, visible);
+  m.power.assign(kColumns, 1.0f);
+  for (std::size_t i = 0; i < kRows; ++i)
+    m.row_position.emplace_back(0.0f, 0.0f, 0.1f * static_cast<float>(i));
+  // On a circle around the rows, so that distance tells nothing.
+  for (std::size_t j = 0; j < kColumns; ++j) {
+    const float angle = 6.2831853f * static_cast<float>(j) / kColumns;
+    m.column_position.emplace_back(50 * std::cos(angle), 50 * std::sin(angle), 0.0f);
+  }
+  const ColumnTree tree(m, 4, 64);
+  std::vector<matrix::Index> rows(kRows);
+  std::iota(rows.begin(), rows.end(), matrix::Index{0});
+  const auto reader = m.reader();
+  reader->set_rows(rows);
+  const auto share = [&](std::size_t asked) {
+    Rng rng(1, Stage::test);
+    ColumnDraws draws(tree, m.row_features(), asked);
+    draws.begin(rows, *reader, rng);
+    int seen = 0;
+    constexpr int kDraws = 4000;
+    for (int k = 0; k < kDraws; ++k) seen += tree.column(draws.draw(tree.roots()[0].node, rng).place) < kSeen;
+    return static_cast<double>(seen) / kDraws;
+  };
+  EXPECT_LT(share(0), 0.2);
+  EXPECT_GT(share(2), 0.45);
 }
 
 // One work space for all of them, whatever their sizes.

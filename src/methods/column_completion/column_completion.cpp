@@ -34,6 +34,10 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
                        "A node of columns that errs by more, as those drawn tell, is divided."},
                       &S::beta, 0, 1),
       count_field<S>({"samples", "columns", "Drawn of each node (the paper: 10)."}, &S::samples, 1, 1000),
+      count_field<S>({"asked", "rows",
+                      "Of a slice, that tell first what the tree's coarse nodes bring, so that more of the "
+                      "columns drawn matter (the paper: 0)."},
+                     &S::asked, 0, 1000),
       count_field<S>({"slice-rows", "rows", "Of a slice by place, at most."}, &S::slice_rows, 1, kMaxRows),
       experiment(choice_field<S>({"partition", "",
                                   "graph: slices of eye segments as the scene's graph has them, of "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <queue>
 
 #include "base/bounds.h"
 
@@ -63,7 +64,7 @@ struct ColumnTree::Builder {
   }
 };
 
-ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf)
+ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf, std::size_t cut)
     : features_(matrix.column_features()), leaf_(leaf) {
   std::vector<SplitLight> given, others;
   Bounds3f box;
@@ -92,6 +93,31 @@ ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf)
     roots_.push_back({static_cast<Node>(nodes_.size()), true});
     Builder{*this, all, features_.branch, across}.build(first_given, count, 0);
   }
+  make_coarse(cut);
+}
+
+// The node with the most power is divided next.
+void ColumnTree::make_coarse(std::size_t cut) {
+  coarse_of_.assign(nodes_.size(), kFine);
+  std::priority_queue<std::pair<double, Node>> open;
+  std::vector<Node> divided;
+  for (const Root& r : roots_) open.emplace(nodes_[r.node].power, r.node);
+  while (!open.empty()) {
+    const Node node = open.top().second;
+    open.pop();
+    if (is_leaf(node) || cut_.size() + open.size() + 1 >= cut) {
+      cut_.push_back(node);
+      continue;
+    }
+    divided.push_back(node);
+    for (const Node child : {left(node), right(node)}) open.emplace(nodes_[child].power, child);
+  }
+  std::sort(cut_.begin(), cut_.end());
+  for (const Node node : cut_) coarse_.push_back({node, false});
+  for (const Node node : divided) coarse_.push_back({node, true});
+  // Numbers ascend down the tree.
+  std::sort(coarse_.begin(), coarse_.end(), [](const Coarse& a, const Coarse& b) { return a.node < b.node; });
+  for (std::uint32_t k = 0; k < coarse_.size(); ++k) coarse_of_[coarse_[k].node] = k;
 }
 
 Vec3f ColumnTree::place_of(Index j) const {
@@ -111,7 +137,7 @@ double nearness(Vec3f center, float radius, const ColumnTree::Place& from) {
 
 }  // namespace
 
-double ColumnTree::left_probability(Node node, const Place& from) const {
+double ColumnTree::left_by_nearness(Node node, const Place& from) const {
   const auto weight = [&](Node child) {
     const Inner& n = nodes_[child];
     return n.power * nearness(n.box.center(), n.box.radius(), from);
@@ -120,30 +146,36 @@ double ColumnTree::left_probability(Node node, const Place& from) const {
   return left_weight / (left_weight + right_weight);
 }
 
-ColumnTree::Drawn ColumnTree::draw(Node node, const Place& from, Rng& rng) const {
+ColumnTree::Drawn ColumnTree::draw_by_nearness(Node node, const Place& from, Rng& rng) const {
   double probability = 1;
   while (!is_leaf(node)) {
-    const double to_left = left_probability(node, from);
+    const double to_left = left_by_nearness(node, from);
     const bool goes_left = rng.next_double() < to_left;
     probability *= goes_left ? to_left : 1 - to_left;
     node = goes_left ? left(node) : right(node);
   }
+  const Drawn last = draw_in_leaf(node, from, rng);
+  return {last.place, probability * last.probability};
+}
+
+ColumnTree::Drawn ColumnTree::draw_in_leaf(Node leaf, const Place& from, Rng& rng) const {
   const auto weight = [&](Index j) { return power_of(j) * nearness(place_of(j), 0, from); };
   double all = 0;
-  for (const Index j : columns(node)) all += weight(j);
+  for (const Index j : columns(leaf)) all += weight(j);
   const double at = rng.next_double() * all;
   double sum = 0;
-  std::uint32_t place = nodes_[node].begin;
-  for (; place + 1 < nodes_[node].end; ++place) {
+  std::uint32_t place = nodes_[leaf].begin;
+  for (; place + 1 < nodes_[leaf].end; ++place) {
     const double own = weight(order_[place]);
     if (at < sum + own) break;
     sum += own;
   }
-  return {place, probability * weight(order_[place]) / all};
+  return {place, weight(order_[place]) / all};
 }
 
 std::size_t ColumnTree::memory_bytes() const {
-  return nodes_.capacity() * sizeof(Inner) + order_.capacity() * sizeof(Index);
+  return nodes_.capacity() * sizeof(Inner) + order_.capacity() * sizeof(Index) +
+         coarse_of_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace lumirank::methods

@@ -5,10 +5,8 @@
 // other columns, are divided by place and direction as in the light tree. These two kinds have roots of their
 // own.
 //
-// Columns are drawn for a slice of rows by walks down the tree, on which a child is chosen in proportion to
-// its power over the square of its distance from the slice. The paper draws in proportion to power alone: of
-// a node around the slice the few columns next to it, which bring most of its light, are then seldom drawn,
-// and a node of which none was drawn seems to be known (docs/participating-media.md).
+// The tree also knows how near a node is to a slice of rows, as walks down the tree need it
+// (column_draws.h).
 #pragma once
 
 #include <cstddef>
@@ -41,8 +39,9 @@ class ColumnTree {
     float radius = 0;
   };
 
-  // Columns without power are left out. A node with at most `leaf` columns is not divided. Deterministic.
-  ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf);
+  // Columns without power are left out. A node with at most `leaf` columns is not divided. `cut`: nodes of
+  // the coarse cut, about. Deterministic.
+  ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf, std::size_t cut = 2048);
 
   std::span<const Root> roots() const { return roots_; }
   bool is_leaf(Node node) const { return nodes_[node].right == 0; }
@@ -56,10 +55,25 @@ class ColumnTree {
     return place >= nodes_[node].begin && place < nodes_[node].end;
   }
   matrix::Index column(std::uint32_t place) const { return order_[place]; }
-  Drawn draw(Node node, const Place& from, Rng& rng) const;
-  // Of an inner node, that a walk goes to the left.
-  double left_probability(Node node, const Place& from) const;
   double power(Node node) const { return nodes_[node].power; }
+
+  // Walks in proportion to power over the square of the distance: one of a node's columns, and, of an inner
+  // node, the probability of going to the left.
+  Drawn draw_by_nearness(Node node, const Place& from, Rng& rng) const;
+  double left_by_nearness(Node node, const Place& from) const;
+  Drawn draw_in_leaf(Node leaf, const Place& from, Rng& rng) const;
+
+  // Nodes of much power that have all columns below them, each once, and those above: parents before their
+  // children.
+  struct Coarse {
+    Node node;
+    bool divided;  // not of the cut itself
+  };
+  std::span<const Node> coarse_cut() const { return cut_; }
+  std::span<const Coarse> coarse_nodes() const { return coarse_; }
+  static constexpr std::uint32_t kFine = 0xffffffff;
+  // By node: its number among coarse_nodes(), or kFine.
+  std::uint32_t coarse(Node node) const { return coarse_of_[node]; }
   std::size_t memory_bytes() const;
 
  private:
@@ -74,12 +88,16 @@ class ColumnTree {
     return features_.power.empty() ? 1.0 : static_cast<double>(features_.power[j]);
   }
   Vec3f place_of(matrix::Index j) const;
+  void make_coarse(std::size_t cut);
 
   matrix::ColumnFeatures features_;
   std::size_t leaf_;
   std::vector<Inner> nodes_;  // a node before its children, the left one at once after it
   std::vector<matrix::Index> order_;
   std::vector<Root> roots_;
+  std::vector<Node> cut_;
+  std::vector<Coarse> coarse_;
+  std::vector<std::uint32_t> coarse_of_;
 };
 
 }  // namespace lumirank::methods

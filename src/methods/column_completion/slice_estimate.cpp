@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace lumirank::methods {
 
@@ -18,8 +17,6 @@ constexpr std::size_t kFirstNodes = 16;
 // kOverfitted.
 constexpr std::size_t kFewestRows = 24, kRowsPerDirection = 2;
 constexpr double kMoreRows = 1.5, kOverfitted = 1.5;
-// Of beta: what a node's second estimate may err by, or differ from the mean of both.
-constexpr double kConfirmed = 2;
 // A space with more directions than this share of the sampled rows tells nothing of a column.
 constexpr double kMostDirections = 0.5;
 
@@ -43,7 +40,7 @@ void SliceEstimate::run(std::span<const Index> rows, matrix::EntryReader& reader
   sigma_ = settings_.sigma / quality, beta_ = settings_.beta / quality;
   rng_ = Rng(seed, Stage::method, matrix::Index{rows.front()});
   reader.set_rows(rows);
-  find_place();
+  entries_ += draws_.begin(rows, reader, rng_);
   for (Kind& kind : kinds_) {
     kind.space.begin(rows.size(), kChannels);
     kind.known.clear(), kind.total.clear(), kind.sampled.clear();
@@ -63,17 +60,6 @@ void SliceEstimate::run(std::span<const Index> rows, matrix::EntryReader& reader
   counts_.max_entries_per_row = std::max(counts_.max_entries_per_row, entries_ / rows.size());
 }
 
-// The mean place of the rows, and the root mean square distance from it.
-void SliceEstimate::find_place() {
-  place_ = {};
-  if (features_.position.empty()) return;
-  const auto share = 1 / static_cast<float>(rows_.size());
-  for (const Index i : rows_) place_.center += features_.position[i] * share;
-  float square = 0;
-  for (const Index i : rows_) square += length_squared(features_.position[i] - place_.center) * share;
-  place_.radius = std::sqrt(square);
-}
-
 // Algorithm 1.
 void SliceEstimate::refine() {
   queue_ = {};
@@ -83,7 +69,7 @@ void SliceEstimate::refine() {
     add_to(kinds_[k].total, first.back().sum, 1);
   }
   std::size_t nodes = first.size();
-  std::vector<Estimated> left_whole;  // not divided, as it seems
+  std::vector<Estimated> cut;
   const auto take = [&](Estimated&& e) {
     if (tree_.is_leaf(e.node)) return;                        // known
     if (nodes < kFirstNodes) e.error += tree_.power(e.node);  // the strongest is divided first
@@ -91,38 +77,29 @@ void SliceEstimate::refine() {
     if (divided)
       queue_.push(std::move(e));
     else
-      left_whole.push_back(std::move(e));
+      cut.push_back(std::move(e));
   };
   for (Estimated& e : first) take(std::move(e));
-  do {
-    while (!queue_.empty()) {
-      const Estimated parent = queue_.top();
-      queue_.pop();
-      add_to(kinds_[parent.kind].total, parent.sum, -1);
-      Estimated children[2] = {estimate(tree_.left(parent.node), parent.kind, &parent),
-                               estimate(tree_.right(parent.node), parent.kind, &parent)};
-      ++nodes;
-      for (const Estimated& e : children) add_to(kinds_[e.kind].total, e.sum, 1);
-      for (Estimated& e : children) take(std::move(e));
-    }
-    for (Estimated& e : std::exchange(left_whole, {})) confirm(std::move(e));
-  } while (!queue_.empty());
+  while (!queue_.empty()) {
+    const Estimated parent = queue_.top();
+    queue_.pop();
+    add_to(kinds_[parent.kind].total, parent.sum, -1);
+    Estimated children[2] = {estimate(tree_.left(parent.node), parent.kind, &parent),
+                             estimate(tree_.right(parent.node), parent.kind, &parent)};
+    ++nodes;
+    for (const Estimated& e : children) add_to(kinds_[e.kind].total, e.sum, 1);
+    for (Estimated& e : children) take(std::move(e));
+  }
   counts_.nodes += nodes;
+  for (const Estimated& e : cut) draw_again(e);
 }
 
-// A node is left whole the sooner the darker its columns happened to be. So it is estimated once more, by
-// others; where these disagree, it is divided after all. What it adds is the mean of both.
-void SliceEstimate::confirm(Estimated&& e) {
+// A node is left whole the sooner the darker its columns happened to be: they may decide, but their mean is
+// too dark. What counts is drawn anew once nothing depends on it any more.
+void SliceEstimate::draw_again(const Estimated& e) {
   const Estimated again = estimate(e.node, e.kind, nullptr);
-  std::vector<double> change;  // from the first to the mean
-  add_to(change, again.sum, 0.5), add_to(change, e.sum, -0.5);
-  double square = 0;
-  for (const double x : change) square += x * x;
-  add_to(kinds_[e.kind].total, change, 1), add_to(e.sum, change, 1);
-  e.error = std::max(again.error, std::sqrt(square));
-  if (e.error <= kConfirmed * beta_ * light()) return;
-  e.drawn.insert(e.drawn.end(), again.drawn.begin(), again.drawn.end());
-  queue_.push(std::move(e));
+  add_to(kinds_[e.kind].total, again.sum, 1);
+  add_to(kinds_[e.kind].total, e.sum, -1);
 }
 
 // Euclidean norm of what all rows of the slice get, as far as it is known. Light of different kinds has no
@@ -147,12 +124,12 @@ SliceEstimate::Estimated SliceEstimate::estimate(Node node, std::uint32_t k, con
     return out;
   }
   if (parent) {
-    const double to_left = tree_.left_probability(parent->node, place_);
+    const double to_left = draws_.left_probability(parent->node);
     const double to_here = node == tree_.left(parent->node) ? to_left : 1 - to_left;
     for (const auto& d : parent->drawn)
       if (tree_.holds(node, d.place)) out.drawn.push_back({d.place, d.probability / to_here});
   }
-  while (out.drawn.size() < settings_.samples) out.drawn.push_back(tree_.draw(node, place_, rng_));
+  while (out.drawn.size() < settings_.samples) out.drawn.push_back(draws_.draw(node, rng_));
   const auto count = static_cast<double>(out.drawn.size());
   double squares = 0;
   for (const auto& d : out.drawn) {

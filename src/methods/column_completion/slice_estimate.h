@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "linalg/column_space.h"
 #include "matrix/entry_reader.h"
+#include "methods/column_completion/column_draws.h"
 #include "methods/column_completion/column_tree.h"
 
 namespace lumirank::methods {
@@ -20,6 +21,7 @@ struct CompletionSpaceSettings {
   double sigma = 0.005;      // of the slice's light that completion may miss in what a column stands for
   double beta = 0.01;        // of the slice's light by which a node's columns may err
   std::size_t samples = 20;  // the paper: 10
+  std::size_t asked = 8;     // rows of a slice that tell first what coarse nodes bring; the paper: 0
 };
 
 // Deviations from the paper, and why (docs/participating-media.md has the measurements):
@@ -27,25 +29,25 @@ struct CompletionSpaceSettings {
 //   paper's are sums of absolute values. Equation 17 is a square and is compared with a norm; here its root,
 //   the standard error of the mean, is.
 // - Equation 16: what a column may miss is measured by what it stands for, its share of a node's power
-// included: its own
-//   light alone is never much of all.
+//   included: its own light alone is never much of all.
 // - A column is judged by rows that took no part in its fit, each foretold by the others; a residual over the
 //   rows that were fitted would be 0 when the space has as many directions as there are rows.
 // - Points and rays have spaces of their own (the paper's sub-matrices), and share the measure of light.
 // - The rows in which columns are sampled stay until more of them are needed: the paper draws them anew for
 //   every direction, and factors them anew.
-// - Columns are drawn by power and distance (column_tree.h), and those of a node that lie in one of its
-// children
-//   are draws of the child as well, which needs so many less.
-// - A node that need not be divided is estimated once more by other columns before that is believed: dark
-// ones
-//   let it seem well known, and up to a third of the light in fog was lost.
+// - Columns are drawn by what a few rows were found to get (column_draws.h), and those of a node that lie in
+//   one of its children are draws of the child as well, which needs so many less.
+// - The columns that decide whether a node is divided give no light: dark ones let it seem well known, and a
+//   tenth of the light in fog was lost. It is drawn anew once the cut is known.
 // - A node with no more columns than would be drawn gets them all. The first nodes are divided by power.
 class SliceEstimate {
  public:
   SliceEstimate(const ColumnTree& tree, const matrix::RowFeatures& features,
                 const CompletionSpaceSettings& settings)
-      : tree_(tree), features_(features), settings_(settings), kinds_(tree.roots().size()) {}
+      : tree_(tree),
+        settings_(settings),
+        draws_(tree, features, settings.asked),
+        kinds_(tree.roots().size()) {}
 
   // Writes sums[i] of all `rows`. `quality`: both tolerances are divided by it. `seed`: of the rows drawn.
   void run(std::span<const matrix::Index> rows, matrix::EntryReader& reader, double quality,
@@ -72,7 +74,7 @@ class SliceEstimate {
     std::uint32_t kind;
     double error;
     std::vector<double> sum;  // coordinates
-    std::vector<ColumnTree::Drawn> drawn;
+    std::vector<ColumnDraws::Drawn> drawn;
     friend bool operator<(const Estimated& a, const Estimated& b) {
       return a.error != b.error ? a.error < b.error : a.node > b.node;
     }
@@ -82,20 +84,18 @@ class SliceEstimate {
   Estimated estimate(Node node, std::uint32_t kind, const Estimated* parent);
   const std::vector<float>& complete(matrix::Index j, double scale, Kind& kind);
   const std::vector<float>& sample_wholly(matrix::Index j, Kind& kind);
-  void find_place();
   void draw_rows(Kind& kind, std::size_t count);
   double light() const;
   void refine();
-  void confirm(Estimated&& e);
+  void draw_again(const Estimated& e);
   void write(std::span<Rgb> sums);
 
   const ColumnTree& tree_;
-  matrix::RowFeatures features_;
   CompletionSpaceSettings settings_;
+  ColumnDraws draws_;
   // Of the slice that is being estimated.
   std::span<const matrix::Index> rows_;
   matrix::EntryReader* reader_ = nullptr;
-  ColumnTree::Place place_;
   double sigma_ = 0, beta_ = 0;
   Rng rng_{0, Stage::method};
   std::vector<Kind> kinds_;
