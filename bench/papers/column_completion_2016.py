@@ -33,7 +33,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 # Methods and parameters, as the program names them.
 OURS, SLICES, ALL, PLAIN, TRUTH = "column-completion", "adaptive-lightslice", "virtual-ray-lights", "row-column-sampling", "brute-force"
-PARTITIONS = ("graph", "places", "stretches")
+PARTITIONS = ("graph", "k-means", "places", "stretches")
 SIGMAS, RHOS = (0.05, 0.01, 0.005), (0.1, 0.05, 0.01)
 STATUE = [(g, rho) for g in (0, 0.5, 0.9) for rho in (0.1, 0.2)]
 EVERY_COLUMN = {"beta": 0}  # section 6.2: completion alone, without choosing among columns

@@ -178,5 +178,24 @@ TEST(CompletionSlices, KeepsThoseThatWereGiven) {
   EXPECT_EQ(own[0].size() + own[1].size(), 3u);
 }
 
+// Two clumps whose rows alternate, given as slices by number: clusters know them apart.
+TEST(CompletionSlices, ClustersByPlace) {
+  matrix::RowFeatures f{};
+  std::vector<Vec3f> places;
+  std::vector<std::uint32_t> given;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    places.emplace_back(static_cast<float>(10 * (i % 2)) + 0.01f * static_cast<float>(i), 0.0f, 0.0f);
+    given.push_back(i / 20);
+  }
+  f.position = places, f.slice = given;
+  const Slices slices = completion_slices(f, 40, 64, RowPartition::k_means);
+  ASSERT_EQ(slices.count(), 2u);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const auto rows = slices.slice(s);
+    ASSERT_EQ(rows.size(), 20u);
+    for (const matrix::Index i : rows) EXPECT_EQ(i % 2, rows[0] % 2);
+  }
+}
+
 }  // namespace
 }  // namespace lumirank::methods

@@ -41,10 +41,10 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
       count_field<S>({"slice-rows", "rows", "Of a slice by place, at most."}, &S::slice_rows, 1, kMaxRows),
       experiment(choice_field<S>({"partition", "",
                                   "graph: slices of eye segments as the scene's graph has them, of "
-                                  "receivers, and without media of all rows, "
-                                  "by place; places: all by place and direction; "
+                                  "receivers, and without media of all rows, by place; k-means: as many "
+                                  "clusters of segments; places: all by place and direction; "
                                   "stretches: by number, along the film."},
-                                 &S::partition, {"graph", "places", "stretches"}))};
+                                 &S::partition, {"graph", "places", "stretches", "k-means"}))};
   return fields;
 }
 
