@@ -66,11 +66,12 @@ struct MethodContract {
   // It knows what to do with rows and columns of several instants (RowFeatures::instant): others would let a
   // column stand for columns of other instants, of which a row has none.
   bool instants = false;
-  // What rays in media are to be for it.
+  // What rays in media are to be for it, unless its settings say otherwise (MethodInfo::segments_wanted).
   enum class Segments {
-    pieces,  // eye rays in pieces
-    whole,   // eye rays as they are
-    groups   // eye rays and light rays in pieces that know their slices and their tree (RowFeatures::slice)
+    pieces,          // eye rays in pieces
+    whole,           // eye rays as they are
+    groups,          // eye rays in pieces that know their slices (RowFeatures::slice)
+    groups_and_tree  // the same, and light rays in pieces that know their tree (ColumnFeatures::branch)
   } segments = Segments::pieces;
 };
 // Of a method that asks for entries alone and gives such a combination.

@@ -79,6 +79,9 @@ struct MethodInfo {
   std::string error_parameters{};
   // What it needs of a matrix, and whether its estimate is one combination of columns.
   matrix::MethodContract contract{};
+  // Where its settings decide what rays in media are to be; empty: as in the contract.
+  std::function<matrix::MethodContract::Segments(const std::map<std::string, std::string>& settings)>
+      segments_wanted{};
 };
 
 // The list: adding a method here enrols it in the command line, the documentation and the tests that all

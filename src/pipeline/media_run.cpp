@@ -71,7 +71,13 @@ class MediaRun {
   static constexpr int kSegmentsOfAPass = 4;
 
   using Segments = matrix::MethodContract::Segments;
-  Segments of_method() const { return task_.info->contract.segments; }
+  Segments of_method() const {
+    const methods::MethodInfo& info = *task_.info;
+    return info.segments_wanted ? info.segments_wanted(asked_.method.parameters) : info.contract.segments;
+  }
+  bool in_groups() const {
+    return of_method() == Segments::groups || of_method() == Segments::groups_and_tree;
+  }
 
   // Rows, columns and sums, with random numbers of their own; the picture so far is the mean of all.
   void pass() {
@@ -118,7 +124,7 @@ class MediaRun {
     rows_ = transport::trace_receivers(*task_.world, world::Camera(task_.view.sensor, task_.world->units()),
                                        settings, sinks_);
     seconds_["receivers"] += timer.seconds();
-    if (of_method() != Segments::groups) return;
+    if (!in_groups()) return;
     const Timer grouping;
     transport::EyeGroupSettings groups;
     groups.seed = recipe_.seed;
@@ -141,7 +147,7 @@ class MediaRun {
     lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
     whole_rays_ = lights_.rays.size();
     seconds_["lights"] += timer.seconds();
-    if (of_method() == Segments::groups) {
+    if (of_method() == Segments::groups_and_tree) {
       timer = {};
       transport::RayTreeSettings tree;
       tree.seed = recipe_.light_seed;
@@ -150,8 +156,7 @@ class MediaRun {
     }
     timer = {};
     matrix_ = std::make_unique<transport::MediaMatrix>(
-        *task_.world, rows_, lights_,
-        transport::MediaMatrixSettings{matrix_settings(recipe_), of_method() == Segments::groups});
+        *task_.world, rows_, lights_, transport::MediaMatrixSettings{matrix_settings(recipe_), in_groups()});
     seconds_["matrix"] += timer.seconds();
   }
 

@@ -14,9 +14,13 @@ namespace lumirank::methods {
 
 namespace {
 
+// graph: as the scene's graph of light segments was halved.
+enum class ColumnTreeKind { places, graph };
+
 struct ColumnCompletionSettings : CompletionSpaceSettings {
   std::size_t slice_rows = 512;
-  RowPartition partition = RowPartition::given;
+  RowPartition partition = RowPartition::places;
+  ColumnTreeKind tree = ColumnTreeKind::places;
 };
 
 const Fields<ColumnCompletionSettings>& column_completion_fields() {
@@ -41,10 +45,14 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
       count_field<S>({"slice-rows", "rows", "Of a slice by place, at most."}, &S::slice_rows, 1, kMaxRows),
       experiment(choice_field<S>({"partition", "",
                                   "graph: slices of eye segments as the scene's graph has them, of "
-                                  "receivers, and without media of all rows, by place; k-means: as many "
-                                  "clusters of segments; places: all by place and direction; "
-                                  "stretches: by number, along the film."},
-                                 &S::partition, {"graph", "places", "stretches", "k-means"}))};
+                                  "receivers, and without media of all rows, by place, as in the paper; "
+                                  "places: all by place and direction; stretches: by number, along the "
+                                  "film; k-means: as many clusters of segments as the graph has."},
+                                 &S::partition, {"graph", "places", "stretches", "k-means"})),
+      experiment(choice_field<S>({"tree", "",
+                                  "Of light rays: places: whole rays by place and direction; graph: cut, "
+                                  "and divided by halves of the scene's graph, as in the paper."},
+                                 &S::tree, {"places", "graph"}))};
   return fields;
 }
 
@@ -124,14 +132,20 @@ class ColumnCompletion final : public Method {
 }  // namespace
 
 MethodInfo column_completion_info() {
-  return method_info<ColumnCompletion>(
+  using Segments = matrix::MethodContract::Segments;
+  MethodInfo info = method_info<ColumnCompletion>(
       {"column-completion",
        "Slices of receivers draw columns from a tree, and know most of them by few of their rows.",
        "Huo, Wang, Hu, Hua, Jin 2016, Adaptive matrix column sampling and completion for rendering "
        "participating media",
        "beta or sigma or rho",
-       {.needs = {}, .segments = matrix::MethodContract::Segments::groups}},
+       {.needs = {}, .segments = Segments::groups}},
       column_completion_fields());
+  info.segments_wanted = [name = info.name](const SettingsMap& settings) {
+    const auto read = read_settings(name, column_completion_fields(), settings);
+    return read.tree == ColumnTreeKind::graph ? Segments::groups_and_tree : Segments::groups;
+  };
+  return info;
 }
 
 }  // namespace lumirank::methods
