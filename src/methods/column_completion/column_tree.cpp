@@ -10,6 +10,12 @@ namespace lumirank::methods {
 
 using matrix::Index;
 
+namespace {
+
+constexpr double kStrong = 1.0 / 256;
+
+}  // namespace
+
 struct ColumnTree::Builder {
   ColumnTree& tree;
   std::vector<SplitLight>& lights;  // in the order of the leaves
@@ -68,8 +74,16 @@ ColumnTree::ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf, s
     : features_(matrix.column_features()), leaf_(leaf) {
   std::vector<SplitLight> given, others;
   Bounds3f box;
+  const auto is_emitter = [&](Index j) { return j < features_.indirect.size() && !features_.indirect[j]; };
+  double of_emitters = 0;
+  for (Index j = 0; j < matrix.columns(); ++j)
+    if (is_emitter(j)) of_emitters += power_of(j);
   for (Index j = 0; j < matrix.columns(); ++j) {
     if (!(power_of(j) > 0)) continue;
+    if (is_emitter(j) && power_of(j) > kStrong * of_emitters) {
+      strong_emitters_.push_back(j);
+      continue;
+    }
     const SplitLight light{place_of(j), features_.normal.empty() ? Vec3f{} : features_.normal[j],
                            static_cast<float>(std::min(power_of(j), 1e30)), j};
     box.extend(light.position);

@@ -39,11 +39,14 @@ class ColumnTree {
     float radius = 0;
   };
 
-  // Columns without power are left out. A node with at most `leaf` columns is not divided. `cut`: nodes of
-  // the coarse cut, about. Deterministic.
+  // Columns without power are left out, and of emitters the strong_emitters(). A node with at
+  // most `leaf` columns is not divided. `cut`: nodes of the coarse cut, about. Deterministic.
   ColumnTree(const matrix::LightingMatrix& matrix, std::size_t leaf, std::size_t cut = 2048);
 
   std::span<const Root> roots() const { return roots_; }
+  // Columns with more than a 256th of the power of all emitters: in no node, since all rows of a slice can
+  // afford them. In media places of their own make them noise that no other column foretells.
+  std::span<const matrix::Index> strong_emitters() const { return strong_emitters_; }
   bool is_leaf(Node node) const { return nodes_[node].right == 0; }
   Node left(Node node) const { return node + 1; }
   Node right(Node node) const { return nodes_[node].right; }
@@ -95,6 +98,7 @@ class ColumnTree {
   std::vector<Inner> nodes_;  // a node before its children, the left one at once after it
   std::vector<matrix::Index> order_;
   std::vector<Root> roots_;
+  std::vector<matrix::Index> strong_emitters_;
   std::vector<Node> cut_;
   std::vector<Coarse> coarse_;
   std::vector<std::uint32_t> coarse_of_;

@@ -40,6 +40,7 @@ void SliceEstimate::run(std::span<const Index> rows, matrix::EntryReader& reader
   sigma_ = settings_.sigma / quality, beta_ = settings_.beta / quality;
   rng_ = Rng(seed, Stage::method, matrix::Index{rows.front()});
   reader.set_rows(rows);
+  add_strong_emitters();
   entries_ += draws_.begin(rows, reader, rng_);
   for (Kind& kind : kinds_) {
     kind.space.begin(rows.size(), kChannels);
@@ -58,6 +59,19 @@ void SliceEstimate::run(std::span<const Index> rows, matrix::EntryReader& reader
   }
   counts_.entries += entries_;
   counts_.max_entries_per_row = std::max(counts_.max_entries_per_row, entries_ / rows.size());
+}
+
+void SliceEstimate::add_strong_emitters() {
+  emitters_.assign(rows_.size(), Rgb(0));
+  values_.resize(rows_.size());
+  for (const Index j : tree_.strong_emitters()) {
+    reader_->column(j, values_, matrix::Part::value);
+    for (std::size_t a = 0; a < rows_.size(); ++a) emitters_[a] += values_[a];
+    entries_ += rows_.size();
+  }
+  emitters_square_ = 0;
+  for (const Rgb e : emitters_)
+    for (int c = 0; c < 3; ++c) emitters_square_ += static_cast<double>(e[c]) * static_cast<double>(e[c]);
 }
 
 // Algorithm 1.
@@ -105,7 +119,7 @@ void SliceEstimate::draw_again(const Estimated& e) {
 // Euclidean norm of what all rows of the slice get, as far as it is known. Light of different kinds has no
 // negative product, so the root of the sum of squares is no more than the norm of the sum.
 double SliceEstimate::light() const {
-  double square = 0;
+  double square = emitters_square_;
   for (const Kind& kind : kinds_)
     for (const double x : kind.total) square += x * x;
   return std::sqrt(square);
@@ -222,8 +236,8 @@ void SliceEstimate::write(std::span<Rgb> sums) {
         sums[rows_[a]][static_cast<int>(c)] += numbers_[a * kChannels + c];
   }
   // Where a fit overshoots, a dark row may come out below zero.
-  for (const Index i : rows_)
-    for (int c = 0; c < 3; ++c) sums[i][c] = std::max(sums[i][c], 0.0f);
+  for (std::size_t a = 0; a < rows_.size(); ++a)
+    for (int c = 0; c < 3; ++c) sums[rows_[a]][c] = std::max(sums[rows_[a]][c], 0.0f) + emitters_[a][c];
 }
 
 }  // namespace lumirank::methods

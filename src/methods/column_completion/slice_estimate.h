@@ -39,6 +39,7 @@ struct CompletionSpaceSettings {
 //   one of its children are draws of the child as well, which needs so many less.
 // - The columns that decide whether a node is divided give no light: dark ones let it seem well known, and a
 //   tenth of the light in fog was lost. It is drawn anew once the cut is known.
+// - Columns of strong emitters are summed in all rows.
 // - A node with no more columns than would be drawn gets them all. The first nodes are divided by power.
 class SliceEstimate {
  public:
@@ -84,6 +85,7 @@ class SliceEstimate {
   Estimated estimate(Node node, std::uint32_t kind, const Estimated* parent);
   const std::vector<float>& complete(matrix::Index j, double scale, Kind& kind);
   const std::vector<float>& sample_wholly(matrix::Index j, Kind& kind);
+  void add_strong_emitters();
   void draw_rows(Kind& kind, std::size_t count);
   double light() const;
   void refine();
@@ -99,6 +101,8 @@ class SliceEstimate {
   double sigma_ = 0, beta_ = 0;
   Rng rng_{0, Stage::method};
   std::vector<Kind> kinds_;
+  std::vector<Rgb> emitters_;  // by row of the slice: sums of the tree's strong emitters
+  double emitters_square_ = 0;
   std::priority_queue<Estimated> queue_;
   std::uint64_t entries_ = 0;
   // Work space.
