@@ -51,7 +51,8 @@ TEST(Units, OneStrayShapeDoesNotShrinkTheOthers) {
     EXPECT_TRUE(w.units().are_the_files()) << away;
     const auto hit = w.intersect(ray({0.25f, 0.5f, 9}, {0, 0, -1}));
     ASSERT_TRUE(hit) << away;
-    EXPECT_EQ(hit->hit.t, 8);
+    // Narrower vectors of Embree divide less exactly.
+    EXPECT_FLOAT_EQ(hit->hit.t, 8);
   }
 }
 
