@@ -113,11 +113,11 @@ TEST(ColumnDraws, GoWhereRowsGetLight) {
   matrix::DenseMatrix m(kRows, kColumns, entries, visible);
   m.power.assign(kColumns, 1.0f);
   for (std::size_t i = 0; i < kRows; ++i)
-    m.row_position.emplace_back(0.0f, 0.0f, 0.1f * static_cast<float>(i));
+    m.row_position.push_back({0.0f, 0.0f, 0.1f * static_cast<float>(i)});
   // On a circle around the rows, so that distance tells nothing.
   for (std::size_t j = 0; j < kColumns; ++j) {
     const float angle = 6.2831853f * static_cast<float>(j) / kColumns;
-    m.column_position.emplace_back(50 * std::cos(angle), 50 * std::sin(angle), 0.0f);
+    m.column_position.push_back({50 * std::cos(angle), 50 * std::sin(angle), 0.0f});
   }
   const ColumnTree tree(m, 4, 64);
   std::vector<matrix::Index> rows(kRows);
@@ -184,7 +184,7 @@ TEST(CompletionSlices, ClustersByPlace) {
   std::vector<Vec3f> places;
   std::vector<std::uint32_t> given;
   for (std::uint32_t i = 0; i < 40; ++i) {
-    places.emplace_back(static_cast<float>(10 * (i % 2)) + 0.01f * static_cast<float>(i), 0.0f, 0.0f);
+    places.push_back({static_cast<float>(10 * (i % 2)) + 0.01f * static_cast<float>(i), 0.0f, 0.0f});
     given.push_back(i / 20);
   }
   f.position = places, f.slice = given;
