@@ -107,7 +107,7 @@ std::uint16_t unblocked16(RTCScene scene, const ShadowPacket& packet, QueryConte
     valid[k] = good ? packet.valid[k] : 0;
     // Without AVX-512 Embree takes packets of sixteen apart and looks at lengths alone: what is left out ends
     // before it begins.
-    rays.tfar[k] = valid[k] ? rays.tfar[k] : -1;
+    rays.tfar[k] = valid[k] != 0 ? rays.tfar[k] : -1.0f;
   }
   if (context.scene->run_up > 0) run_up(*context.scene, rays);
   embree::occluded16(valid, scene, context.embree, rays, packet.alike && !context.scene->has_instances());
