@@ -95,15 +95,7 @@ double ColumnDraws::left_probability(Node node) const {
 }
 
 ColumnDraws::Drawn ColumnDraws::draw(Node node, Rng& rng) const {
-  double probability = 1;
-  while (!tree_.is_leaf(node)) {
-    const double to_left = left_probability(node);
-    const bool goes_left = rng.next_double() < to_left;
-    probability *= goes_left ? to_left : 1 - to_left;
-    node = goes_left ? tree_.left(node) : tree_.right(node);
-  }
-  const auto last = tree_.draw_in_leaf(node, place_, rng);
-  return {last.place, probability * last.probability};
+  return tree_.walk(node, place_, rng, [this](Node n) { return left_probability(n); });
 }
 
 }  // namespace lumirank::methods

@@ -161,15 +161,7 @@ double ColumnTree::left_by_nearness(Node node, const Place& from) const {
 }
 
 ColumnTree::Drawn ColumnTree::draw_by_nearness(Node node, const Place& from, Rng& rng) const {
-  double probability = 1;
-  while (!is_leaf(node)) {
-    const double to_left = left_by_nearness(node, from);
-    const bool goes_left = rng.next_double() < to_left;
-    probability *= goes_left ? to_left : 1 - to_left;
-    node = goes_left ? left(node) : right(node);
-  }
-  const Drawn last = draw_in_leaf(node, from, rng);
-  return {last.place, probability * last.probability};
+  return walk(node, from, rng, [&](Node n) { return left_by_nearness(n, from); });
 }
 
 ColumnTree::Drawn ColumnTree::draw_in_leaf(Node leaf, const Place& from, Rng& rng) const {

@@ -64,7 +64,19 @@ class ColumnTree {
   // node, the probability of going to the left.
   Drawn draw_by_nearness(Node node, const Place& from, Rng& rng) const;
   double left_by_nearness(Node node, const Place& from) const;
-  Drawn draw_in_leaf(Node leaf, const Place& from, Rng& rng) const;
+  // The same by other probabilities of going to the left, in a leaf by power and distance.
+  template <typename Left>
+  Drawn walk(Node node, const Place& from, Rng& rng, Left&& left_probability) const {
+    double probability = 1;
+    while (!is_leaf(node)) {
+      const double to_left = left_probability(node);
+      const bool goes_left = rng.next_double() < to_left;
+      probability *= goes_left ? to_left : 1 - to_left;
+      node = goes_left ? left(node) : right(node);
+    }
+    const Drawn last = draw_in_leaf(node, from, rng);
+    return {last.place, probability * last.probability};
+  }
 
   // Nodes of much power that have all columns below them, each once, and those above: parents before their
   // children.
@@ -91,6 +103,7 @@ class ColumnTree {
     return features_.power.empty() ? 1.0 : static_cast<double>(features_.power[j]);
   }
   Vec3f place_of(matrix::Index j) const;
+  Drawn draw_in_leaf(Node leaf, const Place& from, Rng& rng) const;
   void make_coarse(std::size_t cut);
 
   matrix::ColumnFeatures features_;
