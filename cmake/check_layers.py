@@ -20,6 +20,7 @@ ROOMS = {
     "emitters": ["base"],
     "image": ["base"],
     "film": ["image"],
+    "denoise": ["image"],
     "oiio": ["image"],
     "scenedesc": ["base"],
     "world": ["scenedesc", "geometry", "scatter", "media", "emitters", "film"],

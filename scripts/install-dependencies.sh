@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs what Lumirank needs from Debian's or Ubuntu's own packages: `build` for the program, `test` for the tests as well.
+# Installs what Lumirank needs from Debian's or Ubuntu's own packages: `build` for the program, `test` for the tests as
+# well; `denoiser` for what gets the denoiser (scripts/get-denoiser.sh).
 set -eu
 
 build="g++ make cmake ninja-build pkg-config libtbb-dev libeigen3-dev libnanoflann-dev libopenblas-dev libpugixml-dev zlib1g-dev \
@@ -7,14 +8,18 @@ libopenimageio-dev libopenexr-dev libpng-dev libjpeg-dev libcli11-dev nlohmann-j
 libsvm-dev libopenvdb-dev libboost-dev"
 test="libgtest-dev libnanovdb-dev clang libclang-rt-dev clang-format clang-tidy python3 git"
 
+# Embree is called libembree-dev (3 or 4) everywhere we build; another name may come with a later release.
+embree=libembree-dev
+
 case "${1:-build}" in
-  build) wanted="$build" ;;
-  test) wanted="$build $test" ;;
-  *) echo "usage: $0 build|test" >&2; exit 2 ;;
+  build) wanted="$build $embree" ;;
+  test) wanted="$build $test $embree" ;;
+  denoiser) wanted="python3 python3-pip" ;;
+  *) echo "usage: $0 build|test|denoiser" >&2; exit 2 ;;
 esac
 
 if ! command -v apt-get >/dev/null; then
-  echo "This script knows Debian and Ubuntu. Elsewhere install the equivalents of: $wanted libembree-dev" >&2
+  echo "This script knows Debian and Ubuntu. Elsewhere install the equivalents of: $wanted" >&2
   exit 1
 fi
 
@@ -24,10 +29,8 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo=sudo
 fi
 
-# Embree is called libembree-dev (3 or 4) everywhere we build; another name may come with a later release.
-embree=libembree-dev
 missing=""
-for package in $wanted $embree; do
+for package in $wanted; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q "ok installed" || missing="$missing $package"
 done
 [ -z "$missing" ] && exit 0
