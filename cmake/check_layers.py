@@ -27,7 +27,7 @@ ROOMS = {
     "pathtrace": ["world"],
     "transport": ["world", "matrix", "linalg"],
     "settings": ["methods"],
-    "pipeline": ["pathtrace", "transport", "methods", "settings"],
+    "pipeline": ["pathtrace", "transport", "methods", "settings", "denoise"],
     "pages": ["image"],
     "study": ["pipeline", "pages"],
     "api": ["study"],

@@ -44,6 +44,8 @@ enum class DirectLight { automatic, matrix, traced };
 enum class RestOfPaths { automatic, skip, trace };
 // Which paths a reference has: all, those that columns carry, or the others.
 enum class ReferencePaths { all, columns, rest };
+// automatic: where the library is found.
+enum class Denoise { automatic, on, off };
 enum class ToneMap { none, reinhard, agx };
 
 // What is rendered, and how finely.
@@ -121,6 +123,10 @@ struct RenderSettings {
   std::uint64_t seed = 1;
   int threads = 0;  // 0: all
   double time = 0;  // seconds from the loaded scene on; 0: no limit
+  // Pictures with receivers and lights of their own, whose mean is shown. 0: as time or error allow where the
+  // method is made for passes, else one picture without them.
+  int passes = 0;
+  Denoise denoise = Denoise::automatic;  // of what is rendered in passes
   // What the clock decided in an earlier run under `time`, from its report: repeated instead of timed anew,
   // so that the picture has the same bits. Empty: the clock decides.
   std::map<std::string, std::vector<std::int64_t>> choices = {};

@@ -17,6 +17,7 @@
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
 #include "pipeline/memory.h"
+#include "pipeline/pass_run.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/render_run.h"
 #include "pipeline/report.h"
@@ -48,7 +49,13 @@ std::string version() { return program_version(); }
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                     const PreviewCallback& on_preview) {
-  return api::render_in_shot(scene, settings, {}, sinks, on_preview);
+  RenderSettings chosen = settings;
+  api::InShot alone;
+  if (pipeline::passes_by_default(scene.impl().desc, settings)) {
+    chosen.method.name = pipeline::kMethodOfPasses;
+    alone.why = "the default";
+  }
+  return api::render_in_shot(scene, chosen, alone, sinks, on_preview);
 }
 
 RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& settings, const InShot& shot,
@@ -65,6 +72,9 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&
                       settings.method.target_error <= 0 && !task.info->contract.combination;
     if (in_media) pipeline::check_media(*task.info, settings);
+    if (!shot.why.empty()) task.why = shot.why;
+    const bool passes = pipeline::runs_in_passes(*task.info, settings) && !in_media;
+    if (passes) pipeline::check_passes(settings);
     pipeline::check_layers(*task.info, settings);
     methods::require_capabilities(*task.info, transport::SceneMatrix::kCapabilities);
     task.method = task.info->make(settings.method.parameters);
@@ -94,6 +104,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     pipeline::check_lights(*task.world, settings, pipeline::make_recipe(settings, task.view));
     task.lumens_per_unit = scene.impl().desc.lumens_per_unit;
     result = in_media ? pipeline::run_in_media(std::move(task), settings, sinks, on_preview)
+             : passes ? pipeline::run_in_passes(std::move(task), settings, sinks, on_preview)
                       : pipeline::run_render(std::move(task), settings, sinks, on_preview);
   });
   return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "lumirank/lumirank.h"
 #include "pipeline/shot.h"
@@ -20,6 +21,7 @@ struct InShot {
   // If given: the world of a frame before (nullptr: none), whose structures are refitted and which nobody
   // else may trace; becomes this frame's. Not with an open shutter.
   std::shared_ptr<const world::World>* refit = nullptr;
+  std::string why = {};  // it is this method; empty: as the settings say
 };
 
 // As render(), of a frame of a shot.

@@ -10,6 +10,7 @@
 #include "methods/multidimensional_lightcuts/multidimensional_lightcuts.h"
 #include "methods/power_sampling/power_sampling.h"
 #include "methods/row_column/row_column.h"
+#include "methods/row_guided_sampling/row_guided_sampling.h"
 #include "methods/sampling_recovery/sampling_recovery.h"
 #include "methods/slice_cuts/slice_cuts.h"
 #include "methods/stochastic_lightcuts/stochastic_lightcuts.h"
@@ -45,11 +46,11 @@ std::vector<MethodInfo> checked(std::vector<MethodInfo> methods) {
 }  // namespace
 
 const std::vector<MethodInfo>& all_methods() {
-  static const std::vector<MethodInfo> methods =
-      checked({brute_force_info(), instant_radiosity_info(), power_sampling_info(), row_column_info(),
-               lightcuts_info(), multidimensional_lightcuts_info(), stochastic_lightcuts_info(),
-               lightslice_info(), sampling_recovery_info(), slice_cuts_info(), visibility_completion_info(),
-               column_completion_info(), adaptive_lightslice_info(), virtual_ray_lights_info()});
+  static const std::vector<MethodInfo> methods = checked(
+      {brute_force_info(), instant_radiosity_info(), power_sampling_info(), row_guided_sampling_info(),
+       row_column_info(), lightcuts_info(), multidimensional_lightcuts_info(), stochastic_lightcuts_info(),
+       lightslice_info(), sampling_recovery_info(), slice_cuts_info(), visibility_completion_info(),
+       column_completion_info(), adaptive_lightslice_info(), virtual_ray_lights_info()});
   return methods;
 }
 

@@ -59,6 +59,14 @@ bool RestTracing::add_until(double until, const Clock& clock, const Sinks& sinks
   return !passes.cancelled;
 }
 
+bool RestTracing::add_paths(const View& view, int paths, const Sinks& sinks) {
+  const Timer timer;
+  if (!film_) film_ = std::make_unique<pathtrace::PathFilm>(*world_, view, options_);
+  const bool whole = add(paths, sinks);
+  seconds_ += timer.seconds();
+  return whole;
+}
+
 bool RestTracing::trace_all(const View& view, const Sinks& sinks) {
   if (plan_.paths == 0) return true;
   const Timer timer;

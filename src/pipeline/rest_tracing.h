@@ -29,6 +29,8 @@ class RestTracing {
   bool begun() const { return film_ != nullptr; }
   // More of them until the clock says so; false if it was cancelled.
   bool add_until(double until, const Clock& clock, const Sinks& sinks);
+  // So many paths more, whatever the clock says; false if it was cancelled.
+  bool add_paths(const View& view, int paths, const Sinks& sinks);
   // Without a budget all at once, after the method. False if it was interrupted.
   bool trace_all(const View& view, const Sinks& sinks);
 

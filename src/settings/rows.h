@@ -76,6 +76,10 @@ struct EnumNames<RestOfPaths> {
   static constexpr const char* names[] = {"auto", "skip", "trace"};
 };
 template <>
+struct EnumNames<Denoise> {
+  static constexpr const char* names[] = {"auto", "on", "off"};
+};
+template <>
 struct EnumNames<ReferencePaths> {
   static constexpr const char* names[] = {"all", "columns", "rest"};
 };

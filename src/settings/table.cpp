@@ -82,6 +82,14 @@ void add_run_rows(std::vector<Row>& t) {
   t.push_back(number(
       {"time", "", "0", "0 … 1e7", "s", "time budget for seconds.total, divided among the stages; 0: none"},
       Top<&S::time>{}, 0, 1e7));
+  t.push_back(
+      number({"passes", "", "0", "0 … 65536", "pictures",
+              "with receivers and lights of their own, of which the mean is shown; 0: as many as "
+              "--time or --error allow (without either --spp, or 16) where the method is made for it"},
+             Top<&S::passes>{}, 0, 65536));
+  t.push_back(choice({"denoise", "", "auto", "", "",
+                      "take the noise out of a picture of passes, by Open Image Denoise where it is found"},
+                     Top<&S::denoise>{}));
   t.push_back(number({"error", "", "0", "0 … 10", "",
                       "stop when the estimated relative error is below; 0: the method's default"},
                      At<&S::method, &MethodSettings::target_error>{}, 0, 10));

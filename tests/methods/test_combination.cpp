@@ -44,10 +44,10 @@ TEST_P(Combination, AlsoOfAPartThatWasCutShort) {
 }
 
 // Columns of their own for receivers, pixels or slices: no one sum.
-const std::set<std::string> kLocal{
-    "adaptive-lightslice", "column-completion",          "lightcuts",
-    "lightslice",          "multidimensional-lightcuts", "sampling-recovery",
-    "slice-cuts",          "stochastic-lightcuts",       "visibility-completion"};
+const std::set<std::string> kLocal{"adaptive-lightslice",  "column-completion", "lightcuts",
+                                   "row-guided-sampling",  "lightslice",        "multidimensional-lightcuts",
+                                   "sampling-recovery",    "slice-cuts",        "stochastic-lightcuts",
+                                   "visibility-completion"};
 
 std::vector<std::string> names() {
   std::vector<std::string> n;

@@ -11,9 +11,9 @@ namespace {
 
 using matrix::Index;
 
-constexpr int kSquare = 8;        // pixels: changes are looked for in a row's square and those around it
-constexpr float kReach = 12;      // pixels, beyond which they count for nothing
-constexpr float kOutOfPlane = 8;  // a slope of 1 in this halves their weight
+constexpr int kSquare = 8;             // pixels: changes are looked for in a row's square and those around it
+constexpr float kFarthestPixels = 12;  // pixels, beyond which they count for nothing
+constexpr float kOutOfPlane = 8;       // a slope of 1 in this halves their weight
 constexpr float kSmallestCosine = 0.5f;  // between normals
 constexpr std::size_t kSpreadAtOnce = 1024;
 
@@ -59,8 +59,8 @@ class ChangesAround {
   float weight(Index row, Index other) const {
     const Vec2f a = pixel(row), b = pixel(other);
     const float squared = (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
-    if (squared >= kReach * kReach) return 0;
-    float w = (1 - std::sqrt(squared) / kReach) / (squared + 0.5f);
+    if (squared >= kFarthestPixels * kFarthestPixels) return 0;
+    float w = (1 - std::sqrt(squared) / kFarthestPixels) / (squared + 0.5f);
     if (features_.normal.empty()) return w;
     const float facing = dot(features_.normal[row], features_.normal[other]);
     if (!(facing > kSmallestCosine)) return 0;

@@ -1,0 +1,387 @@
+#include "pipeline/pass_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "denoise/denoiser.h"
+#include "matrix/metered_matrix.h"
+#include "methods/common/timed_choices.h"
+#include "pipeline/compensation.h"
+#include "pipeline/develop.h"
+#include "pipeline/layers.h"
+#include "pipeline/media_run.h"
+#include "pipeline/picture_mean.h"
+#include "pipeline/preview_throttle.h"
+#include "pipeline/report.h"
+#include "pipeline/rest_tracing.h"
+#include "pipeline/smaller_film.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+constexpr int kDefaultPasses = 16, kMaxPasses = 65536;
+// Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
+// them. More of them in one pass are fewer passes, which have as many altogether.
+constexpr double kPixelsPerLight = 12;
+constexpr std::size_t kMinLightsOfPass = 5000, kMaxLightsOfPass = 60000;
+// Samples of traced direct light, and paths of the rest at most, for each receiver or pixel of a pass.
+constexpr int kDirectOfPass = 2, kMaxRestOfPass = 8;
+// Of a pass's seconds those that the rest gets besides: its noise is larger than that of what columns carry.
+constexpr double kRestOfPass = 0.6;
+// The film whose denoising tells what the picture's will take; and what a larger one may take more.
+constexpr int kDenoiserTrial = 192;
+constexpr double kDenoiserMargin = 1.25;
+constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
+
+std::string pass_number(const char* format, double x) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, x);
+  return text;
+}
+
+class PassRun {
+ public:
+  PassRun(RenderTask task, const RenderSettings& asked, const Sinks& sinks, const PreviewCallback& preview)
+      : task_(std::move(task)),
+        asked_(asked),
+        sinks_(sinks),
+        throttle_(preview),
+        previews_(static_cast<bool>(preview)),
+        clock_([this] { return task_.timer.seconds(); }),
+        view_(task_.view),
+        parts_(wanted_parts(asked.view.only)) {
+    seconds_["build"] = task_.build_seconds;
+    if (!asked.choices.empty()) choices_ = methods::TimedChoices(asked.choices);
+  }
+
+  RenderResult run() {
+    sinks_.say("method: " + task_.info->name + " (" + task_.why + ")");
+    find_denoiser();
+    rest_.emplace(task_.world, view_, asked_, sinks_);
+    if (rest_->plan().piloted) seconds_["rest_pilot"] = rest_->pilot_seconds();
+    const Timer survey_timer;
+    survey_ = survey(task_.world, view_, recipe_of(0), sinks_);
+    seconds_["survey"] = survey_timer.seconds();
+    plan();
+    while (wants_more()) {
+      if (!pass(passes_)) break;
+      ++passes_;
+    }
+    if (passes_ == 0) throw Cancelled();
+    return picture();
+  }
+
+ private:
+  bool timed() const { return asked_.time > 0; }
+  bool replays() const { return !asked_.choices.empty(); }
+
+  // ------------------------------------------------------------ what a pass is
+
+  Recipe recipe_of(std::uint64_t number) const {
+    Recipe recipe = make_recipe(asked_, view_);
+    recipe.seed = hash_ids(asked_.seed, Stage::passes, number);
+    recipe.light_seed = hash_ids(asked_.seed, Stage::passes, ~number);
+    recipe.spp = 1;
+    recipe.film_samples = asked_.view.film_samples.value_or(0);
+    recipe.first_hits = denoiser_ != nullptr;
+    // What one light may show is the same for the mean of many passes as for one with all their lights.
+    recipe.lights.clamp = asked_.lights.clamp * clamp_factor_;
+    return recipe;
+  }
+
+  struct PassSeconds {
+    double fixed = 0, by_pixel = 0;
+    double total() const { return fixed + by_pixel; }
+  };
+
+  std::size_t lights_of(const View& view) const {
+    if (asked_.lights.count) return *asked_.lights.count;
+    const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
+    return std::clamp(static_cast<std::size_t>(pixels / kPixelsPerLight), kMinLightsOfPass, kMaxLightsOfPass);
+  }
+
+  // One picture, and what its first hits know. False: cancelled.
+  bool trace(std::uint64_t number, const View& view, image::Image& image, PassSeconds& took) {
+    const world::World& world = *task_.world;
+    Recipe recipe = recipe_of(number);
+    Timer timer;
+    const auto lap = [&](const char* stage, double& sum) {
+      seconds_[stage] += timer.seconds(), sum += timer.seconds();
+      timer = {};
+    };
+    TracedLight traced;
+    SharedRows rows = trace_rows(world, view, recipe, sinks_);
+    traced.rows = rows;
+    lap("receivers", took.by_pixel);
+    if (const auto direct = start_direct(world, *rows, recipe)) {
+      if (!direct->add(kDirectOfPass, sinks_)) return false;
+      traced.direct = direct->radiance(), traced.direct_samples = direct->samples();
+    }
+    traced.sharp = trace_sharp_lobes(world, *rows, recipe, sinks_);
+    rows = matrix_rows(rows, recipe);
+    lap("traced_direct", took.by_pixel);
+    Columns columns = trace_columns(world, recipe, *survey_, lights_of(view), sinks_);
+    lap("lights", took.fixed);
+    traced.near = trace_near(world, *rows, columns, recipe, sinks_);
+    if (!traced.near.empty()) lap("traced_near", took.by_pixel);
+    prepared_ = join(task_.world, view, recipe, rows, std::move(columns), {}, {});
+    lap("matrix", took.fixed);
+    methods::RunOptions run;
+    run.seed = hash_ids(asked_.method.seed ? asked_.method.seed : asked_.seed, Stage::method, number);
+    run.sinks = sinks_;
+    const matrix::MeteredMatrix metered(*prepared_->matrix);
+    estimate_ = task_.method->run(metered, run);
+    if (estimate_.interrupted) return false;
+    cost_ += metered.total();
+    const double records = estimate_.trace.numbers["seconds.records"];
+    took.fixed += records, took.by_pixel -= records;
+    lap("method", took.by_pixel);
+    const FilmInput film{world, view, recipe, *rows, traced};
+    image = develop(film, estimate_.sums, parts_);
+    if (asked_.traced.compensate > 0) {
+      RenderSettings of_pass = asked_;
+      of_pass.seed = recipe.seed;
+      if (!compensate_clamping(*prepared_, of_pass, image, sinks_)) return false;
+    }
+    if (denoiser_) {
+      albedo_now_ = develop_first_hits(film, [](const transport::FirstHit& f) { return f.albedo; });
+      normal_now_ = develop_first_hits(
+          film, [](const transport::FirstHit& f) { return Rgb(f.normal.x, f.normal.y, f.normal.z); });
+    }
+    lap("film", took.by_pixel);
+    traced_ = std::move(traced);
+    return !sinks_.cancelled();
+  }
+
+  // ------------------------------------------------------------ how many
+
+  void plan() {
+    if (asked_.method.parameters.empty() && timed() && !replays()) {
+      // Not kept: its pixels are too large.
+      const View small = smaller(view_, kTrialDivisor);
+      image::Image image;
+      PassSeconds took;
+      const auto before = seconds_;
+      if (!trace(~0ull, small, image, took)) throw Cancelled();
+      seconds_ = before;
+      seconds_["pilot"] = took.total();
+      const double shrunk = static_cast<double>(small.width) * static_cast<double>(small.height) /
+                            (static_cast<double>(view_.width) * static_cast<double>(view_.height));
+      expected_ = {took.fixed * static_cast<double>(lights_of(view_)) / static_cast<double>(lights_of(small)),
+                   took.by_pixel / shrunk};
+      choose_size();
+    } else if (replays()) {
+      const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses);
+      if (divisor && *divisor > 1) view_ = smaller(task_.view, static_cast<int>(*divisor));
+    }
+    wanted_ = asked_.passes > 0                           ? asked_.passes
+              : timed() || asked_.method.target_error > 0 ? kMaxPasses
+                                                          : asked_.view.spp.value_or(kDefaultPasses);
+    if (timed()) {
+      if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
+    }
+    double factor = asked_.passes > 0 || !timed() ? std::min(wanted_, kDefaultPasses)
+                                                  : std::clamp(left() / pace(), 1.0, 16.0);
+    // By halves and doubles, so that the clock decides one number that a repetition can be told.
+    auto doublings = static_cast<std::int64_t>(std::lround(std::log2(std::max(1.0, factor))));
+    if (timed()) {
+      if (const auto earlier = choices_.earlier("clamp_doublings", 8)) doublings = *earlier;
+      choices_.record("clamp_doublings", doublings);
+    }
+    clamp_factor_ = std::pow(2.0, static_cast<double>(doublings));
+  }
+
+  // A film of half the width and height, enlarged, is better than none.
+  void choose_size() {
+    int divisor = 1;
+    const bool may = is_whole_film(task_.view);
+    while (may && divisor < kMaxDivisorOfPasses && expected_.total() > left()) {
+      divisor *= 2;
+      view_ = smaller(task_.view, divisor);
+      expected_.by_pixel /= 4;
+    }
+    choices_.record("film_divisor", divisor);
+    if (divisor > 1 || expected_.total() > left()) {
+      shortage_ = "the budget of " + pass_number("%.3g s", asked_.time) + " is short for this view" +
+                  (divisor > 1 ? ": rendered with 1/" + std::to_string(divisor) +
+                                     " of its width and height, and enlarged"
+                               : std::string{});
+      sinks_.warn(shortage_);
+    }
+  }
+
+  double end() const { return 0.98 * asked_.time - denoiser_seconds_; }
+  double left() const { return end() - clock_(); }
+  double pace() const { return std::max(1e-3, pace_ > 0 ? pace_ : expected_.total() * (1 + rest_share())); }
+  double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
+
+  bool wants_more() const {
+    if (sinks_.cancelled()) return false;
+    if (passes_ >= wanted_) return false;
+    if (passes_ == 0) return true;
+    if (asked_.method.target_error > 0 && passes_ >= 4 && mean_.noise() < asked_.method.target_error)
+      return false;
+    return !timed() || replays() || pace() < left();
+  }
+
+  bool pass(int number) {
+    const double begin = clock_();
+    image::Image image;
+    PassSeconds took;
+    if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
+    if (!add_rest(took.total())) return false;
+    mean_.add(image);
+    if (denoiser_) albedo_.add(albedo_now_), normal_.add(normal_now_);
+    pace_ = (pace_ * number + (clock_() - begin)) / (number + 1);
+    const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
+                                : static_cast<double>(number + 1) / wanted_;
+    sinks_.report("passes", std::clamp(part, 0.0, 1.0));
+    if (previews_ && throttle_.due()) throttle_.show(as_asked(noisy()));
+    return true;
+  }
+
+  // Paths whose seconds are in proportion to those of the pass.
+  bool add_rest(double pass_seconds) {
+    if (rest_->plan().paths == 0) return true;
+    int paths = 1;
+    const double all = static_cast<double>(view_.width) * static_cast<double>(view_.height) *
+                       rest_->plan().pilot.path_seconds;
+    if (timed() && all > 0) paths = static_cast<int>(std::lround(kRestOfPass * pass_seconds / all));
+    if (!timed()) paths = 2;
+    paths = std::clamp(paths, 1, kMaxRestOfPass);
+    if (timed()) {
+      if (const auto earlier = choices_.earlier("rest_of_pass", kMaxRestOfPass))
+        paths = static_cast<int>(*earlier);
+      choices_.record("rest_of_pass", paths);
+    }
+    return rest_->add_paths(view_, paths, sinks_);
+  }
+
+  // ------------------------------------------------------------ the picture
+
+  void find_denoiser() {
+    if (asked_.denoise == Denoise::off) return;
+    const denoise::Found& found = denoise::Denoiser::find();
+    denoiser_ = found.denoiser;
+    if (!denoiser_) {
+      if (asked_.denoise == Denoise::on) throw InputError(found.trouble, "leave out --denoise");
+      sinks_.say("the picture keeps its noise, which a denoiser would take out: " + found.trouble);
+      return;
+    }
+    if (!timed()) return;
+    const image::Image trial(kDenoiserTrial, kDenoiserTrial, Rgb(0.5f));
+    const Timer timer;
+    denoiser_->denoise(trial, &trial, &trial, true);
+    denoiser_seconds_ = kDenoiserMargin * timer.seconds() * static_cast<double>(view_.width) *
+                        static_cast<double>(view_.height) / (kDenoiserTrial * kDenoiserTrial);
+  }
+
+  image::Image noisy() const {
+    image::Image image = mean_.mean();
+    rest_->add_to(image);
+    return image;
+  }
+
+  Picture as_asked(const image::Image& image) const {
+    Picture picture = to_picture(image);
+    if (picture.width == task_.view.width && picture.height == task_.view.height) return picture;
+    return enlarged(picture, task_.view.width, task_.view.height);
+  }
+
+  RenderResult picture() {
+    result_.interrupted = sinks_.cancelled();
+    if (timed()) choices_.record("passes", passes_);
+    const image::Image image = noisy();
+    result_.picture = as_asked(image);
+    if (denoiser_ && !result_.interrupted) {
+      const Timer timer;
+      const image::Image albedo = albedo_.mean(), normal = normal_.mean();
+      const Picture noisy_picture = result_.picture;
+      result_.picture = as_asked(denoiser_->denoise(image, &albedo, &normal, true));
+      result_.picture.planes.push_back({"undenoised", noisy_picture.planes[0].rgb});
+      seconds_["denoise"] = timer.seconds();
+    }
+    report();
+    return std::move(result_);
+  }
+
+  void report() {
+    if (rest_->seconds() > 0) seconds_["rest"] = rest_->seconds();
+    auto& numbers = estimate_.trace.numbers;
+    if (result_.interrupted) choices_ = {};
+    if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
+    numbers["rest.paths"] = rest_->paths();
+    numbers["passes"] = passes_;
+    numbers["lights_of_all_passes"] = static_cast<double>(passes_) * static_cast<double>(lights_of(view_));
+    numbers["receivers_per_pixel"] = passes_;
+    numbers.erase("sampling_rate");
+    if (passes_ > 1) numbers["error.noise"] = mean_.noise();
+    if (view_.width < task_.view.width)
+      numbers["film.rendered_part"] =
+          static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
+    estimate_.trace.notes["method.why"] = task_.why;
+    estimate_.trace.notes["denoiser"] =
+        seconds_.contains("denoise") ? "Open Image Denoise " + denoiser_->version() : "none";
+    if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
+    result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
+    seconds_["total"] = task_.timer.seconds();
+    result_.report.seconds = seconds_;
+  }
+
+  RenderTask task_;
+  const RenderSettings& asked_;
+  Sinks sinks_;
+  PreviewThrottle throttle_;
+  bool previews_;
+  Clock clock_;
+  View view_;
+  FilmParts parts_;
+  methods::TimedChoices choices_;
+  std::shared_ptr<const denoise::Denoiser> denoiser_;
+  double denoiser_seconds_ = 0;
+  std::optional<RestTracing> rest_;
+  SharedSurvey survey_;
+  PassSeconds expected_;
+  double pace_ = 0, clamp_factor_ = 1;
+  int wanted_ = 1, passes_ = 0;
+  std::string shortage_;
+  PictureMean mean_, albedo_, normal_;
+  image::Image albedo_now_, normal_now_;
+  // Of the last pass: what reports tell of sizes.
+  SharedPrepared prepared_;
+  TracedLight traced_;
+  methods::Estimate estimate_;
+  matrix::Cost cost_;
+  std::map<std::string, double> seconds_;
+  RenderResult result_;
+};
+
+}  // namespace
+
+bool passes_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& settings) {
+  return settings.method.name == "auto" && settings.method.parameters.empty() && settings.layers.empty() &&
+         !settings.view.is_open() && !some_scatter(desc);
+}
+
+bool runs_in_passes(const methods::MethodInfo& method, const RenderSettings& settings) {
+  return settings.passes > 0 || method.name == kMethodOfPasses;
+}
+
+void check_passes(const RenderSettings& settings) {
+  if (!settings.layers.empty())
+    throw InputError("layers are of one pass, and this render is a mean of passes",
+                     "choose another method, or leave out --aov and --passes");
+  if (settings.view.is_open())
+    throw InputError("an open shutter is not rendered in passes", "leave out --shutter or --passes");
+}
+
+RenderResult run_in_passes(RenderTask task, const RenderSettings& settings, const Sinks& sinks,
+                           const PreviewCallback& on_preview) {
+  return PassRun(std::move(task), settings, sinks, on_preview).run();
+}
+
+}  // namespace lumirank::pipeline

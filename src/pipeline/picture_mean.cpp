@@ -1,0 +1,46 @@
+#include "pipeline/picture_mean.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace lumirank::pipeline {
+
+void PictureMean::add(const image::Image& picture) {
+  const std::size_t half = count() % 2;
+  image::Image& sum = sum_[half];
+  if (count_[half]++ == 0) {
+    sum = picture;
+    return;
+  }
+  if (sum.width != picture.width || sum.height != picture.height)
+    throw InternalError("pipeline::PictureMean: pictures of different sizes");
+  for (std::size_t p = 0; p < sum.pixels.size(); ++p) sum.pixels[p] += picture.pixels[p];
+}
+
+image::Image PictureMean::mean() const {
+  if (count() == 0) return {};
+  image::Image mean = sum_[0];
+  const float part = 1 / static_cast<float>(count());
+  for (std::size_t p = 0; p < mean.pixels.size(); ++p) {
+    if (count_[1] > 0) mean.pixels[p] += sum_[1].pixels[p];
+    mean.pixels[p] = part * mean.pixels[p];
+  }
+  return mean;
+}
+
+double PictureMean::noise() const {
+  if (count_[1] == 0) return 0;
+  const double n0 = static_cast<double>(count_[0]), n1 = static_cast<double>(count_[1]);
+  double off = 0, light = 0;
+  for (std::size_t p = 0; p < sum_[0].pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c) {
+      const double a = static_cast<double>(sum_[0].pixels[p][c]),
+                   b = static_cast<double>(sum_[1].pixels[p][c]);
+      off += std::abs(a / n0 - b / n1), light += std::abs((a + b) / (n0 + n1));
+    }
+  // Var(A − B) = σ² (1/n0 + 1/n1) where the mean has σ² / (n0 + n1).
+  return light > 0 ? off * std::sqrt(n0 * n1) / (n0 + n1) / light : 0;
+}
+
+}  // namespace lumirank::pipeline

@@ -1,0 +1,28 @@
+// The mean of pictures that are independent of each other, and how noisy it is.
+#pragma once
+
+#include <cstddef>
+
+#include "image/image.h"
+
+namespace lumirank::pipeline {
+
+// Pictures are added to one of two halves by turns: halves of equal size differ by twice the noise of the
+// mean.
+class PictureMean {
+ public:
+  // All of one size.
+  void add(const image::Image& picture);
+  std::size_t count() const { return count_[0] + count_[1]; }
+  // Of all of them; empty without any.
+  image::Image mean() const;
+  // Relative L1 of the mean's noise, Σ|first half − second half| / (2 Σ mean), over pixels and channels;
+  // where halves are of different size, in proportion. 0 with fewer than two pictures.
+  double noise() const;
+
+ private:
+  image::Image sum_[2];
+  std::size_t count_[2] = {0, 0};
+};
+
+}  // namespace lumirank::pipeline
