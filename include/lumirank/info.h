@@ -83,8 +83,12 @@ struct LUMIRANK_API PictureError {
   double rmse = 0;
   double relmse = 0;  // mean of (I-R)²/(R² + 0.01²·mean(R)²)
   double bias = 0;    // Σ(I-R) / ΣR
+  // How different they look, 0 … 1: mean of LDR-FLIP (Andersson et al. 2020) at 67 pixels per degree, both
+  // tone-mapped with one exposure, which R sets (docs/command-line.md). NaN where R is known at some pixels
+  // only: the eye's filters need their neighbors.
+  double flip = 0;
 
-  std::string json() const;  // one line
+  std::string json() const;  // one line; null for what is not finite
 };
 
 // Of one image file against another. Throws InputError if one cannot be read, their sizes differ, or either

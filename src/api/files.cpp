@@ -82,7 +82,8 @@ std::string PictureError::json() const {
                                 {"relative_l2", relative_l2},
                                 {"rmse", rmse},
                                 {"relmse", relmse},
-                                {"bias", bias}}
+                                {"bias", bias},
+                                {"flip", flip}}
              .dump() +
          "\n";
 }

@@ -5,6 +5,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "image/flip.h"
+#include "image/on_screen.h"
 
 namespace lumirank::image {
 namespace {
@@ -77,6 +79,8 @@ PictureError compare(const Image& image, const Image& reference) {
   m.rmse = std::sqrt(sums.squared / values);
   m.relmse = relmse / values;
   m.bias = ratio(sums.difference, sums.reference);
+  const double exposure = exposure_for(reference);
+  m.flip = flip_error(on_screen(image, exposure), on_screen(reference, exposure));
   return m;
 }
 

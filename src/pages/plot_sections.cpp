@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "pages/html_text.h"
 #include "pages/sections.h"
@@ -22,22 +23,32 @@ const Measure kMeasures[] = {
     {"l1", "relative L1", Unit::percent, [](const ComparisonRun& r) { return r.error.relative_l1; }},
     {"l2", "relative L2", Unit::percent, [](const ComparisonRun& r) { return r.error.relative_l2; }},
     {"relmse", "relMSE", Unit::plain, [](const ComparisonRun& r) { return r.error.relmse; }},
+    {"flip", "FLIP", Unit::plain, [](const ComparisonRun& r) { return r.error.flip; }},
 };
 
-std::string tip_of(const ComparisonGroup& group) {
+// Without those that no run has: against a reference of single pixels there is no FLIP.
+std::vector<Measure> measures_of(const Comparison& results) {
+  std::vector<Measure> measures;
+  for (const Measure& m : kMeasures)
+    if (!std::all_of(results.runs.begin(), results.runs.end(),
+                     [&](const ComparisonRun& run) { return std::isnan(m.value(run)); }))
+      measures.push_back(m);
+  return measures;
+}
+
+std::string tip_of(const ComparisonGroup& group, const std::vector<Measure>& measures) {
   const auto mean = [&](const Value& value) { return group.mean(value); };
   std::string tip = group.first().label + "\n" + show_seconds(mean([](const auto& r) { return r.seconds; })) +
                     " · " + show_count(mean([](const auto& r) { return r.rays; })) + " rays\n";
-  for (const Measure& m : kMeasures)
-    tip += std::string(m.name) + " " +
-           (m.unit == Unit::percent ? show_percent(mean(m.value)) : show_number(mean(m.value))) +
-           (m.unit == Unit::percent ? " · " : "");
+  for (const Measure& m : measures)
+    tip += std::string(&m == measures.data() ? "" : " · ") + m.name + " " +
+           (m.unit == Unit::percent ? show_percent(mean(m.value)) : show_number(mean(m.value)));
   if (group.runs.size() > 1) tip += "\nmean of " + std::to_string(group.runs.size()) + " seeds";
   return tip;
 }
 
 std::string error_plot(const Comparison& results, const ComparisonSummary& summary, const Measure& measure,
-                       const PlotAxis& x, const Value& cost) {
+                       const std::vector<Measure>& measures, const PlotAxis& x, const Value& cost) {
   Plot plot;
   plot.title = std::string(measure.name) + " error against " + x.label;
   plot.x = x;
@@ -46,7 +57,7 @@ std::string error_plot(const Comparison& results, const ComparisonSummary& summa
   for (const ComparisonGroup& group : summary.groups)
     plot.series[group.series].points.push_back({group.mean(cost), group.mean(measure.value),
                                                 group.lowest(measure.value), group.highest(measure.value),
-                                                tip_of(group)});
+                                                tip_of(group, measures)});
   if (measure.key == std::string("l1") && results.reference_error > 0)
     plot.guides.push_back({results.reference_error, "the reference's own error"});
   return svg_plot(plot);
@@ -56,6 +67,7 @@ std::string error_plot(const Comparison& results, const ComparisonSummary& summa
 
 std::string error_section(const Comparison& results, const ComparisonSummary& summary) {
   if (results.runs.empty()) return {};
+  const std::vector<Measure> measures = measures_of(results);
   std::string out =
       "<section class=\"errors\"><h2>Error against cost</h2>\n<p class=\"soft\">Lower and further left is "
       "better.";
@@ -64,21 +76,21 @@ std::string error_section(const Comparison& results, const ComparisonSummary& su
   out +=
       " Click a name to hide its curve.</p>\n<div class=\"bar\"><div class=\"choice\" role=\"radiogroup\" "
       "aria-label=\"Measure of error\">";
-  for (const Measure& m : kMeasures)
+  for (const Measure& m : measures)
     out += std::string("<label><input type=\"radio\" name=\"measure\" value=\"") + m.key + "\"" +
-           (&m == kMeasures ? " checked=\"checked\"" : "") + "/><span>" + m.name + "</span></label>";
+           (&m == measures.data() ? " checked=\"checked\"" : "") + "/><span>" + m.name + "</span></label>";
   out += "</div><div class=\"legend\">";
   for (std::size_t k = 0; k < summary.series.size(); ++k)
     out += "<button type=\"button\" aria-pressed=\"true\" data-key=\"" + std::to_string(k) + "\">" +
            svg_swatch(static_cast<int>(k)) + escape_html(summary.series[k]) + "</button>";
   out += "</div></div>\n";
-  for (const Measure& m : kMeasures) {
-    out += std::string("<div class=\"plots") + (&m == kMeasures ? "" : " off") + "\" data-measure=\"" +
+  for (const Measure& m : measures) {
+    out += std::string("<div class=\"plots") + (&m == measures.data() ? "" : " off") + "\" data-measure=\"" +
            m.key + "\">\n<figure><figcaption>Error against time</figcaption>" +
-           error_plot(results, summary, m, {"seconds of the method", true, Unit::seconds},
+           error_plot(results, summary, m, measures, {"seconds of the method", true, Unit::seconds},
                       [](const ComparisonRun& r) { return r.seconds; }) +
            "</figure>\n<figure><figcaption>Error against rays</figcaption>" +
-           error_plot(results, summary, m, {"shadow rays", true, Unit::count},
+           error_plot(results, summary, m, measures, {"shadow rays", true, Unit::count},
                       [](const ComparisonRun& r) { return r.rays; }) +
            "</figure></div>\n";
   }

@@ -39,7 +39,8 @@ json to_json(const ComparisonRun& run) {
             {"relative_l2", number(e.relative_l2)},
             {"rmse", number(e.rmse)},
             {"relmse", number(e.relmse)},
-            {"bias", number(e.bias)}}},
+            {"bias", number(e.bias)},
+            {"flip", number(e.flip)}}},
           {"phases", numbers(run.phases)},
           {"numbers", numbers(run.numbers)},
           {"image", run.image_file},
@@ -94,8 +95,7 @@ void write_results_csv(const std::string& folder, const Comparison& results) {
   }
   std::string out =
       "method,label,series,seed,seconds,setup_seconds,rays,entries,sampling_rate,relative_l1,relative_l2,"
-      "rmse,relmse,"
-      "bias,image,error_image";
+      "rmse,relmse,bias,flip,image,error_image";
   for (const std::string& key : settings) out += "," + field("setting." + key);
   for (const std::string& key : phases) out += "," + field("seconds." + key);
   out += "\r\n";
@@ -104,7 +104,7 @@ void write_results_csv(const std::string& folder, const Comparison& results) {
         field(run.method) + "," + field(run.label) + "," + field(run.series) + "," + std::to_string(run.seed);
     for (const double value :
          {run.seconds, run.setup_seconds, run.rays, run.entries, run.sampling_rate, run.error.relative_l1,
-          run.error.relative_l2, run.error.rmse, run.error.relmse, run.error.bias})
+          run.error.relative_l2, run.error.rmse, run.error.relmse, run.error.bias, run.error.flip})
       out += "," + field(value);
     out += "," + field(run.image_file) + "," + field(run.error_image_file);
     for (const std::string& key : settings) {

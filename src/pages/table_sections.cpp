@@ -51,6 +51,8 @@ const Column kColumns[] = {
     {"RMSE", "", [](const ComparisonRun& r) { return r.error.rmse; }, show_number},
     {"relMSE", "mean of (I−R)² / (R² + (mean(R)/100)²)",
      [](const ComparisonRun& r) { return r.error.relmse; }, show_number},
+    {"FLIP", "how different it looks, 0 to 1; – where the reference is known at some pixels only",
+     [](const ComparisonRun& r) { return r.error.flip; }, show_number},
     {"Bias", "Σ(I−R) / ΣR", [](const ComparisonRun& r) { return r.error.bias; }, show_percent},
 };
 

@@ -1,6 +1,7 @@
 #include "study/sampled_truth.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -84,6 +85,7 @@ SampledTruth::Error SampledTruth::error_of(std::span<const Rgb> sums) const {
   error.metrics.rmse = std::sqrt(all.squared / entries);
   error.metrics.relmse = relative_squared / entries;
   error.metrics.bias = all.difference / all.total;
+  error.metrics.flip = std::numeric_limits<double>::quiet_NaN();  // it is of pictures, not of single pixels
   double v1 = 0, v2 = 0;
   for (const Moments& group : groups) {
     const Moments without = all - group;

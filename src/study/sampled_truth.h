@@ -30,7 +30,7 @@ class SampledTruth {
   std::size_t pixels() const { return truth_.size(); }
 
   struct Error {
-    PictureError metrics;  // over the sampled pixels
+    PictureError metrics;  // over the sampled pixels; without FLIP (NaN)
     double l1_half_width = 0,
            l2_half_width = 0;  // of the 95 % intervals, by the delete-a-group jackknife over 32 groups
   };

@@ -34,7 +34,7 @@ TEST_F(Compare, SweepsAndSeedsAgainstAllColumns) {
   std::map<std::string, double> rays;
   std::set<std::string> images;
   for (const auto& run : json["runs"]) {
-    for (const char* key : {"relative_l1", "relative_l2", "rmse", "relmse", "bias"})
+    for (const char* key : {"relative_l1", "relative_l2", "rmse", "relmse", "bias", "flip"})
       ASSERT_TRUE(run["error"][key].is_number()) << key;
     const double rate = run["sampling_rate"], l2 = run["error"]["relative_l2"];
     EXPECT_GE(rate, 0);
@@ -82,6 +82,9 @@ TEST_F(Compare, TimesAndLightsAgainstASample) {
   ASSERT_EQ(json["runs"].size(), 4u);
   EXPECT_NE(json["reference"]["kind"].get<std::string>().find("stratified pixels"), std::string::npos);
   EXPECT_EQ(json["runs"][0]["label"], "row-column-sampling 0.05 s");
+  EXPECT_TRUE(json["runs"][0]["error"]["relmse"].is_number());
+  EXPECT_TRUE(json["runs"][0]["error"]["flip"].is_null()) << "of single pixels";
+  EXPECT_EQ(read_text(out_ + "/index.html").find("value=\"flip\""), std::string::npos);
 
   EXPECT_SUCCESS(lumirank(base_ + Arguments{"--methods", "brute-force", "--reference", "brute-force:64",
                                             "--sweep", "lights=100,200"}));

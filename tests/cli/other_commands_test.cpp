@@ -88,8 +88,11 @@ TEST(ErrorCommand, ByHand) {
   EXPECT_NEAR(json.at("rmse").get<double>(), std::sqrt(7.0 / 6), 1e-12);
   EXPECT_NEAR(json.at("bias").get<double>(), 3.0 / 18, 1e-12);
   EXPECT_TRUE(json.at("relmse").is_number());
+  EXPECT_GT(json.at("flip").get<double>(), 0);
+  EXPECT_LT(json.at("flip").get<double>(), 1);
   const Outcome same = lumirank({"error", folder / "r.pfm", folder / "r.pfm"});
   EXPECT_EQ(nlohmann::json::parse(same.out).at("relative_l2"), 0);
+  EXPECT_EQ(nlohmann::json::parse(same.out).at("flip"), 0);
 }
 
 TEST(ErrorCommand, RefusesWhatCannotBeCompared) {

@@ -34,6 +34,27 @@ TEST(Metrics, SameImageHasNoError) {
   EXPECT_EQ(m.rmse, 0);
   EXPECT_EQ(m.relmse, 0);
   EXPECT_EQ(m.bias, 0);
+  EXPECT_EQ(m.flip, 0);
+}
+
+// A power of two, so that all roundings scale too.
+TEST(Metrics, AllButRmseDoNotDependOnTheUnit) {
+  Image image(40, 30), reference(40, 30);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    reference.pixels[i] = Rgb(static_cast<float>(i % 89) / 3, 1, 2);
+    image.pixels[i] = reference.pixels[i] * (0.5f + static_cast<float>(i % 7) / 6);
+  }
+  const PictureError as_it_is = compare(image, reference);
+  for (Image* each : {&image, &reference})
+    for (Rgb& c : each->pixels) c *= 0x1p-20f;
+  const PictureError scaled = compare(image, reference);
+  EXPECT_EQ(scaled.relative_l1, as_it_is.relative_l1);
+  EXPECT_EQ(scaled.relative_l2, as_it_is.relative_l2);
+  EXPECT_EQ(scaled.relmse, as_it_is.relmse);
+  EXPECT_EQ(scaled.bias, as_it_is.bias);
+  EXPECT_EQ(scaled.flip, as_it_is.flip);
+  EXPECT_EQ(scaled.rmse, 0x1p-20 * as_it_is.rmse);
+  EXPECT_GT(as_it_is.flip, 0);
 }
 
 TEST(Metrics, BlackReference) {
@@ -70,6 +91,7 @@ TEST(Metrics, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.relative_l2, four.relative_l2);
   EXPECT_EQ(one.relmse, four.relmse);
   EXPECT_EQ(one.bias, four.bias);
+  EXPECT_EQ(one.flip, four.flip);
 }
 
 // Reference mean 2, differences 0, 0.5 and 2 in every channel: 0, 0.25 and 1 of the mean; with full = 0.5

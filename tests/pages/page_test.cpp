@@ -45,7 +45,7 @@ Comparison synthetic() {
         run.seconds = 0.1 * (1 << k) * (1 + 0.01 * seed), run.setup_seconds = 1.0 / 3;
         run.rays = 1e6 * (1 << k), run.entries = 1.3e6 * (1 << k);
         const double error = (method[0] == 'r' ? 0.04 : 0.3) / std::sqrt(1 << k) * (1 + 0.1 * (seed - 1));
-        run.error = {error, 2 * error, error / 7, error * error, -error / 10};
+        run.error = {error, 2 * error, error / 7, error * error, -error / 10, error / 3};
         run.sampling_rate = 0.001 * columns;
         run.phases = {{"rows", 0.01}, {"columns", 0.1 * k}};
         if (method[0] == 'r') run.phases["clustering"] = 0.1;
@@ -111,7 +111,7 @@ class ComparePage : public image::TemporaryFolder {
 
 TEST_F(ComparePage, JsonReadsBackAsWritten) {
   Comparison results = synthetic();
-  results.runs[1].error.relmse = std::nan("");
+  results.runs[1].error.relmse = results.runs[1].error.flip = std::nan("");
   results.scene += "\xff";  // not UTF-8
   write_results_json(path(""), results);
   const auto json = nlohmann::json::parse(read_bytes(path("results.json")));
@@ -127,16 +127,21 @@ TEST_F(ComparePage, JsonReadsBackAsWritten) {
     EXPECT_EQ(out["seed"].get<std::uint64_t>(), in.seed);
     EXPECT_EQ(out["setup_seconds"].get<double>(), in.setup_seconds);
     EXPECT_EQ(out["error"]["relative_l2"].get<double>(), in.error.relative_l2);
+    if (k != 1) {
+      EXPECT_EQ(out["error"]["flip"].get<double>(), in.error.flip);
+    }
     EXPECT_EQ((out["settings"].get<std::map<std::string, std::string>>()), in.settings);
     EXPECT_EQ((out["phases"].get<std::map<std::string, double>>()), in.phases);
     EXPECT_EQ(out["error_image"], in.error_image_file);
   }
   EXPECT_TRUE(json["runs"][1]["error"]["relmse"].is_null());
+  EXPECT_TRUE(json["runs"][1]["error"]["flip"].is_null());
 }
 
 TEST_F(ComparePage, CsvReadsBackAsWritten) {
   Comparison results = synthetic();
   results.runs[0].error.bias = kInf;
+  results.runs[1].error.flip = std::nan("");
   write_results_csv(path(""), results);
   const auto rows = parse_csv(read_bytes(path("results.csv")));
   ASSERT_EQ(rows.size(), results.runs.size() + 1);
@@ -153,11 +158,15 @@ TEST_F(ComparePage, CsvReadsBackAsWritten) {
     EXPECT_EQ(row[column("seed")], std::to_string(run.seed));
     EXPECT_EQ(std::stod(row[column("setup_seconds")]), run.setup_seconds);
     EXPECT_EQ(std::stod(row[column("relative_l1")]), run.error.relative_l1);
+    if (k != 1) {
+      EXPECT_EQ(std::stod(row[column("flip")]), run.error.flip);
+    }
     EXPECT_EQ(row[column("setting.odd")], "a,\"b\"\nc");
     EXPECT_EQ(row[column("setting.rows")], run.settings.contains("rows") ? run.settings.at("rows") : "");
     EXPECT_EQ(std::stod(row[column("seconds.columns")]), run.phases.at("columns"));
   }
   EXPECT_EQ(rows[1][column("bias")], "");
+  EXPECT_EQ(rows[2][column("flip")], "");
 }
 
 TEST_F(ComparePage, IsWellFormedAndEscapesItsText) {
@@ -188,8 +197,8 @@ TEST_F(ComparePage, ShowsEverySettingOnceAndEveryImage) {
   EXPECT_EQ(document.select_nodes("//table[@id='runs']/tbody/tr").size(), 8u);
   EXPECT_EQ(document.select_nodes("//select[@id='choose-left']/option").size(), 25u);
   EXPECT_EQ(document.select_nodes("//div[@class='legend']/button").size(), 2u);
-  // Three measures against time and rays, and the singular values.
-  EXPECT_EQ(document.select_nodes("//svg[@class='plot']").size(), 7u);
+  // Four measures against time and rays, and the singular values.
+  EXPECT_EQ(document.select_nodes("//svg[@class='plot']").size(), 9u);
   const auto images =
       nlohmann::json::parse(document.select_node("//script[@id='images']").node().text().get());
   ASSERT_EQ(images.size(), 25u);
@@ -199,6 +208,19 @@ TEST_F(ComparePage, ShowsEverySettingOnceAndEveryImage) {
   const auto row = document.select_node("//table[@id='runs']/tbody/tr[5]").node();
   EXPECT_STREQ(row.select_node("td[8]").node().text().get(), "4.00 %");
   EXPECT_STREQ(row.select_node("td[3]").node().text().get(), "0.101 s");
+  EXPECT_STREQ(row.select_node("td[12]").node().text().get(), "0.0133");  // FLIP, a third of 4 %
+}
+
+// Errors at sampled pixels have no FLIP.
+TEST_F(ComparePage, WithoutFlipHasNoPlotOfIt) {
+  Comparison results = synthetic();
+  for (ComparisonRun& run : results.runs) run.error.flip = std::nan("");
+  const std::string with = page_of(synthetic()), without = page_of(results);
+  EXPECT_EQ(count(with, "value=\"flip\""), 1);
+  EXPECT_EQ(count(without, "value=\"flip\""), 0);
+  EXPECT_EQ(count(without, "<svg class=\"plot\""), 7);
+  const char* const empty = "<td data-value=\"\">–</td>";
+  EXPECT_EQ(count(without, empty), count(with, empty) + 8);  // a cell of each setting
 }
 
 // σ_k = 2^(-k/10): the share of the squares beyond the first r is 2^(-r/5), at most 1e-4 from r = 5·log2(1e4)
@@ -223,7 +245,7 @@ TEST_F(ComparePage, EmptyAndBrokenResultsStillMakeAPage) {
   EXPECT_NE(page_of({}).find("<h1>"), std::string::npos);
   Comparison results = synthetic();
   results.runs.resize(1);
-  results.runs[0].error = {0, kInf, std::nan(""), 0, 0};
+  results.runs[0].error = {0, kInf, std::nan(""), 0, 0, std::nan("")};
   results.runs[0].rays = 0;
   const std::string page = page_of(results);
   for (const std::string& svg : pieces(page, "<svg class=\"plot\"", "</svg>")) {

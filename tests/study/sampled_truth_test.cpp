@@ -1,6 +1,8 @@
 // Errors at sampled pixels: of sums whose error is known.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "matrix/synthetic.h"
 #include "study/sampled_truth.h"
 
@@ -40,6 +42,23 @@ TEST_F(SampledTruthOfMadeUpMatrix, KnowsExactSumsAndTheirMultiples) {
   EXPECT_NEAR(error.relative_l1, 0.25, 1e-6);
   EXPECT_NEAR(error.relative_l2, 0.25, 1e-6);
   EXPECT_NEAR(error.bias, 0.25, 1e-6);
+  EXPECT_TRUE(std::isnan(error.flip)) << "single pixels are no picture";
+}
+
+// By the formula of docs/command-line.md, over all pixels.
+TEST_F(SampledTruthOfMadeUpMatrix, RelMseIsThatOfPictures) {
+  std::vector<Rgb> sums = matrix_.exact_sums();
+  std::vector<double> reference(300);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      reference[i / 4 * 3 + static_cast<std::size_t>(c)] += static_cast<double>(sums[i][c]) * weights_[i][c];
+  double mean = 0, expected = 0;
+  for (const double r : reference) mean += r / 300;
+  for (const double r : reference) expected += 0.25 * r * 0.25 * r / (r * r + 1e-4 * mean * mean) / 300;
+  for (Rgb& s : sums) s *= 1.25f;
+  const SampledTruth all = truth(400);
+  ASSERT_EQ(all.pixels(), 100u);
+  EXPECT_NEAR(all.error_of(sums).metrics.relmse, expected, 1e-6);
 }
 
 // What belongs to a pixel may lie in any of its rows.
