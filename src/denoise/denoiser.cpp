@@ -75,8 +75,8 @@ class Device {
 
   // The filter for ray-traced pictures, of inputs with their names: "color" and features without noise, or
   // one feature alone. The output may be one of the inputs.
-  void filter(const std::vector<std::pair<const char*, const Image*>>& inputs, Image& output,
-              bool color) const {
+  void filter(const std::vector<std::pair<const char*, const Image*>>& inputs, Image& output, bool color,
+              bool clean) const {
     const std::unique_ptr<OidnFilter, void (*)(OidnFilter*)> f(oidn_.new_filter(device_.get(), "RT"),
                                                                oidn_.release_filter);
     check();
@@ -84,7 +84,7 @@ class Device {
     set_image(f.get(), "output", output);
     if (color) {
       oidn_.set_filter_bool(f.get(), "hdr", true);
-      oidn_.set_filter_bool(f.get(), "cleanAux", inputs.size() > 1);
+      oidn_.set_filter_bool(f.get(), "cleanAux", clean && inputs.size() > 1);
     }
     oidn_.commit_filter(f.get());
     check();
@@ -119,7 +119,7 @@ Denoiser::Denoiser(const Oidn& functions, std::string version)
     : oidn_(functions), version_(std::move(version)) {}
 
 Image Denoiser::denoise(const Image& noisy, const Image* albedo, const Image* normal,
-                        bool clean_features) const {
+                        Features features) const {
   check_input(noisy, albedo, normal);
   Image clean_albedo = cut(albedo, into_albedo);
   Image clean_normal = cut(normal, into_normal);
@@ -128,12 +128,12 @@ Image Denoiser::denoise(const Image& noisy, const Image* albedo, const Image* no
   std::vector<std::pair<const char*, const Image*>> inputs = {{"color", &noisy}};
   const auto add = [&](const char* name, Image& feature) {
     if (feature.pixels.empty()) return;
-    if (!clean_features) device.filter({{name, &feature}}, feature, false);
+    if (features == Features::prefiltered) device.filter({{name, &feature}}, feature, false, false);
     inputs.emplace_back(name, &feature);
   };
   add("albedo", clean_albedo);
   add("normal", clean_normal);
-  device.filter(inputs, output, true);
+  device.filter(inputs, output, true, features != Features::noisy);
   return output;
 }
 

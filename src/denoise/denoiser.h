@@ -12,6 +12,10 @@ namespace lumirank::denoise {
 
 struct Found;
 
+// What features are: without noise, so that each of their edges is one of the picture; with some, taken with
+// care; or with some, and each denoised by itself first, which takes three times as long.
+enum class Features { clean, noisy, prefiltered };
+
 class Denoiser {
  public:
   // The denoiser of this process, or why there is none. The first call looks for it and loads it; all later
@@ -33,22 +37,20 @@ class Denoiser {
   //   albedo  what part of the light the surface throws back, [0, 1]
   //   normal  of the surface, in any fixed frame, mean over the pixel: of length 1 or shorter, [-1, 1]
   // both of the size of `noisy` and black where there is no surface. What a reconstruction filter with
-  // negative lobes lets overshoot is cut to these ranges. Features from few samples are noisy as well, so
-  // each is denoised by itself first; `clean_features` says that they have no noise, and saves two thirds of
-  // the time.
+  // negative lobes lets overshoot is cut to these ranges.
   //
   // Runs on current_threads() threads (base/parallel.h), and several calls may run at a time. The same
   // pictures give the same bits, on any number of threads; another processor or another version of the
   // library may round otherwise.
   //
   // Memory besides the pictures: some 0.8 KB for each pixel, but not more than 3.2 GB, as larger ones are
-  // taken in overlapping tiles. Time with both features: on two cores with AVX2 5 s for 10⁶ pixels if they
-  // are clean, else 15 s.
+  // taken in overlapping tiles. Time with both features: on two cores with AVX2 5 s for 10⁶ pixels,
+  // with prefiltered ones 15 s.
   //
   // Throws InputError for pictures that are empty, of different sizes or not finite everywhere, and for
   // normals without albedo; std::bad_alloc; InternalError with the library's words if it fails otherwise.
   image::Image denoise(const image::Image& noisy, const image::Image* albedo = nullptr,
-                       const image::Image* normal = nullptr, bool clean_features = false) const;
+                       const image::Image* normal = nullptr, Features features = Features::noisy) const;
 
  private:
   Denoiser(const Oidn& functions, std::string version);

@@ -29,12 +29,15 @@ constexpr int kDefaultPasses = 16, kMaxPasses = 65536;
 constexpr double kPixelsPerLight = 12;
 constexpr std::size_t kMinLightsOfPass = 5000, kMaxLightsOfPass = 60000;
 // Samples of traced direct light, and paths of the rest at most, for each receiver or pixel of a pass.
-constexpr int kDirectOfPass = 2, kMaxRestOfPass = 8;
+constexpr int kDirectOfPass = 1, kMaxRestOfPass = 8, kLocalOfPass = 1;
+// Of passes lights may show more than alone: what spots that leaves differs from pass to pass.
+constexpr double kClampOfPass = 4;
 // Of a pass's seconds those that the rest gets besides: its noise is larger than that of what columns carry.
 constexpr double kRestOfPass = 0.6;
 // The film whose denoising tells what the picture's will take; and what a larger one may take more.
 constexpr int kDenoiserTrial = 192;
 constexpr double kDenoiserMargin = 1.25;
+constexpr int kCleanPasses = 32;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
 
 std::string pass_number(const char* format, double x) {
@@ -82,14 +85,19 @@ class PassRun {
   // ------------------------------------------------------------ what a pass is
 
   Recipe recipe_of(std::uint64_t number) const {
-    Recipe recipe = make_recipe(asked_, view_);
+    RenderSettings of_pass = asked_;
+    // Lights are spots in narrow lobes; few paths have noise there, which other passes and the denoiser take.
+    if (asked_.lights.type == LightType::point && asked_.traced.direct != DirectLight::matrix &&
+        asked_.traced.local_paths == 0 && asked_.traced.compensate == 0)
+      of_pass.traced.local_paths = kLocalOfPass;
+    Recipe recipe = make_recipe(of_pass, view_);
     recipe.seed = hash_ids(asked_.seed, Stage::passes, number);
     recipe.light_seed = hash_ids(asked_.seed, Stage::passes, ~number);
     recipe.spp = 1;
     recipe.film_samples = asked_.view.film_samples.value_or(0);
     recipe.first_hits = denoiser_ != nullptr;
     // What one light may show is the same for the mean of many passes as for one with all their lights.
-    recipe.lights.clamp = asked_.lights.clamp * clamp_factor_;
+    recipe.lights.clamp = kClampOfPass * asked_.lights.clamp * clamp_factor_;
     return recipe;
   }
 
@@ -160,7 +168,7 @@ class PassRun {
   // ------------------------------------------------------------ how many
 
   void plan() {
-    if (asked_.method.parameters.empty() && timed() && !replays()) {
+    if (timed() && !replays()) {
       // Not kept: its pixels are too large.
       const View small = smaller(view_, kTrialDivisor);
       image::Image image;
@@ -275,9 +283,15 @@ class PassRun {
     if (!timed()) return;
     const image::Image trial(kDenoiserTrial, kDenoiserTrial, Rgb(0.5f));
     const Timer timer;
-    denoiser_->denoise(trial, &trial, &trial, true);
+    denoiser_->denoise(trial, &trial, &trial);
     denoiser_seconds_ = kDenoiserMargin * timer.seconds() * static_cast<double>(view_.width) *
                         static_cast<double>(view_.height) / (kDenoiserTrial * kDenoiserTrial);
+  }
+
+  // Edges of few samples are dotted lines, which clean features would be taken to say.
+  denoise::Features features() const {
+    if (passes_ >= kCleanPasses) return denoise::Features::clean;
+    return timed() ? denoise::Features::noisy : denoise::Features::prefiltered;
   }
 
   image::Image noisy() const {
@@ -301,7 +315,7 @@ class PassRun {
       const Timer timer;
       const image::Image albedo = albedo_.mean(), normal = normal_.mean();
       const Picture noisy_picture = result_.picture;
-      result_.picture = as_asked(denoiser_->denoise(image, &albedo, &normal, true));
+      result_.picture = as_asked(denoiser_->denoise(image, &albedo, &normal, features()));
       result_.picture.planes.push_back({"undenoised", noisy_picture.planes[0].rgb});
       seconds_["denoise"] = timer.seconds();
     }
@@ -363,8 +377,9 @@ class PassRun {
 }  // namespace
 
 bool passes_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& settings) {
-  return settings.method.name == "auto" && settings.method.parameters.empty() && settings.layers.empty() &&
-         !settings.view.is_open() && !some_scatter(desc);
+  return settings.method.name == "auto" &&
+         takes_settings(methods::find_method(kMethodOfPasses), settings.method.parameters) &&
+         settings.layers.empty() && !settings.view.is_open() && !some_scatter(desc);
 }
 
 bool runs_in_passes(const methods::MethodInfo& method, const RenderSettings& settings) {

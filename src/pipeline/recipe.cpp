@@ -121,14 +121,12 @@ transport::SceneMatrixSettings matrix_settings(const Recipe& recipe) {
   return ms;
 }
 
-namespace {
 bool takes_settings(const methods::MethodInfo& info, const std::map<std::string, std::string>& settings) {
   return std::all_of(settings.begin(), settings.end(), [&](const auto& given) {
     return std::any_of(info.parameters.begin(), info.parameters.end(),
                        [&](const methods::Parameter& p) { return p.key == given.first; });
   });
 }
-}  // namespace
 
 const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::string* why) {
   std::string because;

@@ -62,6 +62,8 @@ transport::SceneMatrixSettings matrix_settings(const Recipe& recipe);
 // parameters of row-column-sampling, it is that; with an open shutter it is multidimensional-lightcuts. `why`
 // (may be nullptr) says so.
 const methods::MethodInfo& chosen_method(const RenderSettings& settings, std::string* why = nullptr);
+// Whether the method has parameters of all these names.
+bool takes_settings(const methods::MethodInfo& info, const std::map<std::string, std::string>& settings);
 std::size_t lights_for(const methods::MethodInfo& method, const RenderSettings& settings);
 
 }  // namespace lumirank::pipeline

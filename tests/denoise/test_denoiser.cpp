@@ -178,13 +178,13 @@ TEST_F(Denoising, ANoisyFlatPictureBecomesFlat) {
 
 TEST_F(Denoising, EdgesOfFeaturesSurvive) {
   const TwoColors scene;
-  for (const bool clean : {false, true}) {
-    const Image image = denoiser_->denoise(scene.noisy, &scene.albedo, &scene.normal, clean);
+  for (const Features kind : {Features::clean, Features::noisy, Features::prefiltered}) {
+    const Image image = denoiser_->denoise(scene.noisy, &scene.albedo, &scene.normal, kind);
     EXPECT_LT(error(image, scene.truth), 0.08);
     // Each channel of its own: the two colors differ little in brightness.
     for (int y = 0; y < image.height; ++y) {
-      EXPECT_GT(image.at(62, y).r, image.at(63, y).r + 0.3f) << clean << ' ' << y;
-      EXPECT_LT(image.at(62, y).b, image.at(63, y).b - 0.2f) << clean << ' ' << y;
+      EXPECT_GT(image.at(62, y).r, image.at(63, y).r + 0.3f) << static_cast<int>(kind) << ' ' << y;
+      EXPECT_LT(image.at(62, y).b, image.at(63, y).b - 0.2f) << static_cast<int>(kind) << ' ' << y;
     }
   }
   EXPECT_LT(error(denoiser_->denoise(scene.noisy, &scene.albedo), scene.truth), 0.08) << "albedo alone";

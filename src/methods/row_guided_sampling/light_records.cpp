@@ -114,24 +114,23 @@ LightRecords::LightRecords(const matrix::LightingMatrix& matrix, std::span<const
     : columns_(matrix.columns()), space_(std::make_unique<RecordSpace>(matrix, rows)) {
   std::vector<Rgb> values(columns_);
   std::vector<float> weights(columns_);
-  std::vector<std::uint32_t> sums(columns_ + 1);
   const auto add = [&](Index row, matrix::Part part) {
     cost_ += matrix.row(row, values, part);
     double total = 0;
     for (std::size_t j = 0; j < columns_; ++j)
       total += static_cast<double>(weights[j] = record_brightness(values[j]));
-    const bool lit = RunningSum::write(weights, sums);
+    const bool lit =
+        RunningSum::write(weights, sums_.data() + 2 * (columns_ + 1) * count_ + (totals_.size() & 1), 2);
     totals_.push_back(static_cast<float>(total));
-    sums_.insert(sums_.end(), sums.begin(), sums.end());
     return lit;
   };
-  sums_.reserve(2 * rows.size() * sums.size());
+  sums_.reserve(2 * rows.size() * (columns_ + 1));
   for (std::size_t read = 0; read < rows.size() && go_on(read); ++read) {
     const Index row = rows[read];
-    const std::size_t before = sums_.size();
+    sums_.resize(2 * (columns_ + 1) * (count_ + 1));
     add(row, matrix::Part::value);
     if (!add(row, matrix::Part::unoccluded)) {
-      sums_.resize(before), totals_.resize(totals_.size() - 2);
+      totals_.resize(totals_.size() - 2);
       continue;
     }
     const Point6 at = (*space_)(row);
@@ -149,7 +148,7 @@ LightRecords::LightRecords(const matrix::LightingMatrix& matrix, std::span<const
       for (std::size_t j = 0; j < columns_; ++j) weights[j] = features.power[j] + least;
   }
   power_.resize(columns_ + 1);
-  RunningSum::write(weights, power_);
+  RunningSum::write(weights, power_.data(), 1);
 }
 
 LightRecords::Near LightRecords::nearest(Index row) const {

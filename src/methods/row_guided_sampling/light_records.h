@@ -51,20 +51,13 @@ class LightRecords {
   // 2r: of record r with visibility (may be empty), 2r + 1: without; kPower: by the columns' power.
   static constexpr std::uint32_t kPower = 0xffffffffu;
   RunningSum distribution(std::uint32_t number) const {
-    if (number == kPower) return RunningSum(power_);
-    return RunningSum(std::span(sums_).subspan(number * (columns_ + 1), columns_ + 1));
+    if (number == kPower) return {power_.data(), columns_, 1};
+    return {sums_.data() + (number & ~1u) * (columns_ + 1) + (number & 1), columns_, 2};
   }
   RunningSum lit(std::uint32_t record) const { return distribution(2 * record); }
-  // r + g + b of a record's entry.
-  struct Brightness {
-    float lit, unoccluded;
-  };
-  Brightness brightness(std::uint32_t record, matrix::Index column) const {
-    const auto of = [&](std::uint32_t number) {
-      return totals_[number] > 0 ? totals_[number] * distribution(number).probability(column) : 0;
-    };
-    return {of(2 * record), of(2 * record + 1)};
-  }
+  RunningSum unoccluded(std::uint32_t record) const { return distribution(2 * record + 1); }
+  // Brightness of the whole row, by distribution.
+  float brightness(std::uint32_t number) const { return totals_[number]; }
 
  private:
   std::size_t columns_, count_ = 0;

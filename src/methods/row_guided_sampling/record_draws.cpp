@@ -15,45 +15,51 @@ constexpr float kLeastVisible = 0.05f;
 
 }  // namespace
 
-RecordMixture::RecordMixture(const LightRecords& records, matrix::Index row) : records_(records) {
-  std::size_t lit = 0;
-  for (const std::uint32_t record : records.nearest(row)) {
+RecordMixture::RecordMixture(const LightRecords& records, matrix::Index row)
+    : records_(records), power_(records.distribution(LightRecords::kPower)) {
+  const LightRecords::Near nearest = records.nearest(row);
+  std::size_t known = 0, lit = 0;
+  for (const std::uint32_t record : nearest)
+    if (record != LightRecords::kNone) ++known, lit += records.lit(record).empty() ? 0 : 1;
+  double end = 0;
+  const auto piece = [&](std::uint32_t number, float share) {
+    end += static_cast<double>(share);
+    pieces_[piece_count_++] = {end, number};
+  };
+  for (const std::uint32_t record : nearest) {
     if (record == LightRecords::kNone) continue;
-    near_[near_count_++] = record;
-    if (!records.lit(record).empty()) part_[count_++] = 2 * record, ++lit;
+    NearRecord near{records.lit(record), records.unoccluded(record), 0, 0, 0, 0};
+    if (!near.lit.empty()) {
+      const float share = kLitShare / static_cast<float>(lit);
+      piece(2 * record, share);
+      near.lit_share = share / static_cast<float>(near.lit.total());
+      near.lit_light = records.brightness(2 * record) / static_cast<float>(near.lit.total());
+    }
+    const float share = kUnoccludedShare / static_cast<float>(known);
+    piece(2 * record + 1, share);
+    near.unoccluded_share = share / static_cast<float>(near.unoccluded.total());
+    near.unoccluded_light = records.brightness(2 * record + 1) / static_cast<float>(near.unoccluded.total());
+    near_[near_count_++] = near;
   }
-  for (std::size_t k = 0; k < near_count_; ++k) part_[count_++] = 2 * near_[k] + 1;
-  float left = 1;
-  for (std::size_t k = 0; k < count_; ++k) {
-    share_[k] =
-        k < lit ? kLitShare / static_cast<float>(lit) : kUnoccludedShare / static_cast<float>(near_count_);
-    left -= share_[k];
-  }
-  part_[count_] = LightRecords::kPower, share_[count_++] = left;
+  power_share_ = static_cast<float>(1 - end) / static_cast<float>(power_.total());
+  pieces_[piece_count_++] = {1, LightRecords::kPower};
 }
 
 GuidedColumn RecordMixture::draw(double u) const {
   std::size_t k = 0;
-  for (; k + 1 < count_ && u >= static_cast<double>(share_[k]); ++k) u -= static_cast<double>(share_[k]);
-  const double within = std::min(u / static_cast<double>(share_[k]), 0x1.fffffffffffffp-1);
-  const matrix::Index column = records_.distribution(part_[k]).draw(within);
-  return {column, probability_of(column), visibility_of(column)};
-}
-
-float RecordMixture::probability_of(matrix::Index column) const {
-  float sum = 0;
-  for (std::size_t k = 0; k < count_; ++k)
-    sum += share_[k] * records_.distribution(part_[k]).probability(column);
-  return sum;
-}
-
-float RecordMixture::visibility_of(matrix::Index column) const {
-  float lit = 0, whole = 0;
-  for (std::size_t k = 0; k < near_count_; ++k) {
-    const LightRecords::Brightness b = records_.brightness(near_[k], column);
-    lit += b.lit, whole += b.unoccluded;
+  while (k + 1 < piece_count_ && u >= pieces_[k].end) ++k;
+  const double begin = k > 0 ? pieces_[k - 1].end : 0;
+  const double within = std::min((u - begin) / (pieces_[k].end - begin), 0x1.fffffffffffffp-1);
+  const std::uint32_t column = records_.distribution(pieces_[k].distribution).draw(within);
+  float probability = power_share_ * static_cast<float>(power_.units(column)), lit = 0, whole = 0;
+  for (std::size_t n = 0; n < near_count_; ++n) {
+    const NearRecord& near = *near_[n];
+    const auto l = static_cast<float>(near.lit.units(column));
+    const auto e = static_cast<float>(near.unoccluded.units(column));
+    probability += near.lit_share * l + near.unoccluded_share * e;
+    lit += near.lit_light * l, whole += near.unoccluded_light * e;
   }
-  return whole > 0 ? std::clamp(lit / whole, kLeastVisible, 1.0f) : 1.0f;
+  return {column, probability, whole > 0 ? std::clamp(lit / whole, kLeastVisible, 1.0f) : 1.0f};
 }
 
 double spread_fraction(std::uint64_t index, std::uint64_t seed) {

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <optional>
 
 #include "matrix/lighting_matrix.h"
 #include "methods/row_guided_sampling/light_records.h"
@@ -28,15 +28,22 @@ class RecordMixture {
   GuidedColumn draw(double u) const;
 
  private:
-  float probability_of(matrix::Index column) const;
-  float visibility_of(matrix::Index column) const;
+  struct NearRecord {
+    RunningSum lit, unoccluded;
+    // Of a draw, and of brightness, for each unit of the sums.
+    float lit_share, unoccluded_share, lit_light, unoccluded_light;
+  };
+  struct Piece {  // of [0, 1), and the distribution that is drawn from there
+    double end;
+    std::uint32_t distribution;
+  };
 
   const LightRecords& records_;
-  std::array<std::uint32_t, LightRecords::kNear> near_;
-  std::size_t near_count_ = 0, count_ = 0;
-  // Distributions by their numbers, and what they get.
-  std::array<std::uint32_t, 2 * LightRecords::kNear + 1> part_;
-  std::array<float, 2 * LightRecords::kNear + 1> share_;
+  std::array<Piece, 2 * LightRecords::kNear + 1> pieces_;
+  std::size_t piece_count_ = 0, near_count_ = 0;
+  std::array<std::optional<NearRecord>, LightRecords::kNear> near_;
+  RunningSum power_;
+  float power_share_ = 1;
 };
 
 // The fraction of a scrambled van der Corput sequence (Owen 1995): any 2^k numbers after one another from a

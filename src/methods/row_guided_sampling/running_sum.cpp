@@ -4,13 +4,13 @@
 
 namespace lumirank::methods {
 
-bool RunningSum::write(std::span<const float> weights, std::span<std::uint32_t> sums) {
+bool RunningSum::write(std::span<const float> weights, std::uint32_t* sums, std::size_t stride) {
   double total = 0;
   std::size_t lit = 0;
   for (const float w : weights) total += static_cast<double>(w), lit += w > 0 ? 1 : 0;
   sums[0] = 0;
   if (!(total > 0)) {
-    std::fill(sums.begin(), sums.end(), 0u);
+    for (std::size_t j = 0; j <= weights.size(); ++j) sums[j * stride] = 0;
     return false;
   }
   // One unit for each, and the other units by weight: running sums of both, rounded down, grow by at least 1.
@@ -19,17 +19,23 @@ bool RunningSum::write(std::span<const float> weights, std::span<std::uint32_t> 
   std::uint32_t units = 0;
   for (std::size_t j = 0; j < weights.size(); ++j) {
     if (weights[j] > 0) sum += static_cast<double>(weights[j]), ++units;
-    sums[j + 1] = static_cast<std::uint32_t>(sum * scale) + units;
+    sums[(j + 1) * stride] = static_cast<std::uint32_t>(sum * scale) + units;
   }
   return true;
 }
 
 std::uint32_t RunningSum::draw(double u) const {
-  const double target = u * static_cast<double>(sums_.back());
+  const double target = u * static_cast<double>(total());
   // Below the total, whatever rounding makes of it.
-  const auto unit = std::min(static_cast<std::uint32_t>(target), sums_.back() - 1);
-  return static_cast<std::uint32_t>(std::upper_bound(sums_.begin() + 1, sums_.end(), unit) - sums_.begin() -
-                                    1);
+  const auto unit = std::min(static_cast<std::uint32_t>(target), total() - 1);
+  std::size_t first = 0, count = size_;  // columns whose sum ends above `unit` begin in there
+  while (count > 0) {
+    const std::size_t half = count / 2;
+    const bool below = at(first + half + 1) <= unit;
+    first = below ? first + half + 1 : first;
+    count = below ? count - half - 1 : half;
+  }
+  return static_cast<std::uint32_t>(first);
 }
 
 }  // namespace lumirank::methods

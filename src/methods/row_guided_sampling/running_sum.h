@@ -1,6 +1,7 @@
 // A distribution over columns, kept as its running sum alone.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -11,21 +12,28 @@ namespace lumirank::methods {
 // however small a weight is.
 class RunningSum {
  public:
-  explicit RunningSum(std::span<const std::uint32_t> sums) : sums_(sums) {}
+  // `sums`: size + 1 numbers, each `stride` after the one before, so that sums which are asked together lie
+  // together.
+  RunningSum(const std::uint32_t* sums, std::size_t size, std::size_t stride)
+      : sums_(sums), size_(size), stride_(stride) {}
 
   // Writes the running sums of `weights` (finite, ≥ 0; fewer than 2^31); false if all are 0.
-  static bool write(std::span<const float> weights, std::span<std::uint32_t> sums);
+  static bool write(std::span<const float> weights, std::uint32_t* sums, std::size_t stride);
 
-  bool empty() const { return sums_.back() == 0; }
+  std::uint32_t total() const { return at(size_); }
+  bool empty() const { return total() == 0; }
   // The column of u in [0, 1); not empty.
   std::uint32_t draw(double u) const;
+  // Of `total`.
+  std::uint32_t units(std::uint32_t column) const { return at(column + 1) - at(column); }
   float probability(std::uint32_t column) const {
-    return static_cast<float>(sums_[column + 1] - sums_[column]) * inverse_total();
+    return static_cast<float>(units(column)) / static_cast<float>(total());
   }
 
  private:
-  float inverse_total() const { return 1 / static_cast<float>(sums_.back()); }
-  std::span<const std::uint32_t> sums_;
+  std::uint32_t at(std::size_t k) const { return sums_[k * stride_]; }
+  const std::uint32_t* sums_;
+  std::size_t size_, stride_;
 };
 
 }  // namespace lumirank::methods
