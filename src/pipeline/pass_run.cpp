@@ -27,7 +27,7 @@ constexpr int kDefaultPasses = 16, kMaxPasses = 65536;
 // Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
 // them. More of them in one pass are fewer passes, which have as many altogether.
 constexpr double kPixelsPerLight = 12;
-constexpr std::size_t kMinLightsOfPass = 5000, kMaxLightsOfPass = 60000;
+constexpr std::size_t kMinLightsOfPass = 1000, kMaxLightsOfPass = 60000;
 // Samples of traced direct light, and paths of the rest at most, for each receiver or pixel of a pass.
 constexpr int kDirectOfPass = 1, kMaxRestOfPass = 8, kLocalOfPass = 1;
 // Of passes lights may show more than alone: what spots that leaves differs from pass to pass.
@@ -38,6 +38,8 @@ constexpr double kRestOfPass = 0.6;
 constexpr int kDenoiserTrial = 192;
 constexpr double kDenoiserMargin = 1.25;
 constexpr int kCleanPasses = 32;
+// Of fewer pixels a side it knows too little.
+constexpr int kSmallestDenoised = 16;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
 
 std::string pass_number(const char* format, double x) {
@@ -149,7 +151,13 @@ class PassRun {
     took.fixed += records, took.by_pixel -= records;
     lap("method", took.by_pixel);
     const FilmInput film{world, view, recipe, *rows, traced};
-    image = develop(film, estimate_.sums, parts_);
+    // What is seen of emitters and the surroundings has no noise, and is not for the denoiser.
+    FilmParts sent = parts_;
+    sent.emission = false;
+    image = develop(film, estimate_.sums, sent);
+    if (parts_.emission)
+      emission_now_ = develop(film, std::vector<Rgb>(rows->size()),
+                              {.matrix = false, .traced_direct = false, .traced_indirect = false});
     if (asked_.traced.compensate > 0) {
       RenderSettings of_pass = asked_;
       of_pass.seed = recipe.seed;
@@ -182,9 +190,10 @@ class PassRun {
       expected_ = {took.fixed * static_cast<double>(lights_of(view_)) / static_cast<double>(lights_of(small)),
                    took.by_pixel / shrunk};
       choose_size();
-    } else if (replays()) {
-      const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses);
-      if (divisor && *divisor > 1) view_ = smaller(task_.view, static_cast<int>(*divisor));
+    } else if (timed()) {
+      const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
+      choices_.record("film_divisor", divisor);
+      if (divisor > 1) view_ = smaller(task_.view, static_cast<int>(divisor));
     }
     wanted_ = asked_.passes > 0                           ? asked_.passes
               : timed() || asked_.method.target_error > 0 ? kMaxPasses
@@ -243,12 +252,13 @@ class PassRun {
     if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
     mean_.add(image);
+    if (parts_.emission) emission_.add(emission_now_);
     if (denoiser_) albedo_.add(albedo_now_), normal_.add(normal_now_);
     pace_ = (pace_ * number + (clock_() - begin)) / (number + 1);
     const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
                                 : static_cast<double>(number + 1) / wanted_;
     sinks_.report("passes", std::clamp(part, 0.0, 1.0));
-    if (previews_ && throttle_.due()) throttle_.show(as_asked(noisy()));
+    if (previews_ && throttle_.due()) throttle_.show(as_asked(with_emission(noisy())));
     return true;
   }
 
@@ -306,17 +316,28 @@ class PassRun {
     return enlarged(picture, task_.view.width, task_.view.height);
   }
 
+  image::Image with_emission(image::Image image) const {
+    const image::Image emission = emission_.mean();
+    for (std::size_t p = 0; p < emission.pixels.size(); ++p) image.pixels[p] += emission.pixels[p];
+    return image;
+  }
+
+  bool is_denoised(const image::Image& image) const {
+    return denoiser_ && !result_.interrupted && std::min(image.width, image.height) >= kSmallestDenoised &&
+           std::any_of(image.pixels.begin(), image.pixels.end(), [](Rgb c) { return !is_black(c); });
+  }
+
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
-    const image::Image image = noisy();
-    result_.picture = as_asked(image);
-    if (denoiser_ && !result_.interrupted) {
+    const image::Image sent = noisy();
+    result_.picture = as_asked(with_emission(sent));
+    if (is_denoised(sent)) {
       const Timer timer;
       const image::Image albedo = albedo_.mean(), normal = normal_.mean();
-      const Picture noisy_picture = result_.picture;
-      result_.picture = as_asked(denoiser_->denoise(image, &albedo, &normal, features()));
-      result_.picture.planes.push_back({"undenoised", noisy_picture.planes[0].rgb});
+      std::vector<float> before = std::move(result_.picture.planes[0].rgb);
+      result_.picture = as_asked(with_emission(denoiser_->denoise(sent, &albedo, &normal, features())));
+      result_.picture.planes.push_back({"undenoised", std::move(before)});
       seconds_["denoise"] = timer.seconds();
     }
     report();
@@ -330,7 +351,6 @@ class PassRun {
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
     numbers["rest.paths"] = rest_->paths();
     numbers["passes"] = passes_;
-    numbers["lights_of_all_passes"] = static_cast<double>(passes_) * static_cast<double>(lights_of(view_));
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
     if (passes_ > 1) numbers["error.noise"] = mean_.noise();
@@ -342,8 +362,18 @@ class PassRun {
         seconds_.contains("denoise") ? "Open Image Denoise " + denoiser_->version() : "none";
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
+    of_all_passes(result_.report);
     seconds_["total"] = task_.timer.seconds();
     result_.report.seconds = seconds_;
+  }
+
+  // Sizes are of the last pass until then.
+  void of_all_passes(Report& report) const {
+    const auto passes = static_cast<std::uint64_t>(passes_);
+    for (auto* size : {&report.sizes->receivers, &report.sizes->lights, &report.sizes->direct_lights,
+                       &report.sizes->light_paths})
+      *size *= passes;
+    report.cost->sampling_rate /= static_cast<double>(passes);
   }
 
   RenderTask task_;
@@ -363,8 +393,8 @@ class PassRun {
   double pace_ = 0, clamp_factor_ = 1;
   int wanted_ = 1, passes_ = 0;
   std::string shortage_;
-  PictureMean mean_, albedo_, normal_;
-  image::Image albedo_now_, normal_now_;
+  PictureMean mean_, emission_, albedo_, normal_;  // the first: of what surfaces send
+  image::Image emission_now_, albedo_now_, normal_now_;
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;
   TracedLight traced_;
@@ -383,7 +413,8 @@ bool passes_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& s
 }
 
 bool runs_in_passes(const methods::MethodInfo& method, const RenderSettings& settings) {
-  return settings.passes > 0 || method.name == kMethodOfPasses;
+  return settings.passes > 0 ||
+         (method.name == kMethodOfPasses && settings.layers.empty() && !settings.view.is_open());
 }
 
 void check_passes(const RenderSettings& settings) {

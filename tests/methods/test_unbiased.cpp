@@ -35,6 +35,16 @@ TEST(Unbiased, PowerSampling) {
   }
 }
 
+TEST(Unbiased, RowGuidedSampling) {
+  for (const char* candidates : {"1", "4"}) {
+    const std::map<std::string, std::string> settings{
+        {"samples", "8"}, {"candidates", candidates}, {"records", "10"}};
+    expect_unbiased(seen(matrix::low_rank_matrix({200, 300, 1}, 8), "row-guided-sampling", settings));
+    // Records are blind for most of what other rows see.
+    expect_unbiased(seen(matrix::sparse_matrix({200, 300, 1}, 0.3), "row-guided-sampling", settings));
+  }
+}
+
 TEST(Unbiased, RowColumnSamplingWithScalarColor) {
   for (const char* clustering : {"combined", "sampling", "splitting"}) {
     const std::map<std::string, std::string> settings{

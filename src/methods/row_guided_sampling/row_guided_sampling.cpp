@@ -39,10 +39,12 @@ const Fields<GuidedSettings> kGuidedFields{
                                  "Looked at without visibility for each of the samples, which are drawn from "
                                  "them. 1: none but these."},
                                 &GuidedSettings::candidates, 1, 1024),
-    count_field<GuidedSettings>(
-        {"records", "rows", "Read whole, to guide the receivers near them; 8 bytes for each column of each."},
-        &GuidedSettings::records, 1, 65536)};
+    count_field<GuidedSettings>({"records", "rows",
+                                 "Read whole, to guide the receivers near them, or fewer where receivers are "
+                                 "few; 8 bytes for each column of each."},
+                                &GuidedSettings::records, 1, 65536)};
 
+constexpr std::size_t kFewestRecords = 16;
 // Of a budget what records may take.
 constexpr double kRecordsShare = 0.25;
 // Receivers whose entries are asked for together: neighbors.
@@ -110,10 +112,17 @@ class RowGuidedSampling final : public Method {
   }
 
  private:
+  // Where there are few receivers, no more than cost twice what these draw.
+  std::size_t record_count(const matrix::LightingMatrix& matrix) const {
+    const double draws = static_cast<double>(matrix.rows()) * static_cast<double>(settings_.samples);
+    const double affordable = 2 * draws / static_cast<double>(matrix.columns());
+    return std::min(settings_.records, std::max(kFewestRecords, static_cast<std::size_t>(affordable)));
+  }
+
   // Under a budget no more than a part of it, and what was read is kept for a repetition.
   LightRecords read_records(const matrix::LightingMatrix& matrix, const RunOptions& options,
                             const RunClock& clock) const {
-    const std::vector<Index> chosen = choose_records(matrix, {settings_.records, options.seed});
+    const std::vector<Index> chosen = choose_records(matrix, {record_count(matrix), options.seed});
     std::vector<Index> order;  // every beginning is spread over the picture
     for (const std::uint32_t k : coarse_to_fine(chosen.size())) order.push_back(chosen[k]);
     const bool timed = options.time_seconds > 0;

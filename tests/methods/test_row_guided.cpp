@@ -1,0 +1,103 @@
+// Row-guided sampling: its distributions, what the mixture draws and says of itself, and its mean.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "matrix/synthetic.h"
+#include "methods/method.h"
+#include "methods/row_guided_sampling/light_records.h"
+#include "methods/row_guided_sampling/record_draws.h"
+#include "methods/row_guided_sampling/running_sum.h"
+
+namespace lumirank::methods {
+namespace {
+
+struct OwnedSum {
+  explicit OwnedSum(const std::vector<float>& weights) : numbers(weights.size() + 1), size(weights.size()) {
+    lit = RunningSum::write(weights, numbers.data(), 1);
+  }
+  RunningSum sum() const { return {numbers.data(), size, 1}; }
+  std::vector<std::uint32_t> numbers;
+  std::size_t size;
+  bool lit;
+};
+
+TEST(RunningSum, EvenStepsMeetColumnsAsOftenAsTheirProbabilitiesSay) {
+  const OwnedSum owned({3, 0, 1, 0.5f, 0, 5.5f});
+  ASSERT_TRUE(owned.lit);
+  std::vector<int> met(6);
+  constexpr int kSteps = 100000;
+  for (int k = 0; k < kSteps; ++k) ++met[owned.sum().draw((k + 0.5) / kSteps)];
+  const float weights[] = {3, 0, 1, 0.5f, 0, 5.5f};
+  for (std::uint32_t j = 0; j < 6; ++j) {
+    EXPECT_NEAR(met[j], kSteps * weights[j] / 10, 1.01) << j;
+    EXPECT_NEAR(owned.sum().probability(j), weights[j] / 10, 1e-6f) << j;
+  }
+}
+
+TEST(RunningSum, TheFaintestColumnCanBeDrawnAndTheDarkCannot) {
+  const OwnedSum owned({1e-30f, 0, 1e30f, 0});
+  EXPECT_GE(owned.sum().units(0), 1u);
+  EXPECT_EQ(owned.sum().units(1), 0u);
+  EXPECT_EQ(owned.sum().draw(0), 0u);
+  EXPECT_EQ(owned.sum().draw(0x1.fffffffffffffp-1), 2u);
+  const OwnedSum dark({0, 0, 0});
+  EXPECT_FALSE(dark.lit);
+  EXPECT_TRUE(dark.sum().empty());
+}
+
+TEST(SpreadFraction, AnyStretchOfTwoToTheKIsInDifferentParts) {
+  for (const std::uint64_t begin : {0ull, 64ull, 6400ull}) {
+    std::set<int> parts;
+    for (std::uint64_t k = 0; k < 64; ++k) {
+      const double u = spread_fraction(begin + k, 7);
+      ASSERT_GE(u, 0);
+      ASSERT_LT(u, 1);
+      parts.insert(static_cast<int>(64 * u));
+    }
+    EXPECT_EQ(parts.size(), 64u) << begin;
+  }
+}
+
+// Probabilities of all columns add up to 1, and draws are as frequent as they say.
+TEST(RecordMixture, SaysWithWhatProbabilityItDraws) {
+  const auto matrix = matrix::sparse_matrix({40, 60, 1}, 0.3);
+  const std::vector<matrix::Index> rows{3, 11, 17, 28, 35};
+  const LightRecords records(matrix, rows, [](std::size_t) { return true; });
+  ASSERT_EQ(records.size(), rows.size());
+  const RecordMixture mixture(records, 20);
+  constexpr int kSteps = 60000;
+  std::vector<int> met(60);
+  std::vector<float> probability(60);
+  for (int k = 0; k < kSteps; ++k) {
+    const GuidedColumn drawn = mixture.draw((k + 0.5) / kSteps);
+    ++met[drawn.column], probability[drawn.column] = drawn.probability;
+    EXPECT_GT(drawn.visible, 0);
+    EXPECT_LE(drawn.visible, 1);
+  }
+  double sum = 0;
+  for (std::size_t j = 0; j < 60; ++j) {
+    sum += static_cast<double>(probability[j]);
+    // Each of the nine distributions may gain or lose a step at either end of its column.
+    EXPECT_NEAR(met[j], kSteps * static_cast<double>(probability[j]), 18.1) << j;
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);  // all columns have power, so all were met
+}
+
+TEST(LightRecords, AreSpreadAndNearestComesFirst) {
+  const auto matrix = matrix::low_rank_matrix({500, 40, 1}, 5);
+  const auto chosen = choose_records(matrix, {32, 1});
+  EXPECT_EQ(std::set<matrix::Index>(chosen.begin(), chosen.end()).size(), chosen.size());
+  EXPECT_LE(chosen.size(), 32u);
+  EXPECT_GE(chosen.size(), 16u);
+  std::size_t asked = 0;
+  const LightRecords some(matrix, chosen, [&](std::size_t read) { return ++asked, read < 3; });
+  EXPECT_EQ(some.size(), 3u);
+  EXPECT_EQ(some.nearest(chosen[1])[0], 1u);
+  EXPECT_EQ(some.nearest(chosen[1])[3], LightRecords::kNone);
+}
+
+}  // namespace
+}  // namespace lumirank::methods

@@ -1,0 +1,47 @@
+#include "pipeline/picture_mean.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+TEST(PictureMean, IsThatOfAllPictures) {
+  PictureMean mean;
+  EXPECT_TRUE(mean.mean().pixels.empty());
+  for (int k = 1; k <= 3; ++k) mean.add(image::Image(2, 1, Rgb(static_cast<float>(k))));
+  EXPECT_EQ(mean.count(), 3u);
+  EXPECT_NEAR(mean.mean().at(1, 0).g, 2, 1e-6f);
+}
+
+// Pictures of 1 with Gaussian noise σ: the mean of n is off by σ √(2/π / n) on average, whether halves are
+// of equal size or not.
+TEST(PictureMean, StatesTheNoiseOfTheMean) {
+  for (const int count : {2, 3, 8, 9}) {
+    PictureMean mean;
+    for (int k = 0; k < count; ++k) {
+      Rng rng(1, Stage::test, static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(count));
+      image::Image picture(100, 100);
+      for (Rgb& p : picture.pixels)
+        for (int c = 0; c < 3; ++c) p[c] = 1 + 0.2f * static_cast<float>(rng.next_gaussian());
+      mean.add(picture);
+    }
+    double off = 0;
+    for (const Rgb& p : mean.mean().pixels)
+      for (int c = 0; c < 3; ++c) off += std::abs(static_cast<double>(p[c]) - 1) / 30000;
+    EXPECT_NEAR(mean.noise(), off, 0.03 * off) << count;
+    EXPECT_NEAR(off, 0.2 * std::sqrt(2 / 3.14159265 / count), 0.03 * off);
+  }
+}
+
+TEST(PictureMean, NothingIsKnownOfOnePicture) {
+  PictureMean mean;
+  mean.add(image::Image(2, 2, Rgb(1)));
+  EXPECT_EQ(mean.noise(), 0);
+}
+
+}  // namespace
+}  // namespace lumirank::pipeline
