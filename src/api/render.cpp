@@ -79,7 +79,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     methods::require_capabilities(*task.info, transport::SceneMatrix::kCapabilities);
     task.method = task.info->make(settings.method.parameters);
     if (const std::string text = pipeline::error_not_aimed_at(*task.info, settings.method.target_error);
-        !text.empty())
+        !text.empty() && !passes)
       sinks.warn(text);
     pipeline::require_countable(pixels_of(task.view) * settings.view.spp_or_default());
     const double memory = memory_of(task.view, settings, pipeline::lights_for(*task.info, settings));

@@ -23,7 +23,7 @@
 namespace lumirank::pipeline {
 namespace {
 
-constexpr int kDefaultPasses = 16, kMaxPasses = 65536;
+constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
 // Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
 // them. More of them in one pass are fewer passes, which have as many altogether.
 constexpr double kPixelsPerLight = 12;
@@ -195,14 +195,14 @@ class PassRun {
       choices_.record("film_divisor", divisor);
       if (divisor > 1) view_ = smaller(task_.view, static_cast<int>(divisor));
     }
-    wanted_ = asked_.passes > 0                           ? asked_.passes
-              : timed() || asked_.method.target_error > 0 ? kMaxPasses
-                                                          : asked_.view.spp.value_or(kDefaultPasses);
+    const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
+    as_asked_ = by_hand > 0;
+    wanted_ = as_asked_ ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPasses : kDefaultPasses;
     if (timed()) {
       if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
     }
-    double factor = asked_.passes > 0 || !timed() ? std::min(wanted_, kDefaultPasses)
-                                                  : std::clamp(left() / pace(), 1.0, 16.0);
+    const double factor =
+        as_asked_ || !timed() ? std::min(wanted_, kDefaultPasses) : std::clamp(left() / pace(), 1.0, 16.0);
     // By halves and doubles, so that the clock decides one number that a repetition can be told.
     auto doublings = static_cast<std::int64_t>(std::lround(std::log2(std::max(1.0, factor))));
     if (timed()) {
@@ -214,6 +214,7 @@ class PassRun {
 
   // A film of half the width and height, enlarged, is better than none.
   void choose_size() {
+    const double whole = expected_.total() * (1 + rest_share());  // a pass of the whole film
     int divisor = 1;
     const bool may = is_whole_film(task_.view);
     while (may && divisor < kMaxDivisorOfPasses && expected_.total() > left()) {
@@ -222,13 +223,18 @@ class PassRun {
       expected_.by_pixel /= 4;
     }
     choices_.record("film_divisor", divisor);
-    if (divisor > 1 || expected_.total() > left()) {
-      shortage_ = "the budget of " + pass_number("%.3g s", asked_.time) + " is short for this view" +
-                  (divisor > 1 ? ": rendered with 1/" + std::to_string(divisor) +
-                                     " of its width and height, and enlarged"
-                               : std::string{});
-      sinks_.warn(shortage_);
-    }
+    const double left_now = left();
+    if (divisor == 1 && expected_.total() <= left_now) return;
+    const double enough = task_.build_seconds + denoiser_seconds_ + kFewPasses * whole;
+    const std::string budget = pass_number("%.3g s", asked_.time);
+    shortage_ = asked_.time < task_.build_seconds
+                    ? "building the scene took " + pass_number("%.2g s", task_.build_seconds) +
+                          ", and the budget of " + budget + " is over"
+                    : "the budget of " + budget + " is short for this view";
+    if (divisor > 1)
+      shortage_ += ": rendered with 1/" + std::to_string(divisor) + " of its width and height, and enlarged";
+    shortage_ += "; about " + pass_number("%.2g s", enough) + " would do";
+    sinks_.warn(shortage_);
   }
 
   double end() const { return 0.98 * asked_.time - denoiser_seconds_; }
@@ -242,7 +248,7 @@ class PassRun {
     if (passes_ == 0) return true;
     if (asked_.method.target_error > 0 && passes_ >= 4 && mean_.noise() < asked_.method.target_error)
       return false;
-    return !timed() || replays() || pace() < left();
+    return !timed() || replays() || as_asked_ || pace() < left();
   }
 
   bool pass(int number) {
@@ -353,7 +359,7 @@ class PassRun {
     numbers["passes"] = passes_;
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
-    if (passes_ > 1) numbers["error.noise"] = mean_.noise();
+    if (passes_ > 1) numbers["error.noise"] = numbers["error.estimate"] = mean_.noise();
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
@@ -362,6 +368,7 @@ class PassRun {
         seconds_.contains("denoise") ? "Open Image Denoise " + denoiser_->version() : "none";
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
+    if (passes_ > 1) result_.report.notes["error.of"] = "the noise of all passes, before a denoiser";
     of_all_passes(result_.report);
     seconds_["total"] = task_.timer.seconds();
     result_.report.seconds = seconds_;
@@ -392,6 +399,7 @@ class PassRun {
   PassSeconds expected_;
   double pace_ = 0, clamp_factor_ = 1;
   int wanted_ = 1, passes_ = 0;
+  bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
   PictureMean mean_, emission_, albedo_, normal_;  // the first: of what surfaces send
   image::Image emission_now_, albedo_now_, normal_now_;

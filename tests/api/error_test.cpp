@@ -106,7 +106,7 @@ TEST(StatedError, IsUnderTheTargetAndTheSameOnOneTwoAndFourThreads) {
   settings.traced.rest = RestOfPaths::skip;
   settings.view.width = 64, settings.view.height = 48;
   settings.lights.count = 10000;
-  settings.method.target_error = 0.08;
+  settings.method = {.name = "slice-cuts", .target_error = 0.08};
   settings.threads = 1;
   const RenderResult one = render(scene, settings);
   const json report = json::parse(one.report.json());
@@ -193,7 +193,8 @@ TEST(StatedError, MethodsThatDoNotAimAtItSaySo) {
       settings.method.target_error = error;
       warnings.clear();
       const json report = json::parse(render(scene, settings, sinks).report.json());
-      const bool expected = error > 0 && !info.error_parameters.empty();
+      // In passes, which row-guided sampling has by itself, any error is reached.
+      const bool expected = error > 0 && !info.error_parameters.empty() && info.name != "row-guided-sampling";
       ASSERT_EQ(warnings.size(), expected ? 1u : 0u) << info.name;
       if (!expected) continue;
       EXPECT_TRUE(report.contains("error.estimate")) << info.name;
