@@ -72,6 +72,7 @@ class Tracing {
 constexpr std::size_t kGroup = 64;
 // Of the paths, what finds out where they are needed, and what is spread evenly.
 constexpr float kPilot = 0.125f, kEven = 0.25f;
+constexpr int kFewestOfPilot = 4;
 constexpr float kMaxWeight = 64;  // times the average
 
 }  // namespace
@@ -89,7 +90,7 @@ std::vector<Rgb> trace_indirect(const world::World& world, const transport::Rece
   const std::size_t count = receivers.size(), groups = (count + kGroup - 1) / kGroup;
   std::vector<Rgb> radiance(count);
   std::vector<float> deviation(groups), wanted(groups);
-  const int pilot = std::max(4, static_cast<int>(kPilot * static_cast<float>(settings.paths)));
+  const int pilot = std::max(kFewestOfPilot, static_cast<int>(kPilot * static_cast<float>(settings.paths)));
   std::atomic<std::size_t> done{0};
   const auto for_groups = [&](const char* what, auto&& visit) {
     done = 0;
@@ -101,6 +102,12 @@ std::vector<Rgb> trace_indirect(const world::World& world, const transport::Rece
       sinks.report(what, static_cast<double>(done += end - begin) / static_cast<double>(groups));
     });
   };
+  // A pilot would take longer than these: each receiver has its own number.
+  if (settings.paths < kFewestOfPilot) {
+    for_groups("traced indirect",
+               [&](std::size_t, std::size_t i) { radiance[i] = tracing.at(i, settings.paths, false).mean; });
+    return radiance;
+  }
   // pathtrace::Paths in proportion to the deviation give the least squared error; the pilot's own are thrown
   // away, so that a number of paths knows nothing of the light that they bring.
   for_groups("pilot paths", [&](std::size_t g, std::size_t i) {
