@@ -38,6 +38,9 @@ constexpr double kRestOfPass = 0.6;
 constexpr int kDenoiserTrial = 192;
 constexpr double kDenoiserMargin = 1.25;
 constexpr int kCleanPasses = 32;
+// Film samples per pixel of all passes for what needs no receivers: edges of windows, features.
+constexpr double kEdgeSamples = 16;
+constexpr int kMaxEdgeSamples = 8;
 // Of fewer pixels a side it knows too little.
 constexpr int kSmallestDenoised = 16;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
@@ -97,7 +100,7 @@ class PassRun {
     recipe.light_seed = hash_ids(asked_.seed, Stage::passes, ~number);
     recipe.spp = 1;
     recipe.film_samples = asked_.view.film_samples.value_or(0);
-    recipe.first_hits = denoiser_ != nullptr;
+    recipe.first_hits = false;
     // What one light may show is the same for the mean of many passes as for one with all their lights.
     recipe.lights.clamp = kClampOfPass * asked_.lights.clamp * clamp_factor_;
     return recipe;
@@ -155,18 +158,13 @@ class PassRun {
     FilmParts sent = parts_;
     sent.emission = false;
     image = develop(film, estimate_.sums, sent);
-    if (parts_.emission)
-      emission_now_ = develop(film, std::vector<Rgb>(rows->size()),
-                              {.matrix = false, .traced_direct = false, .traced_indirect = false});
+    Recipe of_edges = recipe;
+    if (of_edges.film_samples == 0) of_edges.film_samples = edge_samples_;
+    edges_now_ = develop_edges({world, view, of_edges, *rows, traced});
     if (asked_.traced.compensate > 0) {
       RenderSettings of_pass = asked_;
       of_pass.seed = recipe.seed;
       if (!compensate_clamping(*prepared_, of_pass, image, sinks_)) return false;
-    }
-    if (denoiser_) {
-      albedo_now_ = develop_first_hits(film, [](const transport::FirstHit& f) { return f.albedo; });
-      normal_now_ = develop_first_hits(
-          film, [](const transport::FirstHit& f) { return Rgb(f.normal.x, f.normal.y, f.normal.z); });
     }
     lap("film", took.by_pixel);
     traced_ = std::move(traced);
@@ -208,6 +206,12 @@ class PassRun {
     if (timed()) {
       if (const auto earlier = choices_.earlier("clamp_doublings", 8)) doublings = *earlier;
       choices_.record("clamp_doublings", doublings);
+    }
+    edge_samples_ = std::clamp(static_cast<int>(kEdgeSamples / std::max(1.0, factor)), 1, kMaxEdgeSamples);
+    if (timed()) {
+      if (const auto earlier = choices_.earlier("edge_samples", kMaxEdgeSamples))
+        edge_samples_ = static_cast<int>(*earlier);
+      choices_.record("edge_samples", edge_samples_);
     }
     clamp_factor_ = std::pow(2.0, static_cast<double>(doublings));
   }
@@ -258,8 +262,8 @@ class PassRun {
     if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
     mean_.add(image);
-    if (parts_.emission) emission_.add(emission_now_);
-    if (denoiser_) albedo_.add(albedo_now_), normal_.add(normal_now_);
+    if (parts_.emission) emission_.add(edges_now_.emission);
+    if (denoiser_) albedo_.add(edges_now_.albedo), normal_.add(edges_now_.normal);
     pace_ = (pace_ * number + (clock_() - begin)) / (number + 1);
     const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
                                 : static_cast<double>(number + 1) / wanted_;
@@ -398,11 +402,11 @@ class PassRun {
   SharedSurvey survey_;
   PassSeconds expected_;
   double pace_ = 0, clamp_factor_ = 1;
-  int wanted_ = 1, passes_ = 0;
+  int wanted_ = 1, passes_ = 0, edge_samples_ = 2;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
   PictureMean mean_, emission_, albedo_, normal_;  // the first: of what surfaces send
-  image::Image emission_now_, albedo_now_, normal_now_;
+  EdgeImages edges_now_;
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;
   TracedLight traced_;
