@@ -23,7 +23,7 @@
 namespace lumirank::pipeline {
 namespace {
 
-constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
+constexpr int kFewPasses = 4, kWantedPasses = 3, kDefaultPasses = 16, kMaxPasses = 65536;
 // Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
 // them. More of them in one pass are fewer passes, which have as many altogether.
 constexpr double kPixelsPerLight = 12;
@@ -114,7 +114,8 @@ class PassRun {
   std::size_t lights_of(const View& view) const {
     if (asked_.lights.count) return *asked_.lights.count;
     const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
-    return std::clamp(static_cast<std::size_t>(pixels / kPixelsPerLight), kMinLightsOfPass, kMaxLightsOfPass);
+    return std::clamp(static_cast<std::size_t>(part_ * pixels / kPixelsPerLight), kMinLightsOfPass,
+                      kMaxLightsOfPass);
   }
 
   // One picture, and what its first hits know. False: cancelled.
@@ -199,6 +200,7 @@ class PassRun {
     if (timed()) {
       if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
     }
+    choose_part();
     const double factor =
         as_asked_ || !timed() ? std::min(wanted_, kDefaultPasses) : std::clamp(left() / pace(), 1.0, 16.0);
     // By halves and doubles, so that the clock decides one number that a repetition can be told.
@@ -241,7 +243,28 @@ class PassRun {
     sinks_.warn(shortage_);
   }
 
-  double end() const { return 0.98 * asked_.time - denoiser_seconds_; }
+  // Few passes leave much of the time over, and edges with few samples: then each has fewer lights, and draws
+  // fewer of them.
+  void choose_part() {
+    if (!timed() || asked_.method.parameters.contains("samples") || task_.info->name != kMethodOfPasses)
+      return;
+    std::int64_t eighths = 8;
+    if (const auto earlier = choices_.earlier("eighths_of_pass", 8))
+      eighths = *earlier;
+    else if (!as_asked_)
+      eighths = std::clamp(static_cast<std::int64_t>(8 * left() / (kWantedPasses * pace())), std::int64_t{3},
+                           std::int64_t{8});
+    choices_.record("eighths_of_pass", eighths);
+    if (eighths == 8) return;
+    part_ = static_cast<double>(eighths) / 8;
+    auto parameters = asked_.method.parameters;
+    parameters["samples"] = std::to_string(eighths);  // of eight by default
+    task_.method = task_.info->make(parameters);
+    // About half of what is done for each pixel is drawing lights.
+    expected_.fixed *= part_, expected_.by_pixel *= 0.5 + 0.5 * part_;
+  }
+
+  double end() const { return asked_.time - denoiser_seconds_; }
   double left() const { return end() - clock_(); }
   double pace() const { return std::max(1e-3, pace_ > 0 ? pace_ : expected_.total() * (1 + rest_share())); }
   double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
@@ -401,7 +424,7 @@ class PassRun {
   std::optional<RestTracing> rest_;
   SharedSurvey survey_;
   PassSeconds expected_;
-  double pace_ = 0, clamp_factor_ = 1;
+  double pace_ = 0, clamp_factor_ = 1, part_ = 1;
   int wanted_ = 1, passes_ = 0, edge_samples_ = 2;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;

@@ -26,7 +26,7 @@ namespace {
 using matrix::Index;
 
 struct GuidedSettings {
-  std::size_t samples = 12;
+  std::size_t samples = 8;
   std::size_t candidates = 1;
   std::size_t records = 256;
 };
