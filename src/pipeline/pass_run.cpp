@@ -61,6 +61,7 @@ class PassRun {
         previews_(static_cast<bool>(preview)),
         clock_([this] { return task_.timer.seconds(); }),
         view_(task_.view),
+        whole_(task_.view),
         parts_(wanted_parts(asked.view.only)) {
     seconds_["build"] = task_.build_seconds;
     if (!asked.choices.empty()) choices_ = methods::TimedChoices(asked.choices);
@@ -192,7 +193,7 @@ class PassRun {
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
       choices_.record("film_divisor", divisor);
-      if (divisor > 1) view_ = smaller(task_.view, static_cast<int>(divisor));
+      if (divisor > 1) view_ = smaller(whole_, static_cast<int>(divisor));
     }
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
     as_asked_ = by_hand > 0;
@@ -225,7 +226,7 @@ class PassRun {
     const bool may = is_whole_film(task_.view);
     while (may && divisor < kMaxDivisorOfPasses && expected_.total() > left()) {
       divisor *= 2;
-      view_ = smaller(task_.view, divisor);
+      view_ = smaller(whole_, divisor);
       expected_.by_pixel /= 4;
     }
     choices_.record("film_divisor", divisor);
@@ -323,6 +324,9 @@ class PassRun {
       sinks_.say("the picture keeps its noise, which a denoiser would take out: " + found.trouble);
       return;
     }
+    // A wider filter makes the noise of neighbors alike, and a denoiser takes it for shape then.
+    view_.sensor.film.filter = scenedesc::FilterDesc{.kind = scenedesc::FilterKind::box};
+    whole_ = view_;
     if (!timed()) return;
     const image::Image trial(kDenoiserTrial, kDenoiserTrial, Rgb(0.5f));
     const Timer timer;
@@ -416,7 +420,7 @@ class PassRun {
   PreviewThrottle throttle_;
   bool previews_;
   Clock clock_;
-  View view_;
+  View view_, whole_;  // as rendered, and of the size that was asked for
   FilmParts parts_;
   methods::TimedChoices choices_;
   std::shared_ptr<const denoise::Denoiser> denoiser_;
