@@ -183,7 +183,7 @@ class PassRun {
       PassSeconds took;
       const auto before = seconds_;
       if (!trace(~0ull, small, image, took)) throw Cancelled();
-      seconds_ = before;
+      seconds_ = before, cost_ = {};
       seconds_["pilot"] = took.total();
       const double shrunk = static_cast<double>(small.width) * static_cast<double>(small.height) /
                             (static_cast<double>(view_.width) * static_cast<double>(view_.height));

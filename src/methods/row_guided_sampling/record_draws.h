@@ -18,7 +18,7 @@ struct GuidedColumn {
 
 // A mixture of the distributions of the nearest records, with and without visibility, and of the columns'
 // power: where one of them knows nothing of a column, another does, and no column that has power is out of
-// reach (importance caching: Georgiev, Křivánek, Popov and Slusallek 2012, section 4).
+// reach (importance caching: Georgiev, Křivánek, Popov and Slusallek 2012).
 class RecordMixture {
  public:
   RecordMixture(const LightRecords& records, matrix::Index row);

@@ -5,6 +5,11 @@
 // al., "Importance Caching for Complex Illumination", 2012). So errors are noise that differs from receiver
 // to receiver, without any shape that a denoiser or an eye takes for something.
 //
+// Deviations from Georgiev et al.: one draw from a mixture with fixed shares where they weigh four
+// distributions by the α-max heuristic, which needs each distribution's own draws; no bounded
+// distribution, for which the unoccluded one and power stand in; records are rows of the
+// picture, half of them where places and directions are far from all others', and not refined by error.
+//
 // Unbiased: records decide probabilities, and every column that has power can be drawn.
 #include "methods/row_guided_sampling/row_guided_sampling.h"
 
