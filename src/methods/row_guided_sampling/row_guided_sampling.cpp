@@ -1,9 +1,9 @@
 // Row-guided sampling. A sampled row of the matrix is an exact record of which columns matter at its place,
 // visibility included. Every receiver draws `samples` columns of its own, from a mixture of the records near
-// it; many candidates first, of which those stay that matter at this very receiver, by what its own entries
-// without visibility say (importance resampling: Talbot, Cline and Egbert 2005; with records: Georgiev et
-// al., "Importance Caching for Complex Illumination", 2012). So errors are noise that differs from receiver
-// to receiver, without any shape that a denoiser or an eye takes for something.
+// it; with `candidates`, more first, of which those stay that matter at this very receiver, by what its own
+// entries without visibility say (importance resampling: Talbot, Cline and Egbert 2005; with records:
+// Georgiev et al., "Importance Caching for Complex Illumination", 2012). So errors are noise that differs
+// from receiver to receiver, without any shape that a denoiser or an eye takes for something.
 //
 // Deviations from Georgiev et al.: one draw from a mixture with fixed shares where they weigh four
 // distributions by the α-max heuristic, which needs each distribution's own draws; no bounded
