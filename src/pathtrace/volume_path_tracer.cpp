@@ -58,7 +58,11 @@ struct VolumePathTracer::Walk {
 
 VolumePathTracer::VolumePathTracer(const world::World& world, std::uint64_t seed, int max_depth,
                                    int eye_medium)
-    : world_(world), lights_(world), seed_(seed), max_depth_(max_depth), eye_medium_(eye_medium) {}
+    : world_(world),
+      lights_(world.light_sampler()),
+      seed_(seed),
+      max_depth_(max_depth),
+      eye_medium_(eye_medium) {}
 
 Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
   Walk walk{.random = SampleStream(seed_, Stage::reference, pixel, sample),

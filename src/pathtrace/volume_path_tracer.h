@@ -41,7 +41,7 @@ class VolumePathTracer {
   bool survives(Walk& walk) const;
 
   const world::World& world_;
-  world::LightSampler lights_;
+  const world::LightSampler& lights_;
   std::uint64_t seed_;
   int max_depth_, eye_medium_;
 };

@@ -90,7 +90,11 @@ bool is_traced(const transport::Receivers& receivers, std::size_t i, float below
 
 DirectTracing::DirectTracing(const world::World& world, const transport::Receivers& receivers,
                              const TracedDirectSettings& settings)
-    : world_(world), receivers_(receivers), settings_(settings), lights_(world), sums_(receivers.size()) {}
+    : world_(world),
+      receivers_(receivers),
+      settings_(settings),
+      lights_(world.light_sampler()),
+      sums_(receivers.size()) {}
 
 bool DirectTracing::add(int samples, const Sinks& sinks) {
   std::atomic<std::size_t> done{0};

@@ -38,7 +38,7 @@ class DirectTracing {
   const world::World& world_;
   const transport::Receivers& receivers_;
   TracedDirectSettings settings_;
-  world::LightSampler lights_;
+  const world::LightSampler& lights_;
   std::vector<Rgb> sums_;
   int samples_ = 0;
 };

@@ -1,9 +1,12 @@
 // Implementation of World.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
+#include "world/light_sampler.h"
 #include "world/world.h"
 
 namespace lumirank::world {
@@ -29,6 +32,8 @@ struct World::Impl {
   Bounds3f bounds;
   Units units;
   WorldInfo info;
+  std::once_flag sampler_made;
+  std::unique_ptr<const LightSampler> sampler;
 
   // Everything at a point of a triangle; normals towards the outside.
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;

@@ -33,6 +33,10 @@ int World::medium_around(geometry::Ray ray, int fallback) const {
   return fallback;
 }
 int World::environment() const { return impl_->environment; }
+const LightSampler& World::light_sampler() const {
+  std::call_once(impl_->sampler_made, [this] { impl_->sampler = std::make_unique<LightSampler>(*this); });
+  return *impl_->sampler;
+}
 const Bounds3f& World::bounds() const { return impl_->bounds; }
 const std::vector<std::uint64_t>& World::placement_ids() const { return impl_->placement_ids; }
 const Units& World::units() const { return impl_->units; }

@@ -31,6 +31,8 @@ struct BuildOptions {
   bool media = true;
   // `before` is traced no more: see geometry::RayScene::Sharing.
   bool refit = false;
+  // Light passes panes (panes.h) without being bent, by shadow rays as well.
+  bool straight_panes = false;
 };
 
 struct WorldInfo {
@@ -38,6 +40,7 @@ struct WorldInfo {
   std::size_t meshes_left_out = 0;  // without a triangle, or without their file; not among `meshes`
   std::size_t segments = 0;         // of fibers
   std::size_t textures = 0, materials = 0, media = 0, emitters = 0;
+  std::size_t panes = 0;  // shapes that light passes straight because BuildOptions::straight_panes says so
   // Meshes, textures and acceleration structure, without what is shared with BuildOptions::before.
   std::size_t memory_bytes = 0;
 };
@@ -49,6 +52,8 @@ struct SurfaceHit {
   int material = 0;
   int emitter = -1;  // index into emitters(), -1: does not shine
 };
+
+class LightSampler;
 
 class World {
  public:
@@ -97,6 +102,9 @@ class World {
   // emitters::sample_direct.
   emitters::DirectSample sample_direct(int emitter, Vec3f point, float u1, Vec2f u2) const;
   emitters::Emission sample_emission(int emitter, float u1, Vec2f u_position, Vec2f u_direction) const;
+  // Made at first use, for it takes a tenth of a second where many triangles shine; thread-safe. The world
+  // may not be moved afterwards.
+  const LightSampler& light_sampler() const;
 
   // Where a ray from `p` should start so that it does not meet its own surface: offset along ng to the side
   // of `direction`. Where ng is zero (Closure::is_fiber()) along `direction`, of any length.

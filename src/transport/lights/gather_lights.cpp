@@ -99,7 +99,7 @@ class GatherLighting {
   }
 
   void add_direct() {
-    const world::LightSampler lights(world_);
+    const world::LightSampler& lights = world_.light_sampler();
     parallel_for(placed_.size(), kSamplesAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         if (placed_[k].there) add_direct(lights, k);
