@@ -42,6 +42,9 @@ enum class SphereSamples { overlap, cone };   // by the overlap of lobes and con
 enum class DirectLight { automatic, matrix, traced };
 // Paths that columns cannot carry; automatic: traced where a pilot finds that they matter.
 enum class RestOfPaths { automatic, skip, trace };
+// Flat, thin sheets of smooth glass: light goes straight on through them, also to what is lit; or as the
+// interfaces bend it.
+enum class Panes { straight, exact };
 // Which paths a reference has: all, those that columns carry, or the others.
 enum class ReferencePaths { all, columns, rest };
 // automatic: where the library is found.
@@ -105,6 +108,7 @@ struct MethodSettings {
 struct TracedLightSettings {
   DirectLight direct = DirectLight::automatic;
   RestOfPaths rest = RestOfPaths::automatic;
+  Panes panes = Panes::straight;  // of a single picture
   int compensate = 0;  // paths per pixel that give back what clamping took from indirect light; 0: none
   // Local compensation: paths per receiver for the light that virtual lights would blur or lose; 0: none. It
   // takes all light of lobes with a roughness below local_sharp and, where lights are spherical, what comes

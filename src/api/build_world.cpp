@@ -32,6 +32,7 @@ std::shared_ptr<const world::World> build_world(const Scene& scene, const Sinks&
   options.before = extras.refit ? extras.refit : extras.before;
   options.media = extras.media;
   options.refit = extras.refit != nullptr;
+  options.straight_panes = extras.straight_panes;
   if (extras.before) options.units = extras.before->units();
   std::shared_ptr<const world::World> world;
   pipeline::within_memory("the scene is too large for this machine", [&] {

@@ -24,6 +24,7 @@ struct BuildExtras {
   // Instead, in its own units: that is traced no more, and Embree's structures are refitted where only
   // vertices have moved.
   const world::World* refit = nullptr;
+  bool straight_panes = false;
 };
 
 // Reports its warnings.

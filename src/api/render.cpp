@@ -94,7 +94,9 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
       return;
     }
     task.world = api::build_world(scene, sinks,
-                                  {.media = in_media, .refit = shot.refit ? shot.refit->get() : nullptr});
+                                  {.media = in_media,
+                                   .refit = shot.refit ? shot.refit->get() : nullptr,
+                                   .straight_panes = settings.traced.panes == Panes::straight});
     if (shot.refit) *shot.refit = task.world;
     task.build_seconds = task.timer.seconds();
     if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty())

@@ -70,11 +70,11 @@ enum class LobeSort : std::uint8_t {
   KIND(hair_diffuse, fiber)                                                                                     \
   /* Kajiya and Kay's, normalized; alpha_u = exponent, alpha_v = hair_specular_scale() */                       \
   KIND(hair_specular, fiber)                                                                                    \
-  /* color · F by `fresnel`; variant kThinSlab: 2F/(1 + F) */                                                   \
+  /* color · F by `fresnel`; of sheets sheet_reflectance() */                                                    \
   KIND(delta_reflect, delta_reflects)                                                                           \
   /* color · (1 - F), refracts by eta */                                                                        \
   KIND(delta_transmit, delta_through)                                                                           \
-  /* Goes straight on: null surfaces, cut-outs: color; variant kThinSlab: color · (1 - 2F/(1 + F)) */           \
+  /* Goes straight on: null surfaces, cut-outs: color; of sheets color · (1 - sheet_reflectance()) */           \
   KIND(delta_pass, delta_through)
 // clang-format on
 
@@ -95,7 +95,9 @@ inline bool shines_through(LobeKind kind) { return sort_of(kind) == LobeSort::sh
 enum class FresnelKind : std::uint8_t { none, dielectric, conductor, schlick };
 enum class NormalDistribution : std::uint8_t { beckmann, ggx };
 
-inline constexpr std::uint8_t kThinSlab = 1;
+// Variants of delta lobes that let light pass unbent: a thin slab as a whole, and one face of a slab that has
+// two (sheet_reflectance() in fresnel.h).
+inline constexpr std::uint8_t kThinSlab = 1, kSlabFace = 2;
 
 // A dielectric layer over a lobe, as seen from outside (coat.h). 52 bytes.
 struct Coat {
@@ -130,7 +132,7 @@ struct Lobe {
   LobeKind kind = LobeKind::diffuse;
   FresnelKind fresnel = FresnelKind::none;
   NormalDistribution distribution = NormalDistribution::ggx;
-  std::uint8_t variant = 0;  // ward's variant; kThinSlab for delta lobes of a thin dielectric
+  std::uint8_t variant = 0;  // ward's variant; kThinSlab or kSlabFace for delta lobes of sheets
   Rgb color{0};              // reflectance or scale, mixture weights multiplied in
   float alpha_u = 0, alpha_v = 0;
   float eta = 1;                         // inside over outside, for wo on the outside

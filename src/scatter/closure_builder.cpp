@@ -12,7 +12,7 @@ namespace {
 // Whether the lobe's index is read from wo's side, so that turning the frame inverts it.
 bool index_has_a_side(const Lobe& lobe) {
   const LobeFamily& family = family_of(lobe.kind);
-  if (family.fresnel) return lobe.fresnel == FresnelKind::dielectric && lobe.variant != kThinSlab;
+  if (family.fresnel) return lobe.fresnel == FresnelKind::dielectric && lobe.variant == 0;
   return family.refracts;
 }
 
@@ -50,7 +50,7 @@ void ClosureBuilder::use_frame(const SurfacePoint& at, float weight) {
 }
 
 void ClosureBuilder::push(Lobe lobe, const SurfacePoint& at, float weight) {
-  if (lobe.kind != LobeKind::delta_pass || lobe.variant == kThinSlab) use_frame(at, weight);
+  if (lobe.kind != LobeKind::delta_pass || lobe.variant != 0) use_frame(at, weight);
   lobe.color *= weight;
   if (family_of(lobe.kind).two_colors) lobe.conductor_eta *= weight;
   if (index_has_a_side(lobe) && dot(at.ng, out_.ng) < 0) lobe.eta = 1 / lobe.eta;
@@ -113,15 +113,28 @@ void add_lobes(const DielectricMaterial& m, ClosureBuilder& out, const SurfacePo
   out.push(lobe, at, weight);
 }
 
-void add_lobes(const ThinDielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+namespace {
+
+template <typename Sheet>
+void add_sheet(const Sheet& m, std::uint8_t variant, ClosureBuilder& out, const SurfacePoint& at,
+               float weight) {
   Lobe lobe = lobe_of(LobeKind::delta_reflect, reflectance(out.textures(), m.specular_reflectance, at.uv));
   lobe.fresnel = FresnelKind::dielectric;
-  lobe.variant = kThinSlab;
+  lobe.variant = variant;
   lobe.eta = m.eta;
   out.push(lobe, at, weight);
   lobe.kind = LobeKind::delta_pass;
   lobe.color = reflectance(out.textures(), m.specular_transmittance, at.uv);
   out.push(lobe, at, weight);
+}
+
+}  // namespace
+
+void add_lobes(const ThinDielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  add_sheet(m, kThinSlab, out, at, weight);
+}
+void add_lobes(const SlabFaceMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  add_sheet(m, kSlabFace, out, at, weight);
 }
 
 void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {

@@ -63,6 +63,9 @@ inline Rgb fresnel_schlick(float cos_i, Rgb f0) {
 
 // Reflectance of a thin slab with all internal reflections, from that of one interface: 2R/(1 + R).
 inline float fresnel_thin(float r) { return 2 * r / (1 + r); }
+// That of a sheet that lets light pass unbent, or of one of its two faces, of which each has that of one
+// interface: together, with all reflections between them, they are the slab.
+inline float sheet_reflectance(bool whole, float r) { return whole ? fresnel_thin(r) : r; }
 
 // Reflectance of the interface for diffuse light: 2∫F(μ)μ dμ. `eta` as in fresnel_dielectric(): light on the
 // side with index 1, the other side has index eta. Closed form (Walsh 1926; as in Duntley 1942).

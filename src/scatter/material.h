@@ -89,6 +89,14 @@ struct ThinDielectricMaterial {
 };
 void add_lobes(const ThinDielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
+// One of the two faces of a slab through which light goes straight; no format has it.
+struct SlabFaceMaterial {
+  static constexpr bool transmits = true;
+  float eta;
+  ColorInput specular_reflectance, specular_transmittance;
+};
+void add_lobes(const SlabFaceMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct PlasticMaterial {
   float eta;
   ColorInput diffuse_reflectance, specular_reflectance;
@@ -217,7 +225,7 @@ using Material =
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
                  PrincipledThinMaterial, DiffuseTransmitterMaterial, MeasuredMaterial, CoatingMaterial,
                  SheenMaterial, HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
-                 MixtureMaterial>;
+                 MixtureMaterial, SlabFaceMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

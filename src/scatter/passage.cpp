@@ -16,6 +16,7 @@ struct PassageVisitor {
   }
   Passage operator()(const NullMaterial&) const { return Passage::attenuating; }
   Passage operator()(const ThinDielectricMaterial&) const { return Passage::attenuating; }
+  Passage operator()(const SlabFaceMaterial&) const { return Passage::attenuating; }
   Passage operator()(const CoatingMaterial& m) const {
     // What a layer takes from the light in a cut-out's holes is no binary matter.
     return set.passage(m.nested) == Passage::opaque ? Passage::opaque : Passage::attenuating;
@@ -51,8 +52,11 @@ struct TransmittanceVisitor {
     return Rgb(0);
   }
   Rgb operator()(const NullMaterial&) const { return Rgb(1); }
-  Rgb operator()(const ThinDielectricMaterial& m) const {
-    const float r = fresnel_thin(fresnel_dielectric(std::abs(dot(w, at.shading.n)), m.eta));
+  Rgb operator()(const ThinDielectricMaterial& m) const { return through_sheet(m, true); }
+  Rgb operator()(const SlabFaceMaterial& m) const { return through_sheet(m, false); }
+  template <typename Sheet>
+  Rgb through_sheet(const Sheet& m, bool whole) const {
+    const float r = sheet_reflectance(whole, fresnel_dielectric(std::abs(dot(w, at.shading.n)), m.eta));
     return reflectance(set.textures, m.specular_transmittance, at.uv) * (1 - r);
   }
   Rgb operator()(const CoatingMaterial& m) const {

@@ -76,6 +76,10 @@ struct EnumNames<RestOfPaths> {
   static constexpr const char* names[] = {"auto", "skip", "trace"};
 };
 template <>
+struct EnumNames<Panes> {
+  static constexpr const char* names[] = {"straight", "exact"};
+};
+template <>
 struct EnumNames<Denoise> {
   static constexpr const char* names[] = {"auto", "on", "off"};
 };

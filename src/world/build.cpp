@@ -14,6 +14,7 @@
 #include "world/media_builder.h"
 #include "world/mesh_store.h"
 #include "world/notes.h"
+#include "world/panes.h"
 #include "world/placer.h"
 #include "world/surface.h"
 #include "world/texture_builder.h"
@@ -70,6 +71,7 @@ class World::Builder {
         before_(options.before),
         refit_(options.refit),
         with_media_(options.media),
+        straight_panes_(options.straight_panes),
         sinks_(sinks),
         notes_(warnings, options.strict),
         textures_(desc),
@@ -163,8 +165,27 @@ class World::Builder {
     w_.info.memory_bytes += media.memory_bytes();
   }
 
+  // Glass of a pane becomes a sheet of which each of the two faces does its part.
+  void straighten(std::size_t i) {
+    const auto& placement = geometry_.placements[i];
+    auto& materials = w_.materials.materials;
+    const auto* glass = std::get_if<scatter::DielectricMaterial>(&materials[index_of(material_of_[i])]);
+    if (!glass || !glass->smooth || (with_media_ && geometry_.placed[i].shape->media.divides) ||
+        !is_made_of_panes(geometry_.meshes[placement.mesh], placement.to_world))
+      return;
+    const auto [known, is_new] =
+        face_of_pane_.try_emplace(material_of_[i], static_cast<int>(materials.size()));
+    material_of_[i] = known->second;
+    ++w_.info.panes;
+    if (is_new)
+      materials.push_back(
+          scatter::SlabFaceMaterial{glass->eta, glass->specular_reflectance, glass->specular_transmittance});
+  }
+  static std::size_t index_of(int material) { return static_cast<std::size_t>(material); }
+
   void set_placement(std::size_t i) {
     auto& placement = geometry_.placements[i];
+    if (straight_panes_) straighten(i);
     placement.material = static_cast<std::uint32_t>(material_of_[i]);
     placement.blocking = blocking(w_.materials.passage(material_of_[i]));
     // Behind the holes of a cut-out that divides media is another one, which rays must learn.
@@ -261,13 +282,14 @@ class World::Builder {
   const sd::SceneDesc& desc_;
   std::optional<Units> given_units_;
   const World* before_;
-  bool refit_, with_media_;
+  bool refit_, with_media_, straight_panes_;
   const Sinks& sinks_;
   Notes notes_;
   MeshStore store_;
   TextureBuilder textures_;
   MaterialBuilder materials_;
   EmitterNames names_;
+  std::map<int, int> face_of_pane_;   // materials of panes: what stands for them
   std::map<std::string, int> named_;  // placements by the ids of their shapes
   std::vector<Placed> placed_;
   Geometry geometry_;

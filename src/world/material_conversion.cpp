@@ -15,7 +15,8 @@ namespace sc = scatter;
 namespace {
 
 // The material of a description: the alternative in the same place.
-static_assert(std::variant_size_v<sd::BsdfKind> == std::variant_size_v<sc::Material>);
+// The last one, faces of panes, no format has.
+static_assert(std::variant_size_v<sd::BsdfKind> + 1 == std::variant_size_v<sc::Material>);
 template <typename Desc, std::size_t k = 0>
 constexpr std::size_t place_of_kind() {
   if constexpr (std::is_same_v<Desc, std::variant_alternative_t<k, sd::BsdfKind>>)

@@ -161,6 +161,8 @@ std::vector<BsdfCase> build() {
   list.push_back(glass("dielectric_inverted", dielectric(kGgx, 0.75f, 0.2f, 0.2f)));
   list.push_back(single("thindielectric", ThinDielectricMaterial{1.5f, gray(1), gray(1)}));
   list.back().lossless = list.back().inside_too = true;
+  list.push_back(single("slab_face", SlabFaceMaterial{1.5f, gray(1), gray(1)}));
+  list.back().lossless = list.back().inside_too = true;
   list.push_back(single("plastic_smooth", plastic(kGgx, 0, false)));
   list.push_back(single("plastic_smooth_nonlinear", plastic(kGgx, 0, true)));
   list.push_back(single("plastic_beckmann_0.1", plastic(kBeckmann, 0.1f, false)));

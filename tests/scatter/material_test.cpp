@@ -208,16 +208,21 @@ TEST(Passage, OfEveryNesting) {
                  TwoSidedMaterial{5, 5},                             // 6
                  TwoSidedMaterial{0, 5},                             // 7
                  MixtureMaterial{{{number(0.5f), false, 0}, {number(0.5f), false, 1}}},  // 8
-                 TwoSidedMaterial{0, 0}});                                               // 9
-  const Passage expected[] = {
-      Passage::opaque, Passage::attenuating, Passage::attenuating, Passage::opaque,      Passage::attenuating,
-      Passage::cutout, Passage::cutout,      Passage::attenuating, Passage::attenuating, Passage::opaque};
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(set.passage(i), expected[i]) << i;
+                 TwoSidedMaterial{0, 0},                                                 // 9
+                 SlabFaceMaterial{1.5f, gray(1), gray(0.5f)}});                          // 10
+  const Passage expected[] = {Passage::opaque, Passage::attenuating, Passage::attenuating,
+                              Passage::opaque, Passage::attenuating, Passage::cutout,
+                              Passage::cutout, Passage::attenuating, Passage::attenuating,
+                              Passage::opaque, Passage::attenuating};
+  for (int i = 0; i < 11; ++i) EXPECT_EQ(set.passage(i), expected[i]) << i;
   const SurfacePoint at = point_with_normal(kUp);
   EXPECT_EQ(set.transmittance(1, at, kTilted), Rgb(1));
   const float r = fresnel_dielectric(0.6f, 1.5f), thin = 2 * r / (1 + r);
   EXPECT_NEAR(set.transmittance(2, at, kTilted).g, 0.5f * (1 - thin), 1e-6f);
   EXPECT_NEAR(set.transmittance(2, at, -kTilted).g, 0.5f * (1 - thin), 1e-6f);
+  EXPECT_NEAR(set.transmittance(10, at, kTilted).g, 0.5f * (1 - r), 1e-6f);
+  // Two faces and all reflections between them are the slab.
+  EXPECT_NEAR((1 - r) * (1 - r) / (1 - r * r), 1 - thin, 1e-6f);
   EXPECT_EQ(set.transmittance(7, at, kUp), Rgb(0));
   EXPECT_EQ(set.transmittance(7, at, -kUp), Rgb(0.5f));
   EXPECT_EQ(set.transmittance(8, at, kUp), Rgb(0.5f));

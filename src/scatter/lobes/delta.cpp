@@ -11,12 +11,14 @@ float no_pdf(LobeView, Vec3f, Vec3f) { return 0; }
 bool no_sample(LobeView, Vec3f, Vec2f, Vec3f&) { return false; }
 float no_width(const Lobe&) { return 0; }
 
+float of_sheet(const Lobe& lobe, Vec3f wo) {
+  return sheet_reflectance(lobe.variant == kThinSlab, fresnel_dielectric(wo.z, lobe.eta));
+}
+
 bool reflect_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
   const Lobe& lobe = view.lobe;
   wi = {-wo.x, -wo.y, wo.z};
-  coefficient =
-      lobe.color * (lobe.variant == kThinSlab ? Rgb(fresnel_thin(fresnel_dielectric(wo.z, lobe.eta)))
-                                              : lobe_fresnel(view, wo.z));
+  coefficient = lobe.color * (lobe.variant == 0 ? lobe_fresnel(view, wo.z) : Rgb(of_sheet(lobe, wo)));
   return true;
 }
 
@@ -33,13 +35,13 @@ bool pass_direction(LobeView view, Vec3f wo, Vec3f& wi, Rgb& coefficient) {
   const Lobe& lobe = view.lobe;
   wi = -wo;
   coefficient = lobe.color;
-  if (lobe.variant == kThinSlab) coefficient *= 1 - fresnel_thin(fresnel_dielectric(wo.z, lobe.eta));
+  if (lobe.variant != 0) coefficient *= 1 - of_sheet(lobe, wo);
   return true;
 }
 
 // A rough layer makes a mirror under it rough.
 void widen_mirror(Lobe& lobe, const Widening& by) {
-  if (lobe.variant == kThinSlab) return;
+  if (lobe.variant != 0) return;
   lobe.kind = LobeKind::microfacet_reflect;
   lobe.distribution = by.distribution;
   lobe.alpha_u = lobe.alpha_v = std::max(kMinAlpha, by(0));

@@ -1,0 +1,16 @@
+// Panes: flat sheets of smooth glass, thin against their size. Light that passes them comes out in the
+// direction in which it went in, a little beside; letting it go straight on instead costs next to nothing of
+// the picture, and shadow rays can pass.
+#pragma once
+
+#include "base/transform.h"
+#include "geometry/mesh.h"
+
+namespace lumirank::world {
+
+// Whether all parts of the mesh that hang together, or all of it taken as one (two faces without a rim), are
+// plates: two parallel faces that look apart, of about the same size, with nearly all of the area, and apart
+// by at most a tenth of the root of that size.
+bool is_made_of_panes(const geometry::TriangleMesh& mesh, const Transform& to_world);
+
+}  // namespace lumirank::world

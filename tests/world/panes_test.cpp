@@ -1,0 +1,88 @@
+// Which glass is a pane, and that light passes it straight.
+#include "world/panes.h"
+
+#include <gtest/gtest.h>
+
+#include "world/light_sampler.h"
+#include "world/scene_maker.h"
+
+namespace lumirank::world {
+namespace {
+
+using namespace test;
+
+geometry::TriangleMesh cube() {
+  geometry::TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k)
+    mesh.positions.push_back({k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f});
+  mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  return mesh;
+}
+
+// Both meshes, the second one moved.
+geometry::TriangleMesh both(geometry::TriangleMesh a, const geometry::TriangleMesh& b,
+                            const Transform& moved) {
+  const auto first = static_cast<std::uint32_t>(a.positions.size());
+  for (const Vec3f p : b.positions) a.positions.push_back(moved.point(p));
+  for (const std::uint32_t i : b.indices) a.indices.push_back(first + i);
+  return a;
+}
+
+geometry::TriangleMesh quad() {
+  geometry::TriangleMesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+TEST(Panes, AreThinPlatesHoweverTheyStand) {
+  const Transform turned = Transform::rotate(1, 2, 3, 40) * Transform::translate(5, 6, 7);
+  EXPECT_TRUE(is_made_of_panes(cube(), turned * Transform::scale(1, 0.6, 0.005)));
+  EXPECT_TRUE(is_made_of_panes(cube(), turned * Transform::scale(0.02, 0.5, 3)));
+  EXPECT_FALSE(is_made_of_panes(cube(), turned * Transform::scale(1, 1, 0.4)));
+  EXPECT_FALSE(is_made_of_panes(cube(), turned));
+  EXPECT_FALSE(is_made_of_panes(cube(), Transform::scale(1, 0.01, 0.01)));  // a rod
+}
+
+TEST(Panes, StandTogetherInOneMesh) {
+  const Transform thin = Transform::scale(1, 1, 0.01);
+  geometry::TriangleMesh sheet = both({}, cube(), thin);
+  EXPECT_TRUE(is_made_of_panes(both(sheet, cube(), Transform::translate(3, 0, 1) * thin), {}));
+  EXPECT_TRUE(
+      is_made_of_panes(both(sheet, cube(), Transform::translate(0, 0, 0.1) * thin), {}));  // glazed twice
+  EXPECT_FALSE(is_made_of_panes(both(sheet, cube(), Transform::translate(3, 0, 1)), {}));  // beside a block
+}
+
+TEST(Panes, NeedTwoFacesThatLookApart) {
+  const Transform behind = Transform::translate(0, 0, -0.02);
+  const Transform away = behind * Transform::rotate(1, 0, 0, 180);
+  EXPECT_TRUE(is_made_of_panes(both(quad(), quad(), away), {}));
+  EXPECT_FALSE(is_made_of_panes(both(quad(), quad(), behind), {}));
+  EXPECT_FALSE(is_made_of_panes(quad(), {}));
+  EXPECT_FALSE(is_made_of_panes(both(quad(), quad(), away * Transform::scale(0.5, 0.5, 1)), {}));
+  EXPECT_FALSE(is_made_of_panes({}, {}));
+}
+
+TEST(Panes, LetShadowRaysPassWithWhatASlabLetsThrough) {
+  auto desc = empty_scene();
+  const int glass = add_bsdf(desc, sd::DielectricDesc{});
+  const int shape = add_shape(desc, sd::CubeDesc{}, Transform::scale(1, 1, 0.01));
+  desc.shapes[static_cast<std::size_t>(shape)].bsdf = glass;
+  const World bends = build(desc);
+  std::vector<sd::Warning> warnings;
+  BuildOptions options;
+  options.straight_panes = true;
+  const World passes = World::build(desc, options, warnings);
+  EXPECT_EQ(bends.info().panes, 0u);
+  EXPECT_EQ(passes.info().panes, 1u);
+  const Vec3f from{0, 0, -1}, up{0, 0, 1};
+  EXPECT_EQ(visible_fraction(bends, from, up, up, 2, 1), Rgb(0));
+  // Each face reflects 4 %; what goes to and fro between them is left to paths.
+  const float face = 0.04f;
+  const Rgb through = visible_fraction(passes, from, up, up, 2, 1);
+  EXPECT_NEAR(through.g, (1 - face) * (1 - face), 2e-3f);
+}
+
+}  // namespace
+}  // namespace lumirank::world
