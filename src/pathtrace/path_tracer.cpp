@@ -37,7 +37,7 @@ struct PathTracer::Walk {
 };
 
 PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
-    : world_(world), lights_(world), settings_(settings) {}
+    : world_(world), lights_(world.light_sampler()), settings_(settings) {}
 
 Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
   Walk walk{.random = SampleStream(settings_.seed, Stage::reference, pixel, sample),
@@ -63,6 +63,7 @@ Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, 
             .from = departure.from,
             .near = departure.near,
             .eta_scale = next.eta * next.eta};
+  if (walk.near) walk.ray.t_max = walk.near->most;
   finish(walk);
   return walk.sum.indirect;
 }
@@ -128,7 +129,7 @@ void PathTracer::keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hi
   // Columns carry this vertex's non-delta lobes, the rest its specular ones; both pass straight through.
   const bool keep_specular = settings_.paths == Paths::rest;
   const Vec3f place = hit.point.position;
-  const bool counts = !walk.near || length_squared(place - walk.from.position) < square((*walk.near)(place));
+  const bool counts = !walk.near || length_squared(place - walk.from.position) < square(walk.near->at(place));
   int kept = 0;
   for (int k = 0; k < closure.count; ++k) {
     const LobeKind kind = closure.lobes[k].kind;

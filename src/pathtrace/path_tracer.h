@@ -42,7 +42,10 @@ struct PathSettings {
 };
 
 // How near to a place light must come from to count, as a distance.
-using Reach = std::function<float(Vec3f place)>;
+struct Reach {
+  std::function<float(Vec3f place)> at;
+  float most = kInfinity;  // that it is anywhere
+};
 
 class PathTracer {
  public:
@@ -80,7 +83,7 @@ class PathTracer {
   bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
 
   const world::World& world_;
-  world::LightSampler lights_;
+  const world::LightSampler& lights_;
   PathSettings settings_;
 };
 

@@ -134,23 +134,6 @@ image::Image develop_first_hits(const FilmInput& film,
   return develop(film.view, film.rows, values);
 }
 
-EdgeImages develop_edges(const FilmInput& film) {
-  film::TiledSplat emission = tiled_splat(film.view), albedo = tiled_splat(film.view),
-                   normal = tiled_splat(film.view);
-  EdgeImages images;
-  images.emission =
-      develop_samples(film, emission, true,
-                      [&](std::size_t tile, FilmEye&, Vec2i, const transport::FilmSample& sample,
-                          const transport::FirstHit& first) {
-                        const Vec3f n = first.normal;
-                        albedo.add(tile, sample.film, first.albedo);
-                        normal.add(tile, sample.film, {n.x, n.y, n.z});
-                        return sample.emission;
-                      });
-  images.albedo = albedo.image(), images.normal = normal.image();
-  return images;
-}
-
 std::vector<Rgb> sample_values(const transport::Receivers& rows, const TracedLight& traced,
                                std::span<const Rgb> sums, FilmParts parts) {
   std::vector<Rgb> values(rows.samples());

@@ -44,13 +44,6 @@ image::Image develop(const FilmInput& film, std::span<const Rgb> sums, FilmParts
 image::Image develop_first_hits(const FilmInput& film,
                                 const std::function<Rgb(const transport::FirstHit&)>& value);
 
-// What needs no receivers: emission that is seen, and features of the first hits for a denoiser.
-struct EdgeImages {
-  image::Image emission, albedo, normal;
-};
-// By film samples of their own, which the recipe must have (Recipe::film_samples).
-EdgeImages develop_edges(const FilmInput& film);
-
 // One value per film sample of the receivers.
 std::vector<Rgb> sample_values(const transport::Receivers& rows, const TracedLight& traced,
                                std::span<const Rgb> sums, FilmParts parts);

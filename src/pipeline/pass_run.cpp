@@ -15,6 +15,7 @@
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
 #include "pipeline/picture_mean.h"
+#include "pipeline/pixel_features.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
 #include "pipeline/rest_tracing.h"
@@ -23,24 +24,36 @@
 namespace lumirank::pipeline {
 namespace {
 
+// Samples of a whole pass by default, and the least of a first and of a last one.
+constexpr int kEighths = 8, kFewEighths = 3, kFewestEighths = 2;
 constexpr int kFewPasses = 4, kWantedPasses = 3, kDefaultPasses = 16, kMaxPasses = 65536;
 // Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
 // them. More of them in one pass are fewer passes, which have as many altogether.
 constexpr double kPixelsPerLight = 12;
 constexpr std::size_t kMinLightsOfPass = 1000, kMaxLightsOfPass = 60000;
-// Samples of traced direct light, and paths of the rest at most, for each receiver or pixel of a pass.
-constexpr int kDirectOfPass = 1, kMaxRestOfPass = 8, kLocalOfPass = 1;
-// Of passes lights may show more than alone: what spots that leaves differs from pass to pass.
-constexpr double kClampOfPass = 4;
-// Of a pass's seconds those that the rest gets besides: its noise is larger than that of what columns carry.
-constexpr double kRestOfPass = 0.6;
+// Samples of traced direct light, and paths of sharp lobes, for each receiver of a pass.
+constexpr int kDirectOfPass = 1, kLocalOfPass = 1;
+// Times the clamping of single pictures: what is near is traced, and what spots remain differ from pass to
+// pass.
+constexpr double kClampOfPass = 16;
+// Light from places around which fewer lights than these lie is traced.
+constexpr float kNearOfPass = 10;
+// Paths of the rest for each pass: without a budget; and within one at least, at most. What of a pass's
+// seconds they will take, before that is known, and how noisy a pass is.
+constexpr double kRestUntimed = 2, kLeastRest = 0.25, kMostRest = 8;
+constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
 // The film whose denoising tells what the picture's will take; and what a larger one may take more.
 constexpr int kDenoiserTrial = 192;
 constexpr double kDenoiserMargin = 1.25;
-constexpr int kCleanPasses = 32;
-// Film samples per pixel of all passes for what needs no receivers: edges of windows, features.
-constexpr double kEdgeSamples = 16;
-constexpr int kMaxEdgeSamples = 8;
+// Features that are called clean are worth more, and take this many times longer: where that is at most such
+// a part of the budget.
+constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
+// Film samples at edges, beside those of all pixels; under a budget as many as this part of what is left
+// pays.
+constexpr int kEdgeSamples = 12;
+constexpr double kTimeOfEdges = 0.08;
+// Without a denoiser, in each pass of an unknown number.
+constexpr int kEmissionSamples = 2;
 // Of fewer pixels a side it knows too little.
 constexpr int kSmallestDenoised = 16;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
@@ -77,6 +90,7 @@ class PassRun {
     seconds_["survey"] = survey_timer.seconds();
     plan();
     while (wants_more()) {
+      set_part();
       if (!pass(passes_)) break;
       ++passes_;
     }
@@ -102,8 +116,9 @@ class PassRun {
     recipe.spp = 1;
     recipe.film_samples = asked_.view.film_samples.value_or(0);
     recipe.first_hits = false;
-    // What one light may show is the same for the mean of many passes as for one with all their lights.
-    recipe.lights.clamp = kClampOfPass * asked_.lights.clamp * clamp_factor_;
+    recipe.lights.clamp = kClampOfPass * asked_.lights.clamp;
+    if (recipe.lights.type != LightType::sphere && asked_.traced.compensate == 0)
+      recipe.near_lights = kNearOfPass;
     return recipe;
   }
 
@@ -160,9 +175,6 @@ class PassRun {
     FilmParts sent = parts_;
     sent.emission = false;
     image = develop(film, estimate_.sums, sent);
-    Recipe of_edges = recipe;
-    if (of_edges.film_samples == 0) of_edges.film_samples = edge_samples_;
-    edges_now_ = develop_edges({world, view, of_edges, *rows, traced});
     if (asked_.traced.compensate > 0) {
       RenderSettings of_pass = asked_;
       of_pass.seed = recipe.seed;
@@ -202,21 +214,6 @@ class PassRun {
       if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
     }
     choose_part();
-    const double factor =
-        as_asked_ || !timed() ? std::min(wanted_, kDefaultPasses) : std::clamp(left() / pace(), 1.0, 16.0);
-    // By halves and doubles, so that the clock decides one number that a repetition can be told.
-    auto doublings = static_cast<std::int64_t>(std::lround(std::log2(std::max(1.0, factor))));
-    if (timed()) {
-      if (const auto earlier = choices_.earlier("clamp_doublings", 8)) doublings = *earlier;
-      choices_.record("clamp_doublings", doublings);
-    }
-    edge_samples_ = std::clamp(static_cast<int>(kEdgeSamples / std::max(1.0, factor)), 1, kMaxEdgeSamples);
-    if (timed()) {
-      if (const auto earlier = choices_.earlier("edge_samples", kMaxEdgeSamples))
-        edge_samples_ = static_cast<int>(*earlier);
-      choices_.record("edge_samples", edge_samples_);
-    }
-    clamp_factor_ = std::pow(2.0, static_cast<double>(doublings));
   }
 
   // A film of half the width and height, enlarged, is better than none.
@@ -244,25 +241,39 @@ class PassRun {
     sinks_.warn(shortage_);
   }
 
-  // Few passes leave much of the time over, and edges with few samples: then each has fewer lights, and draws
-  // fewer of them.
+  // Passes may have fewer lights, of which receivers draw fewer: so that there are some of them in little
+  // time, and so that the last one fits.
+  bool may_be_smaller() const {
+    return timed() && !as_asked_ && !asked_.method.parameters.contains("samples") &&
+           task_.info->name == kMethodOfPasses;
+  }
   void choose_part() {
-    if (!timed() || asked_.method.parameters.contains("samples") || task_.info->name != kMethodOfPasses)
-      return;
-    std::int64_t eighths = 8;
-    if (const auto earlier = choices_.earlier("eighths_of_pass", 8))
-      eighths = *earlier;
-    else if (!as_asked_)
-      eighths = std::clamp(static_cast<std::int64_t>(8 * left() / (kWantedPasses * pace())), std::int64_t{3},
-                           std::int64_t{8});
-    choices_.record("eighths_of_pass", eighths);
-    if (eighths == 8) return;
-    part_ = static_cast<double>(eighths) / 8;
-    auto parameters = asked_.method.parameters;
-    parameters["samples"] = std::to_string(eighths);  // of eight by default
-    task_.method = task_.info->make(parameters);
+    const double first = kEighths * left() / (kWantedPasses * pace());
+    usual_eighths_ = may_be_smaller() ? std::clamp(static_cast<int>(first), kFewEighths, kEighths) : kEighths;
     // About half of what is done for each pixel is drawing lights.
-    expected_.fixed *= part_, expected_.by_pixel *= 0.5 + 0.5 * part_;
+    const double part = static_cast<double>(usual_eighths_) / kEighths;
+    expected_.fixed *= part, expected_.by_pixel *= 0.5 + 0.5 * part;
+  }
+  // The size of the next pass in eighths; 0: none fits.
+  int next_eighths() const {
+    if (passes_ == 0 || !timed() || as_asked_ || pace() < left()) return usual_eighths_;
+    if (!may_be_smaller()) return 0;
+    const double drawing = (seconds_.at("method") + seconds_.at("lights")) / passes_;
+    const double fits = usual_eighths_ * (1 - (pace() - left()) / std::max(1e-6, drawing));
+    return fits < kFewestEighths ? 0 : std::min(static_cast<int>(fits), usual_eighths_);
+  }
+  void set_part() {
+    int eighths = next_eighths_;
+    if (timed()) {
+      if (const auto earlier = choices_.earlier("eighths_of_pass", kEighths))
+        eighths = static_cast<int>(*earlier);
+      choices_.record("eighths_of_pass", eighths);
+    }
+    part_ = static_cast<double>(eighths) / kEighths;
+    if (eighths == kEighths) return;
+    auto parameters = asked_.method.parameters;
+    parameters["samples"] = std::to_string(eighths);
+    task_.method = task_.info->make(parameters);
   }
 
   double end() const { return asked_.time - denoiser_seconds_; }
@@ -270,13 +281,14 @@ class PassRun {
   double pace() const { return std::max(1e-3, pace_ > 0 ? pace_ : expected_.total() * (1 + rest_share())); }
   double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
 
-  bool wants_more() const {
+  bool wants_more() {
+    next_eighths_ = next_eighths();
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
     if (passes_ == 0) return true;
     if (asked_.method.target_error > 0 && passes_ >= 4 && mean_.noise() < asked_.method.target_error)
       return false;
-    return !timed() || replays() || as_asked_ || pace() < left();
+    return !timed() || replays() || next_eighths_ > 0;
   }
 
   bool pass(int number) {
@@ -286,9 +298,8 @@ class PassRun {
     if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
     mean_.add(image);
-    if (parts_.emission) emission_.add(edges_now_.emission);
-    if (denoiser_) albedo_.add(edges_now_.albedo), normal_.add(edges_now_.normal);
     pace_ = (pace_ * number + (clock_() - begin)) / (number + 1);
+    if (!trace_features(number)) return false;
     const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
                                 : static_cast<double>(number + 1) / wanted_;
     sinks_.report("passes", std::clamp(part, 0.0, 1.0));
@@ -296,21 +307,64 @@ class PassRun {
     return true;
   }
 
-  // Paths whose seconds are in proportion to those of the pass.
-  bool add_rest(double pass_seconds) {
-    if (rest_->plan().paths == 0) return true;
-    int paths = 1;
+  // Without a denoiser emission is filtered as all else is. With one most samples follow the first pass, when
+  // it is known what a pass takes; but what mirrors show of lamps takes as many as there are passes.
+  bool trace_features(int number) {
+    const Timer timer;
+    if (!denoiser_) {
+      if (parts_.emission) emission_.add(emission_of_pass());
+    } else if (number == 0) {
+      features_.emplace(*task_.world, view_, recipe_of(~1ull));
+      if (!features_->trace_all(sinks_) || !features_->trace_differing(edge_samples(timer.seconds()), sinks_))
+        return false;
+    } else if (number >= kEdgeSamples) {
+      if (!features_->trace_another(static_cast<std::uint64_t>(number), sinks_)) return false;
+    }
+    seconds_["features"] += timer.seconds();
+    return true;
+  }
+  image::Image emission_of_pass() {
+    Recipe recipe = recipe_of(static_cast<std::uint64_t>(passes_));
+    recipe.film_samples = asked_.view.film_samples.value_or(
+        timed() ? kEmissionSamples : std::clamp(kEdgeSamples / wanted_, 1, kEdgeSamples));
+    recipe.film_samples = std::max(1, recipe.film_samples);
+    const FilmParts emission{.matrix = false, .traced_direct = false, .traced_indirect = false};
+    return develop({*task_.world, view_, recipe, *prepared_->rows, traced_}, {}, emission);
+  }
+  int edge_samples(double seconds_of_all) {
+    if (asked_.view.film_samples)
+      return std::max(0, *asked_.view.film_samples - PixelFeatureTracing::kEverywhere);
+    if (!timed()) return kEdgeSamples;
+    const double one = seconds_of_all / PixelFeatureTracing::kEverywhere * features_->differing();
+    int samples = one > 0 ? static_cast<int>(std::clamp(kTimeOfEdges * left() / one, 0.0, 1.0 * kEdgeSamples))
+                          : kEdgeSamples;
+    if (const auto earlier = choices_.earlier("edge_samples", kEdgeSamples))
+      samples = static_cast<int>(*earlier);
+    choices_.record("edge_samples", samples);
+    return samples;
+  }
+
+  // Two sorts of noise are least together, for their seconds, where each has samples in proportion to its
+  // deviation over the root of what a sample takes.
+  double rest_per_pass(double pass_seconds) const {
     const double all = static_cast<double>(view_.width) * static_cast<double>(view_.height) *
                        rest_->plan().pilot.path_seconds;
-    if (timed() && all > 0) paths = static_cast<int>(std::lround(kRestOfPass * pass_seconds / all));
-    if (!timed()) paths = 2;
-    paths = std::clamp(paths, 1, kMaxRestOfPass);
+    if (!timed() || !(all > 0)) return kRestUntimed;
+    const double of_pass = passes_ >= kFewPasses ? mean_.noise() * std::sqrt(passes_) : kNoiseOfPass;
+    return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kLeastRest,
+                      kMostRest);
+  }
+  bool add_rest(double pass_seconds) {
+    if (rest_->plan().paths == 0) return true;
+    rest_due_ += rest_per_pass(pass_seconds);
+    int paths = std::max(passes_ == 0 ? 1 : 0, static_cast<int>(rest_due_));
     if (timed()) {
-      if (const auto earlier = choices_.earlier("rest_of_pass", kMaxRestOfPass))
+      if (const auto earlier = choices_.earlier("rest_of_pass", static_cast<int>(kMostRest) + 1))
         paths = static_cast<int>(*earlier);
       choices_.record("rest_of_pass", paths);
     }
-    return rest_->add_paths(view_, paths, sinks_);
+    rest_due_ -= paths;
+    return paths == 0 || rest_->add_paths(view_, paths, sinks_);
   }
 
   // ------------------------------------------------------------ the picture
@@ -333,18 +387,23 @@ class PassRun {
     denoiser_->denoise(trial, &trial, &trial);
     denoiser_seconds_ = kDenoiserMargin * timer.seconds() * static_cast<double>(view_.width) *
                         static_cast<double>(view_.height) / (kDenoiserTrial * kDenoiserTrial);
-  }
-
-  // Edges of few samples are dotted lines, which clean features would be taken to say.
-  denoise::Features features() const {
-    if (passes_ >= kCleanPasses) return denoise::Features::clean;
-    return timed() ? denoise::Features::noisy : denoise::Features::prefiltered;
+    bool clean = kCleanOverNoisy * denoiser_seconds_ <= kTimeOfClean * asked_.time;
+    if (const auto earlier = choices_.earlier("clean_features", 1)) clean = *earlier == 1;
+    choices_.record("clean_features", clean ? 1 : 0);
+    if (clean)
+      denoiser_seconds_ *= kCleanOverNoisy;
+    else
+      features_are_ = denoise::Features::noisy;
   }
 
   image::Image noisy() const {
     image::Image image = mean_.mean();
+    if (features_ && parts_.emission) add(features_->means().mirrored, image);
     rest_->add_to(image);
     return image;
+  }
+  static void add(const image::Image& from, image::Image& to) {
+    for (std::size_t p = 0; p < from.pixels.size(); ++p) to.pixels[p] += from.pixels[p];
   }
 
   Picture as_asked(const image::Image& image) const {
@@ -354,8 +413,8 @@ class PassRun {
   }
 
   image::Image with_emission(image::Image image) const {
-    const image::Image emission = emission_.mean();
-    for (std::size_t p = 0; p < emission.pixels.size(); ++p) image.pixels[p] += emission.pixels[p];
+    if (!parts_.emission) return image;
+    add(features_ ? features_->means().emission : emission_.mean(), image);
     return image;
   }
 
@@ -371,9 +430,10 @@ class PassRun {
     result_.picture = as_asked(with_emission(sent));
     if (is_denoised(sent)) {
       const Timer timer;
-      const image::Image albedo = albedo_.mean(), normal = normal_.mean();
+      const PixelFeatures features = features_->means();
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-      result_.picture = as_asked(with_emission(denoiser_->denoise(sent, &albedo, &normal, features())));
+      result_.picture = as_asked(
+          with_emission(denoiser_->denoise(sent, &features.albedo, &features.normal, features_are_)));
       result_.picture.planes.push_back({"undenoised", std::move(before)});
       seconds_["denoise"] = timer.seconds();
     }
@@ -425,15 +485,17 @@ class PassRun {
   methods::TimedChoices choices_;
   std::shared_ptr<const denoise::Denoiser> denoiser_;
   double denoiser_seconds_ = 0;
+  denoise::Features features_are_ = denoise::Features::clean;
   std::optional<RestTracing> rest_;
   SharedSurvey survey_;
   PassSeconds expected_;
-  double pace_ = 0, clamp_factor_ = 1, part_ = 1;
-  int wanted_ = 1, passes_ = 0, edge_samples_ = 2;
+  double pace_ = 0, part_ = 1, rest_due_ = 0;
+  int wanted_ = 1, passes_ = 0, usual_eighths_ = kEighths, next_eighths_ = kEighths;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
-  PictureMean mean_, emission_, albedo_, normal_;  // the first: of what surfaces send
-  EdgeImages edges_now_;
+  PictureMean mean_;                             // of what surfaces send
+  PictureMean emission_;                         // without a denoiser
+  std::optional<PixelFeatureTracing> features_;  // with one
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;
   TracedLight traced_;

@@ -39,6 +39,7 @@ struct Recipe {
   // Local compensation (TracedLightSettings): roughness below which lobes are traced, radii within which
   // places are, paths per receiver; 0: none.
   float sharp_below = 0, near_radii = 0;
+  float near_lights = 0;  // of points: places are near that fewer lights than these lie about
   int local_paths = 0;
   bool first_hits = false;        // what the eye's first hits know is kept, for layers
   bool group_by_emitter = false;  // clusters may not cross emitters, for layers by light

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "lumirank/error.h"
 #include "lumirank/lumirank.h"
@@ -88,6 +89,18 @@ TEST(LocalCompensation, PathsAndColumnsShareTheLightByDistance) {
     settings.traced.local_near = near;
     expect_whole(scene, settings, 0.05);
   }
+}
+
+// In passes points give nothing to what is near; without that the edge would have infinite variance.
+TEST(LocalCompensation, PointsOfPassesLeaveToPathsWhatIsNear) {
+  const Scene scene = corner(kMatt, "0,0.1,-0.45");
+  RenderSettings settings = brute_force("point");
+  settings.view.only = LightPart::indirect;
+  settings.passes = 16;
+  settings.denoise = Denoise::off;
+  expect_whole(scene, settings, 0.05);
+  const auto report = nlohmann::json::parse(render(scene, settings).report.json());
+  EXPECT_GT(report["seconds.traced_near"], 0);
 }
 
 TEST(LocalCompensation, ColumnsHaveNothingWherePathsHaveAll) {

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "lumirank/lumirank.h"
+#include "support/scene_file.h"
 
 namespace lumirank {
 namespace {
@@ -79,6 +80,38 @@ TEST(Passes, HaveTheWholeLight) {
   how.spp = 1024;
   const double truth = mean_of(reference(scene, s, how).picture);
   EXPECT_NEAR(ours, truth, 0.03 * truth);
+}
+
+// A room behind glass: what comes straight through panes is what the interfaces let through, to some tenths
+// of a percent of the light.
+TEST(Passes, LightComesThroughPanes) {
+  const auto slab = [](const char* transform, const char* bsdf) {
+    return std::string("<shape type=\"cube\"><transform name=\"to_world\">") + transform + "</transform>" +
+           bsdf + "</shape>";
+  };
+  const char* matt =
+      "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5, 0.5, "
+      "0.5\"/></bsdf></bsdf>";
+  const Scene scene =
+      test::load_text(test::point_camera("0,1,1.5", "0,0,-0.2", 12, 40) +
+                      slab("<scale x=\"2\" y=\"0.1\" z=\"2\"/><translate y=\"-0.1\"/>", matt) +
+                      slab("<scale x=\"0.1\" y=\"2\" z=\"2\"/><translate x=\"-1.5\"/>", matt) +
+                      slab("<scale x=\"2\" y=\"0.01\" z=\"2\"/><translate y=\"1.8\"/>",
+                           "<bsdf type=\"dielectric\"><float name=\"int_ior\" value=\"1.5\"/></bsdf>") +
+                      "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1, 1, 1\"/></emitter>");
+  RenderSettings s;
+  s.lights.count = 1000;
+  s.passes = 64;
+  s.denoise = Denoise::off;
+  s.traced.rest = RestOfPaths::trace;
+  ReferenceSettings how;
+  how.spp = 2048;
+  const double truth = mean_of(reference(scene, s, how).picture);
+  const RenderResult straight = render(scene, s);
+  EXPECT_EQ(said(straight)["panes.straight"], 1);
+  EXPECT_NEAR(mean_of(straight.picture), truth, 0.015 * truth);
+  s.traced.panes = Panes::exact;
+  EXPECT_EQ(said(render(scene, s))["panes.straight"], 0);
 }
 
 TEST(Passes, RefuseWhatIsOfOnePassAlone) {

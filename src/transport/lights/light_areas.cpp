@@ -15,11 +15,10 @@ void measure_areas(VirtualLights& lights, float scene_radius) {
     points[h].push_back(lights.position[j]);
     paths[h].push_back(lights.path[j]);
   }
-  constexpr int kTenth = 10;
   const auto all = static_cast<float>(which[0].size() + which[1].size());
   for (std::size_t h = 0; h < 2; ++h) {
     const float share = static_cast<float>(which[h].size()) / all;
-    const std::vector<Neighbor> found = neighbors(points[h], paths[h], kTenth);
+    const std::vector<Neighbor> found = neighbors(points[h], paths[h], kAreaNeighbor);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Neighbor& n = found[i];
       const float disc =

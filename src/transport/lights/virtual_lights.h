@@ -78,6 +78,9 @@ struct VirtualLights {
   // Spherical lights (sphere_lights.h), else empty. Radius of the sphere, 0 for lights that stay points; and
   // which part of the disc of that radius in the surface's tangent plane other surfaces hide from the light.
   std::vector<float> radius, hidden;
+  // Points: distance within which receivers get nothing from a surface light, because what comes from there
+  // is traced (LightReach); 0 for other kinds; empty: none has any.
+  std::vector<float> reach;
   std::vector<std::uint16_t> emitter;  // first emitter of the path
   std::vector<std::uint16_t> depth;    // path segments from the emitter to here (0: on the emitter)
   // Who it is, by what made it: an emitter's sample by its number, a particle's light by its path and the

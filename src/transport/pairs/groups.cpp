@@ -136,6 +136,7 @@ void fill_column(const VirtualLights& lights, Sides sides, std::size_t j, Column
   set_lane(group.n, lane, c.n), set_lane(group.ng, lane, c.ng), set_lane(group.target, lane, c.target);
   set_lane(group.power, lane, as_vector(c.power));
   group.clamp_area[lane] = c.clamp_area;
+  if (!lights.reach.empty()) group.near[lane] = square(lights.reach[j]);
   if (lights.kind[j] == LightKind::surface && lights.spherical())
     group.radius[lane] = lights.radius[j], group.hidden[lane] = lights.hidden[j];
   if (max_component(c.power) > 0) group.depth[lane] = static_cast<float>(lights.depth[j]);

@@ -28,6 +28,7 @@ struct ColumnGroup {
   Lane3 power;      // oriented, omni, spot, directional: as in VirtualLights; lambertian surface:
                     // Φ·albedo/π; other surface lights: Φ
   Lane clamp_area;  // a_j, times max(π·f_y) where f_y is constant
+  Lane near;        // squared distance within which E is 0
   Lane depth;
   Lane radius, hidden;  // of spherical lights, as in VirtualLights; their power is divided by πr²
 };

@@ -82,6 +82,7 @@ inline PairGeometry pair_geometry(const RowGroup& r, const ColumnGroup& c, const
     at.w = c.p - r.p;
     const Lane d2 = dot(at.w, at.w);
     at.alive &= d2 > splat(1e-30f);
+    if constexpr (sided_column) at.alive &= d2 >= c.near;
     at.inv = splat(1) / select(at.alive, d2, splat(1));
     at.inv_d = sqrt(at.inv);
   }

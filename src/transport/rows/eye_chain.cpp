@@ -178,6 +178,11 @@ Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& 
 Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
                      std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first) {
   Rgb emission{0};
+  straight_emission_ = Rgb(0);
+  const auto add_emission = [&](const Segment& s, Rgb value) {
+    emission += s.weight * value;
+    if (s.depth == 1) straight_emission_ += s.weight * value;
+  };
   pending_.clear();
   segments_.clear();
   if (settings_.max_depth != 0) pending_.push_back({eye, Rgb(1), 1, 0, 0, id, 0, 0, settings_.eye_medium});
@@ -191,11 +196,11 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
       if (is_black(s.weight)) continue;
     }
     if (!hit) {
-      emission += s.weight * (world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
+      add_emission(s, world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
       continue;
     }
     const Vec3f wo = -s.ray.direction;
-    if (hit->emitter >= 0) emission += s.weight * world_.emitted(*hit, wo);
+    if (hit->emitter >= 0) add_emission(s, world_.emitted(*hit, wo));
     Closure closure = world_.materials().closure(hit->material, hit->point, wo);
     scatter::face_viewer(closure, wo);
     if (from_eye && first) {

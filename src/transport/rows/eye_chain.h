@@ -57,6 +57,8 @@ class EyeChain {
   // instead every vertex gets its directional albedo and roughness.
   Rgb follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
              std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first);
+  // Of the emission that the last follow() returned what no mirror or glass has turned aside.
+  Rgb straight_emission() const { return straight_emission_; }
   // What the last follow() passed of participating media.
   const std::vector<EyeSegment>& segments() const { return segments_; }
 
@@ -82,6 +84,7 @@ class EyeChain {
   ChainSettings settings_;
   std::vector<Segment> pending_;  // reused between samples
   std::vector<EyeSegment> segments_;
+  Rgb straight_emission_;
   std::vector<float> cuts_;
 };
 

@@ -35,6 +35,7 @@ FilmSample FilmEye::trace(int k, FirstHit* first, scatter::ClosurePool* pool) {
   sample.emission =
       chain_.follow(camera_.ray(sample.film, place.lens), hash_ids(pixel, Stage::film_samples, number), 0,
                     rng, vertices_, pool, first);
+  sample.straight = chain_.straight_emission();
   return sample;
 }
 

@@ -20,6 +20,7 @@ namespace lumirank::transport {
 struct FilmSample {
   Vec2f film;  // on the whole film, in pixels
   Rgb emission;
+  Rgb straight;  // the part of it that comes by no mirror and no bending glass
 };
 
 // Traces the film samples of one pixel after the other. World and camera must outlive it; one for each

@@ -1,0 +1,128 @@
+#include "pipeline/pixel_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "scatter/closure.h"
+#include "transport/rows/film_samples.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+// From which difference on a pixel is at an edge: of albedo and emission, of the mean normal's length below
+// that of its samples, and between the mean normals of neighbors.
+constexpr float kColorEdge = 0.04f, kNormalSpread = 0.02f, kNormalEdge = 0.15f;
+// Emission that a screen shows as white.
+constexpr float kWhite = 4;
+
+Rgb least_of(Rgb a, Rgb b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
+Rgb most_of(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
+float distance(Rgb a, Rgb b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+}  // namespace
+
+PixelFeatureTracing::PixelFeatureTracing(const world::World& world, const View& view, const Recipe& recipe)
+    : world_(world),
+      view_(view),
+      recipe_(recipe),
+      sums_(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height)) {}
+
+bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, const std::vector<std::uint8_t>* wanted,
+                                const Sinks& sinks) {
+  const world::Camera camera(view_.sensor, world_.units());
+  transport::ReceiverSettings settings = receiver_settings(recipe_, view_);
+  settings.film_samples = samples;
+  settings.seed = seed;
+  const auto width = static_cast<std::size_t>(view_.width);
+  parallel_for(static_cast<std::size_t>(view_.height), 4, [&](std::size_t begin, std::size_t end) {
+    if (sinks.cancelled()) return;
+    transport::FilmEye eye(world_, camera, settings);
+    for (std::size_t p = begin * width; p < end * width; ++p) {
+      if (wanted && !(*wanted)[p]) continue;
+      eye.begin({view_.crop_x + static_cast<int>(p % width), view_.crop_y + static_cast<int>(p / width)});
+      Sums& sums = sums_[p];
+      for (int k = 0; k < samples; ++k) {
+        const transport::FilmSample sample = eye.trace(k, nullptr);
+        Rgb albedo{0};
+        Vec3f normal{0, 0, 0};
+        float weights = 0;
+        for (const transport::EyeVertex& v : eye.vertices()) {
+          const float weight = luminance(v.weight);
+          albedo += v.weight * v.albedo;
+          normal = normal + v.normal * weight, weights += weight;
+        }
+        if (weights > 0) normal = normal * (1 / weights);
+        const Rgb color = albedo + least_of(sample.straight, Rgb(kWhite));
+        sums.emission += sample.straight, sums.mirrored += sample.emission - sample.straight;
+        sums.albedo += albedo;
+        sums.least = least_of(sums.least, color), sums.most = most_of(sums.most, color);
+        sums.normal = sums.normal + normal, sums.normals += length(normal);
+        ++sums.count;
+      }
+    }
+  });
+  return !sinks.cancelled();
+}
+
+bool PixelFeatureTracing::trace_all(const Sinks& sinks) {
+  if (!trace(kEverywhere, hash_ids(recipe_.seed, Stage::film_samples, 1), nullptr, sinks)) return false;
+  mark_differing();
+  return true;
+}
+
+bool PixelFeatureTracing::trace_differing(int samples, const Sinks& sinks) {
+  return samples <= 0 || trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 2), &differs_, sinks);
+}
+
+bool PixelFeatureTracing::trace_another(std::uint64_t number, const Sinks& sinks) {
+  return trace(1, hash_ids(recipe_.seed, Stage::film_samples, 3, number), nullptr, sinks);
+}
+
+void PixelFeatureTracing::mark_differing() {
+  differs_.assign(sums_.size(), 0);
+  const auto color = [](const Sums& s) {
+    const float part = 1 / static_cast<float>(s.count);
+    return s.albedo * part + least_of(s.emission * part, Rgb(kWhite));
+  };
+  const auto compare = [&](std::size_t p, std::size_t q) {
+    const Sums &a = sums_[p], &b = sums_[q];
+    const float part = 1 / static_cast<float>(a.count);
+    if (distance(color(a), color(b)) > kColorEdge || length(a.normal - b.normal) * part > kNormalEdge)
+      differs_[p] = differs_[q] = 1;
+  };
+  const auto width = static_cast<std::size_t>(view_.width), height = static_cast<std::size_t>(view_.height);
+  for (std::size_t y = 0; y < height; ++y)
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::size_t p = y * width + x;
+      const Sums& s = sums_[p];
+      if (distance(s.most, s.least) > kColorEdge || length(s.normal) < (1 - kNormalSpread) * s.normals)
+        differs_[p] = 1;
+      if (x + 1 < width) compare(p, p + 1);
+      if (y + 1 < height) compare(p, p + width);
+    }
+}
+
+double PixelFeatureTracing::differing() const {
+  return static_cast<double>(std::count(differs_.begin(), differs_.end(), 1)) /
+         static_cast<double>(std::max<std::size_t>(1, differs_.size()));
+}
+
+PixelFeatures PixelFeatureTracing::means() const {
+  PixelFeatures features;
+  for (image::Image* image : {&features.emission, &features.mirrored, &features.albedo, &features.normal})
+    *image = image::Image(view_.width, view_.height);
+  for (std::size_t p = 0; p < sums_.size(); ++p) {
+    const Sums& s = sums_[p];
+    const float part = 1 / static_cast<float>(std::max(1, s.count));
+    features.emission.pixels[p] = s.emission * part, features.mirrored.pixels[p] = s.mirrored * part;
+    features.albedo.pixels[p] = s.albedo * part;
+    features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * part;
+  }
+  return features;
+}
+
+}  // namespace lumirank::pipeline

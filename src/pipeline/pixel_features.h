@@ -1,0 +1,58 @@
+// What the eye rays of each pixel say without any receiver: emission that is seen, and the features by which
+// a denoiser tells edges from noise. All pixels get a few film samples, those at edges more.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/sinks.h"
+#include "image/image.h"
+#include "pipeline/recipe.h"
+#include "world/world.h"
+
+namespace lumirank::pipeline {
+
+// Means over pixels (a box filter). All of the size of the view.
+struct PixelFeatures {
+  image::Image emission;  // what is seen straight
+  // Emission by mirrors and glass: a few samples may find a lamp's glint, so this is noisy.
+  image::Image mirrored;
+  // Σ weight · albedo, Σ weight · normal / Σ weight of the surfaces at the ends of the eye's specular chains:
+  // what a mirror shows counts, not the mirror. Black where there is none.
+  image::Image albedo, normal;
+};
+
+class PixelFeatureTracing {
+ public:
+  // Must outlive it: the world. Random numbers are by the recipe's seed.
+  PixelFeatureTracing(const world::World& world, const View& view, const Recipe& recipe);
+
+  static constexpr int kEverywhere = 4;  // film samples of each pixel
+  // The first of them. False if it was cancelled.
+  bool trace_all(const Sinks& sinks);
+  // The part of the pixels that differ from a neighbor, or within themselves.
+  double differing() const;
+  // So many more for these. False if it was cancelled.
+  bool trace_differing(int samples, const Sinks& sinks);
+  // One more for each pixel; `number`: which. False if it was cancelled.
+  bool trace_another(std::uint64_t number, const Sinks& sinks);
+  PixelFeatures means() const;
+
+ private:
+  struct Sums {
+    Rgb emission{0}, mirrored{0}, albedo{0}, least{kInfinity}, most{0};  // the latter two: albedo + emission
+    Vec3f normal{0, 0, 0};
+    float normals = 0;  // Σ |normal| of the samples: longer than their sum where they differ
+    int count = 0;
+  };
+  bool trace(int samples, std::uint64_t seed, const std::vector<std::uint8_t>* wanted, const Sinks& sinks);
+  void mark_differing();
+
+  const world::World& world_;
+  View view_;
+  Recipe recipe_;
+  std::vector<Sums> sums_;
+  std::vector<std::uint8_t> differs_;
+};
+
+}  // namespace lumirank::pipeline

@@ -1,0 +1,87 @@
+// Emission and features of pixels, against what geometry says.
+#include "pipeline/pixel_features.h"
+
+#include <gtest/gtest.h>
+
+#include "world/scene_maker.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+using namespace test;
+
+constexpr int kSize = 16;
+
+// From z = 10 the square [-1, 1]² of the plane z = 0 fills the film.
+sd::SceneDesc square_in_view() {
+  auto desc = empty_scene();
+  auto& sensor = desc.sensors[0];
+  sensor.to_world = Transform::look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
+  sensor.fov_x = static_cast<float>(2 * 180 / 3.14159265358979 * std::atan(0.1));
+  sensor.film.width = sensor.film.height = kSize;
+  return desc;
+}
+
+View view_of(const sd::SceneDesc& desc) { return make_view(desc, {}); }
+
+PixelFeatures traced(const sd::SceneDesc& desc, double* differing = nullptr) {
+  const world::World world = build(desc);
+  const View view = view_of(desc);
+  RenderSettings settings;
+  PixelFeatureTracing tracing(world, view, make_recipe(settings, view));
+  EXPECT_TRUE(tracing.trace_all({}));
+  if (differing) *differing = tracing.differing();
+  EXPECT_TRUE(tracing.trace_differing(252, {}));
+  return tracing.means();
+}
+
+void use(sd::SceneDesc& desc, int shape, int bsdf) {
+  desc.shapes[static_cast<std::size_t>(shape)].bsdf = bsdf;
+}
+
+// A lamp whose edge runs through a column of pixels, before a gray wall.
+TEST(PixelFeatures, EdgesHaveTheirCoverageAndTheRestFewSamples) {
+  auto desc = square_in_view();
+  const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.4f)}});
+  use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), gray);
+  // 0.3 of a pixel beyond the middle of the film.
+  const double edge = 0.3 * 2 / kSize;
+  const int lamp = add_shape(desc, sd::RectangleDesc{},
+                             Transform::translate(3 + edge, 0, 1e-4) * Transform::scale(3, 3, 1));
+  use(desc, lamp, add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0)}}));
+  shine(desc, lamp, sd::ColorInput{Rgb(2)});
+  double differing = 0;
+  const PixelFeatures features = traced(desc, &differing);
+  EXPECT_NEAR(differing, 2.0 / kSize, 1.0 / kSize);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const float lit = x < kSize / 2 ? 0.0f : (x == kSize / 2 ? 0.7f : 1.0f);
+      EXPECT_NEAR(features.emission.at(x, y).g, 2 * lit, lit > 0 && lit < 1 ? 0.05f : 1e-4f) << x << ' ' << y;
+      EXPECT_NEAR(features.albedo.at(x, y).g, 0.4f * (1 - lit), lit > 0 && lit < 1 ? 0.02f : 1e-4f);
+      EXPECT_EQ(features.mirrored.at(x, y), Rgb(0));
+      EXPECT_NEAR(features.normal.at(x, y).b, 1 - lit,
+                  lit > 0 && lit < 1 ? 0.05f : 1e-4f);  // a black lamp receives nothing
+    }
+}
+
+// A mirror shows a lamp behind the camera, and beside it a red wall.
+TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
+  auto desc = square_in_view();
+  const int mirror = add_bsdf(desc, sd::ConductorDesc{});
+  use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), mirror);
+  const Transform faces_it = Transform::translate(0, 0, 20) * Transform::rotate(0, 1, 0, 180);
+  const int wall = add_shape(desc, sd::RectangleDesc{}, faces_it * Transform::scale(50, 50, 1));
+  use(desc, wall, add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.5f, 0, 0)}}));
+  shine(desc, wall, sd::ColorInput{Rgb(1)});
+  const PixelFeatures features = traced(desc);
+  for (const Rgb& p : features.emission.pixels) EXPECT_EQ(p, Rgb(0));
+  for (const Rgb& p : features.mirrored.pixels) EXPECT_GT(p.g, 0.5f);
+  for (const Rgb& p : features.albedo.pixels) {
+    EXPECT_GT(p.r, 0.25f);
+    EXPECT_EQ(p.g, 0);
+  }
+  for (const Rgb& p : features.normal.pixels) EXPECT_LT(p.b, -0.99f);
+}
+
+}  // namespace
+}  // namespace lumirank::pipeline
