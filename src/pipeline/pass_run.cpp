@@ -398,8 +398,12 @@ class PassRun {
 
   image::Image noisy() const {
     image::Image image = mean_.mean();
-    if (features_ && parts_.emission) add(features_->means().mirrored, image);
     rest_->add_to(image);
+    if (!features_ || !parts_.emission) return image;
+    double sum = 0;
+    for (const Rgb& p : image.pixels) sum += static_cast<double>(luminance(p));
+    const double usual = sum / static_cast<double>(image.pixels.size());
+    add(without_fireflies(features_->means().mirrored, static_cast<float>(usual)), image);
     return image;
   }
   static void add(const image::Image& from, image::Image& to) {

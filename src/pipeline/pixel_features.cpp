@@ -16,6 +16,8 @@ namespace {
 constexpr float kColorEdge = 0.04f, kNormalSpread = 0.02f, kNormalEdge = 0.15f;
 // Emission that a screen shows as white.
 constexpr float kWhite = 4;
+// How many times what stands beside it, or what is usual, a pixel may be.
+constexpr float kOverNeighbors = 4, kOverUsual = 16;
 
 Rgb least_of(Rgb a, Rgb b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
 Rgb most_of(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
@@ -123,6 +125,22 @@ PixelFeatures PixelFeatureTracing::means() const {
     features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * part;
   }
   return features;
+}
+
+image::Image without_fireflies(image::Image mirrored, float usual) {
+  const image::Image all = mirrored;
+  for (int y = 0; y < all.height; ++y)
+    for (int x = 0; x < all.width; ++x) {
+      const float here = luminance(all.at(x, y));
+      if (here <= kOverUsual * usual) continue;
+      float beside = 0;
+      for (int v = std::max(0, y - 1); v < std::min(all.height, y + 2); ++v)
+        for (int u = std::max(0, x - 1); u < std::min(all.width, x + 2); ++u)
+          if (u != x || v != y) beside = std::max(beside, luminance(all.at(u, v)));
+      const float most = std::max(kOverNeighbors * beside, kOverUsual * usual);
+      if (here > most) mirrored.at(x, y) = all.at(x, y) * (most / here);
+    }
+  return mirrored;
 }
 
 }  // namespace lumirank::pipeline

@@ -40,7 +40,9 @@ float roughness_traced(const RenderSettings& settings, float sharp_below) {
 // Spheres are wide enough by themselves, and what paths make whole may not be blurred. With 0.1 pictures are
 // nearest to the path tracer's; with 0.3 their caustics flicker half as much.
 float least_roughness(const Recipe& recipe) {
-  if (recipe.lights.type != LightType::point || recipe.compensated || recipe.local_paths > 0) return 0;
+  if (recipe.lights.type != LightType::point || recipe.compensated ||
+      (recipe.local_paths > 0 && recipe.near_lights == 0))
+    return 0;
   const double unset = recipe.lights.placement == LightPlacement::gather ? 0.3 : 0.1;
   return static_cast<float>(recipe.lights.roughness.value_or(unset));
 }

@@ -83,5 +83,15 @@ TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   for (const Rgb& p : features.normal.pixels) EXPECT_LT(p.b, -0.99f);
 }
 
+TEST(PixelFeatures, OnePixelIsAFireflyAndTwoAreALamp) {
+  image::Image picture(8, 8);
+  picture.at(2, 2) = Rgb(1000);
+  picture.at(5, 5) = picture.at(6, 5) = Rgb(1000, 900, 800);
+  const image::Image without = without_fireflies(picture, 0.5f);
+  EXPECT_NEAR(without.at(2, 2).g, 8, 1e-4f);
+  EXPECT_EQ(without.at(5, 5), picture.at(5, 5));
+  EXPECT_EQ(without.at(6, 5), picture.at(6, 5));
+}
+
 }  // namespace
 }  // namespace lumirank::pipeline
