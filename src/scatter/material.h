@@ -89,11 +89,13 @@ struct ThinDielectricMaterial {
 };
 void add_lobes(const ThinDielectricMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
-// One of the two faces of a slab through which light goes straight; no format has it.
+// One of the two faces of a slab through which light goes straight; no format has it. The eye sees the glass
+// that it stands for, whose rim shows.
 struct SlabFaceMaterial {
   static constexpr bool transmits = true;
   float eta;
   ColorInput specular_reflectance, specular_transmittance;
+  int glass = -1;  // of the set
 };
 void add_lobes(const SlabFaceMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -235,6 +237,12 @@ struct MaterialSet {
   // The closure at a point, for a known direction wo (which decides the side of two-sided and dielectric
   // BSDFs). A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
   Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
+
+  // What the eye sees of it: itself, or the glass of a pane.
+  int seen(int material) const {
+    const auto* face = std::get_if<SlabFaceMaterial>(&materials[static_cast<std::size_t>(material)]);
+    return face && face->glass >= 0 ? face->glass : material;
+  }
 
   // A BSDF of fibers: all non-delta lobes of its closures are hair lobes (Closure::is_fiber()).
   bool is_hair(int material) const;

@@ -178,8 +178,8 @@ class World::Builder {
     material_of_[i] = known->second;
     ++w_.info.panes;
     if (is_new)
-      materials.push_back(
-          scatter::SlabFaceMaterial{glass->eta, glass->specular_reflectance, glass->specular_transmittance});
+      materials.push_back(scatter::SlabFaceMaterial{glass->eta, glass->specular_reflectance,
+                                                    glass->specular_transmittance, known->first});
   }
   static std::size_t index_of(int material) { return static_cast<std::size_t>(material); }
 

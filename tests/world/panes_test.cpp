@@ -82,6 +82,12 @@ TEST(Panes, LetShadowRaysPassWithWhatASlabLetsThrough) {
   const float face = 0.04f;
   const Rgb through = visible_fraction(passes, from, up, up, 2, 1);
   EXPECT_NEAR(through.g, (1 - face) * (1 - face), 2e-3f);
+  // The eye sees the glass.
+  const auto hit = passes.intersect(ray(from, up));
+  ASSERT_TRUE(hit);
+  const auto& materials = passes.materials();
+  EXPECT_EQ(materials.passage(hit->material), scatter::MaterialSet::Passage::attenuating);
+  EXPECT_EQ(materials.passage(materials.seen(hit->material)), scatter::MaterialSet::Passage::opaque);
 }
 
 }  // namespace

@@ -201,7 +201,7 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
     }
     const Vec3f wo = -s.ray.direction;
     if (hit->emitter >= 0) add_emission(s, world_.emitted(*hit, wo));
-    Closure closure = world_.materials().closure(hit->material, hit->point, wo);
+    Closure closure = world_.materials().closure(world_.materials().seen(hit->material), hit->point, wo);
     scatter::face_viewer(closure, wo);
     if (from_eye && first) {
       const float side = dot(closure.frame.n, wo) < 0 ? -1.0f : 1.0f;
