@@ -7,15 +7,13 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "denoise/denoiser.h"
 #include "matrix/metered_matrix.h"
 #include "methods/common/timed_choices.h"
 #include "pipeline/compensation.h"
 #include "pipeline/develop.h"
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
-#include "pipeline/picture_mean.h"
-#include "pipeline/pixel_features.h"
+#include "pipeline/pass_picture.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
 #include "pipeline/rest_tracing.h"
@@ -42,20 +40,6 @@ constexpr float kNearOfPass = 10;
 // seconds they will take, before that is known, and how noisy a pass is.
 constexpr double kRestUntimed = 2, kLeastRest = 0.25, kMostRest = 8;
 constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
-// The film whose denoising tells what the picture's will take; and what a larger one may take more.
-constexpr int kDenoiserTrial = 192;
-constexpr double kDenoiserMargin = 1.25;
-// Features that are called clean are worth more, and take this many times longer: where that is at most such
-// a part of the budget.
-constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
-// Film samples at edges, beside those of all pixels; under a budget as many as this part of what is left
-// pays.
-constexpr int kEdgeSamples = 12;
-constexpr double kTimeOfEdges = 0.08;
-// Without a denoiser, in each pass of an unknown number.
-constexpr int kEmissionSamples = 2;
-// Of fewer pixels a side it knows too little.
-constexpr int kSmallestDenoised = 16;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
 
 std::string pass_number(const char* format, double x) {
@@ -82,7 +66,8 @@ class PassRun {
 
   RenderResult run() {
     sinks_.say("method: " + task_.info->name + " (" + task_.why + ")");
-    find_denoiser();
+    picture_.emplace(asked_, view_, choices_, sinks_);
+    view_ = whole_ = picture_->filtered(view_);
     rest_.emplace(task_.world, view_, asked_, sinks_);
     if (rest_->plan().piloted) seconds_["rest_pilot"] = rest_->pilot_seconds();
     const Timer survey_timer;
@@ -229,7 +214,7 @@ class PassRun {
     choices_.record("film_divisor", divisor);
     const double left_now = left();
     if (divisor == 1 && expected_.total() <= left_now) return;
-    const double enough = task_.build_seconds + denoiser_seconds_ + kFewPasses * whole;
+    const double enough = task_.build_seconds + picture_->denoiser_seconds() + kFewPasses * whole;
     const std::string budget = pass_number("%.3g s", asked_.time);
     shortage_ = asked_.time < task_.build_seconds
                     ? "building the scene took " + pass_number("%.2g s", task_.build_seconds) +
@@ -276,7 +261,7 @@ class PassRun {
     task_.method = task_.info->make(parameters);
   }
 
-  double end() const { return asked_.time - denoiser_seconds_; }
+  double end() const { return asked_.time - picture_->denoiser_seconds(); }
   double left() const { return end() - clock_(); }
   double pace() const { return std::max(1e-3, pace_ > 0 ? pace_ : expected_.total() * (1 + rest_share())); }
   double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
@@ -286,7 +271,7 @@ class PassRun {
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
     if (passes_ == 0) return true;
-    if (asked_.method.target_error > 0 && passes_ >= 4 && mean_.noise() < asked_.method.target_error)
+    if (asked_.method.target_error > 0 && passes_ >= 4 && picture_->noise() < asked_.method.target_error)
       return false;
     return !timed() || replays() || next_eighths_ > 0;
   }
@@ -297,51 +282,19 @@ class PassRun {
     PassSeconds took;
     if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
-    mean_.add(image);
     pace_ = (pace_ * number + (clock_() - begin)) / (number + 1);
-    if (!trace_features(number)) return false;
+    const Recipe of_film = recipe_of(number == 0 ? ~1ull : static_cast<std::uint64_t>(number));
+    const Timer timer;
+    if (!picture_->add(number, wanted_, image, {*task_.world, view_, of_film, *prepared_->rows, traced_},
+                       timed() ? left() : 0, choices_, sinks_))
+      return false;
+    seconds_["features"] += timer.seconds();
     const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
                                 : static_cast<double>(number + 1) / wanted_;
     sinks_.report("passes", std::clamp(part, 0.0, 1.0));
-    if (previews_ && throttle_.due()) throttle_.show(as_asked(with_emission(noisy())));
+    if (previews_ && throttle_.due())
+      throttle_.show(as_asked(picture_->with_emission(picture_->sent(*rest_))));
     return true;
-  }
-
-  // Without a denoiser emission is filtered as all else is. With one most samples follow the first pass, when
-  // it is known what a pass takes; but what mirrors show of lamps takes as many as there are passes.
-  bool trace_features(int number) {
-    const Timer timer;
-    if (!denoiser_) {
-      if (parts_.emission) emission_.add(emission_of_pass());
-    } else if (number == 0) {
-      features_.emplace(*task_.world, view_, recipe_of(~1ull));
-      if (!features_->trace_all(sinks_) || !features_->trace_differing(edge_samples(timer.seconds()), sinks_))
-        return false;
-    } else if (number >= kEdgeSamples) {
-      if (!features_->trace_another(static_cast<std::uint64_t>(number), sinks_)) return false;
-    }
-    seconds_["features"] += timer.seconds();
-    return true;
-  }
-  image::Image emission_of_pass() {
-    Recipe recipe = recipe_of(static_cast<std::uint64_t>(passes_));
-    recipe.film_samples = asked_.view.film_samples.value_or(
-        timed() ? kEmissionSamples : std::clamp(kEdgeSamples / wanted_, 1, kEdgeSamples));
-    recipe.film_samples = std::max(1, recipe.film_samples);
-    const FilmParts emission{.matrix = false, .traced_direct = false, .traced_indirect = false};
-    return develop({*task_.world, view_, recipe, *prepared_->rows, traced_}, {}, emission);
-  }
-  int edge_samples(double seconds_of_all) {
-    if (asked_.view.film_samples)
-      return std::max(0, *asked_.view.film_samples - PixelFeatureTracing::kEverywhere);
-    if (!timed()) return kEdgeSamples;
-    const double one = seconds_of_all / PixelFeatureTracing::kEverywhere * features_->differing();
-    int samples = one > 0 ? static_cast<int>(std::clamp(kTimeOfEdges * left() / one, 0.0, 1.0 * kEdgeSamples))
-                          : kEdgeSamples;
-    if (const auto earlier = choices_.earlier("edge_samples", kEdgeSamples))
-      samples = static_cast<int>(*earlier);
-    choices_.record("edge_samples", samples);
-    return samples;
   }
 
   // Two sorts of noise are least together, for their seconds, where each has samples in proportion to its
@@ -350,7 +303,7 @@ class PassRun {
     const double all = static_cast<double>(view_.width) * static_cast<double>(view_.height) *
                        rest_->plan().pilot.path_seconds;
     if (!timed() || !(all > 0)) return kRestUntimed;
-    const double of_pass = passes_ >= kFewPasses ? mean_.noise() * std::sqrt(passes_) : kNoiseOfPass;
+    const double of_pass = passes_ >= kFewPasses ? picture_->noise() * std::sqrt(passes_) : kNoiseOfPass;
     return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kLeastRest,
                       kMostRest);
   }
@@ -369,77 +322,25 @@ class PassRun {
 
   // ------------------------------------------------------------ the picture
 
-  void find_denoiser() {
-    if (asked_.denoise == Denoise::off) return;
-    const denoise::Found& found = denoise::Denoiser::find();
-    denoiser_ = found.denoiser;
-    if (!denoiser_) {
-      if (asked_.denoise == Denoise::on) throw InputError(found.trouble, "leave out --denoise");
-      sinks_.say("the picture keeps its noise, which a denoiser would take out: " + found.trouble);
-      return;
-    }
-    // A wider filter makes the noise of neighbors alike, and a denoiser takes it for shape then.
-    view_.sensor.film.filter = scenedesc::FilterDesc{.kind = scenedesc::FilterKind::box};
-    whole_ = view_;
-    if (!timed()) return;
-    const image::Image trial(kDenoiserTrial, kDenoiserTrial, Rgb(0.5f));
-    const Timer timer;
-    denoiser_->denoise(trial, &trial, &trial);
-    denoiser_seconds_ = kDenoiserMargin * timer.seconds() * static_cast<double>(view_.width) *
-                        static_cast<double>(view_.height) / (kDenoiserTrial * kDenoiserTrial);
-    bool clean = kCleanOverNoisy * denoiser_seconds_ <= kTimeOfClean * asked_.time;
-    if (const auto earlier = choices_.earlier("clean_features", 1)) clean = *earlier == 1;
-    choices_.record("clean_features", clean ? 1 : 0);
-    if (clean)
-      denoiser_seconds_ *= kCleanOverNoisy;
-    else
-      features_are_ = denoise::Features::noisy;
-  }
-
-  image::Image noisy() const {
-    image::Image image = mean_.mean();
-    rest_->add_to(image);
-    if (!features_ || !parts_.emission) return image;
-    double sum = 0;
-    for (const Rgb& p : image.pixels) sum += static_cast<double>(luminance(p));
-    const double usual = sum / static_cast<double>(image.pixels.size());
-    add(without_fireflies(features_->means().mirrored, static_cast<float>(usual)), image);
-    return image;
-  }
-  static void add(const image::Image& from, image::Image& to) {
-    for (std::size_t p = 0; p < from.pixels.size(); ++p) to.pixels[p] += from.pixels[p];
-  }
-
   Picture as_asked(const image::Image& image) const {
     Picture picture = to_picture(image);
     if (picture.width == task_.view.width && picture.height == task_.view.height) return picture;
     return enlarged(picture, task_.view.width, task_.view.height);
   }
 
-  image::Image with_emission(image::Image image) const {
-    if (!parts_.emission) return image;
-    add(features_ ? features_->means().emission : emission_.mean(), image);
-    return image;
-  }
-
-  bool is_denoised(const image::Image& image) const {
-    return denoiser_ && !result_.interrupted && std::min(image.width, image.height) >= kSmallestDenoised &&
-           std::any_of(image.pixels.begin(), image.pixels.end(), [](Rgb c) { return !is_black(c); });
-  }
-
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
-    const image::Image sent = noisy();
-    result_.picture = as_asked(with_emission(sent));
-    if (is_denoised(sent)) {
+    const image::Image sent = picture_->sent(*rest_);
+    result_.picture = as_asked(picture_->with_emission(sent));
+    if (!result_.interrupted) {
       const Timer timer;
-      const PixelFeatures features = features_->means();
-      std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-      result_.picture = as_asked(
-          with_emission(denoiser_->denoise(sent, &features.albedo, &features.normal, features_are_)));
-      result_.picture.planes.push_back({"undenoised", std::move(before)});
-      seconds_["denoise"] = timer.seconds();
+      if (const auto denoised = picture_->denoised(sent)) {
+        std::vector<float> before = std::move(result_.picture.planes[0].rgb);
+        result_.picture = as_asked(picture_->with_emission(*denoised));
+        result_.picture.planes.push_back({"undenoised", std::move(before)});
+        seconds_["denoise"] = timer.seconds();
+      }
     }
     report();
     return std::move(result_);
@@ -454,13 +355,13 @@ class PassRun {
     numbers["passes"] = passes_;
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
-    if (passes_ > 1) numbers["error.noise"] = numbers["error.estimate"] = mean_.noise();
+    if (passes_ > 1) numbers["error.noise"] = numbers["error.estimate"] = picture_->noise();
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
     estimate_.trace.notes["method.why"] = task_.why;
     estimate_.trace.notes["denoiser"] =
-        seconds_.contains("denoise") ? "Open Image Denoise " + denoiser_->version() : "none";
+        seconds_.contains("denoise") ? "Open Image Denoise " + picture_->denoiser_version() : "none";
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
     if (passes_ > 1) result_.report.notes["error.of"] = "the noise of all passes, before a denoiser";
@@ -487,9 +388,7 @@ class PassRun {
   View view_, whole_;  // as rendered, and of the size that was asked for
   FilmParts parts_;
   methods::TimedChoices choices_;
-  std::shared_ptr<const denoise::Denoiser> denoiser_;
-  double denoiser_seconds_ = 0;
-  denoise::Features features_are_ = denoise::Features::clean;
+  std::optional<PassPicture> picture_;
   std::optional<RestTracing> rest_;
   SharedSurvey survey_;
   PassSeconds expected_;
@@ -497,9 +396,6 @@ class PassRun {
   int wanted_ = 1, passes_ = 0, usual_eighths_ = kEighths, next_eighths_ = kEighths;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
-  PictureMean mean_;                             // of what surfaces send
-  PictureMean emission_;                         // without a denoiser
-  std::optional<PixelFeatureTracing> features_;  // with one
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;
   TracedLight traced_;
