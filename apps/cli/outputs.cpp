@@ -100,6 +100,17 @@ PreviewCallback preview_writer(const OutputOptions& outputs) {
   return [outputs](const Picture& picture) { write_picture(outputs.preview, picture, outputs.display); };
 }
 
+namespace {
+
+// It was wanted where it is found, and none was.
+bool lacks_denoiser(const Report& report) {
+  const auto note = report.notes.find("denoiser");
+  return note != report.notes.end() && note->second == "none" &&
+         report.settings.denoise == Denoise::automatic && report.notes.contains("denoiser.trouble");
+}
+
+}  // namespace
+
 int write_outputs(const OutputOptions& outputs, const RenderResult& result, Console& console, bool quiet,
                   Streams streams) {
   FilesTogether together;
@@ -116,8 +127,14 @@ int write_outputs(const OutputOptions& outputs, const RenderResult& result, Cons
   if (result.interrupted)
     std::fprintf(streams.err, "interrupted: what was finished has been written to %s\n",
                  outputs.images.front().c_str());
-  else if (!quiet)
+  else if (!quiet) {
     for (const auto& file : written) std::fprintf(streams.out, "wrote %s\n", file.c_str());
+    if (lacks_denoiser(result.report))
+      std::fprintf(streams.out,
+                   "it has its noise still: `make denoiser` gets Open Image Denoise, which takes it out of "
+                   "this and all "
+                   "later pictures (--denoise off is content without)\n");
+  }
   return result.interrupted ? 130 : 0;
 }
 

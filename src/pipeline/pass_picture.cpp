@@ -40,7 +40,8 @@ PassPicture::PassPicture(const RenderSettings& settings, const View& view, metho
   } else if (settings.denoise == Denoise::on) {
     throw InputError(found.trouble, "leave out --denoise");
   } else {
-    sinks.say("the picture keeps its noise, which a denoiser would take out: " + found.trouble);
+    trouble_ = found.trouble;
+    sinks.say("the picture keeps its noise, which a denoiser would take out: " + trouble_);
   }
 }
 

@@ -26,6 +26,8 @@ class PassPicture {
 
   bool has_denoiser() const { return denoiser_ != nullptr; }
   std::string denoiser_version() const { return denoiser_->version(); }
+  // Why there is none although one would be used; else empty.
+  const std::string& denoiser_trouble() const { return trouble_; }
   // What denoising the whole film is expected to take; 0 without a budget.
   double denoiser_seconds() const { return denoiser_seconds_; }
   // With the filter that denoised pictures have: a wider one makes the noise of neighbors alike, and a
@@ -56,6 +58,7 @@ class PassPicture {
   const RenderSettings& settings_;
   FilmParts parts_;
   std::shared_ptr<const denoise::Denoiser> denoiser_;
+  std::string trouble_;
   double denoiser_seconds_ = 0;
   denoise::Features features_are_ = denoise::Features::clean;
   PictureMean mean_;                             // of what surfaces send

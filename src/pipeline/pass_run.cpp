@@ -362,6 +362,8 @@ class PassRun {
     estimate_.trace.notes["method.why"] = task_.why;
     estimate_.trace.notes["denoiser"] =
         seconds_.contains("denoise") ? "Open Image Denoise " + picture_->denoiser_version() : "none";
+    if (!picture_->denoiser_trouble().empty())
+      estimate_.trace.notes["denoiser.trouble"] = picture_->denoiser_trouble();
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
     if (passes_ > 1) result_.report.notes["error.of"] = "the noise of all passes, before a denoiser";

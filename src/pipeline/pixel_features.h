@@ -55,8 +55,8 @@ class PixelFeatureTracing {
   std::vector<std::uint8_t> differs_;
 };
 
-// Without single pixels that are far brighter than all around them and than `usual`, a luminance: what one film
-// sample in many finds by way of a mirror is a firefly, which no denoiser takes out of one pixel.
+// Without single pixels that are far brighter than all around them and than `usual`, a luminance: what one
+// film sample in many finds by way of a mirror is a firefly, which no denoiser takes out of one pixel.
 image::Image without_fireflies(image::Image mirrored, float usual);
 
 }  // namespace lumirank::pipeline
