@@ -17,8 +17,8 @@ constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
 // Of fewer pixels a side it knows too little.
 constexpr int kSmallestDenoised = 16;
 // Film samples at edges, beside those of all pixels; under a budget as many as this part of what is left
-// pays.
-constexpr int kEdgeSamples = 12;
+// pays, but no fewer than leave fur dotted.
+constexpr int kEdgeSamples = 12, kFewEdgeSamples = 5;
 constexpr double kTimeOfEdges = 0.08;
 // Without a denoiser, in each pass of an unknown number.
 constexpr int kEmissionSamples = 2;
@@ -92,7 +92,9 @@ int PassPicture::edge_samples(double seconds_of_all, double left, methods::Timed
   if (!timed()) return kEdgeSamples;
   const double one = seconds_of_all / PixelFeatureTracing::kEverywhere * features_->differing();
   int samples = kEdgeSamples;
-  if (one > 0) samples = static_cast<int>(std::clamp(kTimeOfEdges * left / one, 0.0, 1.0 * kEdgeSamples));
+  if (one > 0)
+    samples =
+        static_cast<int>(std::clamp(kTimeOfEdges * left / one, 1.0 * kFewEdgeSamples, 1.0 * kEdgeSamples));
   if (const auto earlier = choices.earlier("edge_samples", kEdgeSamples))
     samples = static_cast<int>(*earlier);
   choices.record("edge_samples", samples);

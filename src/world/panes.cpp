@@ -41,6 +41,7 @@ std::vector<Triangles> parts_of(const geometry::TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     parts[corner(t, 0)].push_back(static_cast<std::uint32_t>(t));
   std::vector<Triangles> result;
+  result.reserve(parts.size());
   for (auto& [at, triangles] : parts) result.push_back(std::move(triangles));
   return result;
 }
