@@ -1,6 +1,6 @@
-// Panes: flat sheets of smooth glass, thin against their size. Light that passes them comes out in the direction
-// in which it went in, a little beside; letting it go straight on instead costs next to nothing of what is lit,
-// and shadow rays can pass. The eye goes on seeing the glass as it is, with its rim.
+// Panes: flat sheets of smooth glass, thin against their size. Light that passes them comes out in the
+// direction in which it went in, a little beside; letting it go straight on instead costs next to nothing of
+// what is lit, and shadow rays can pass. The eye goes on seeing the glass as it is, with its rim.
 #pragma once
 
 #include "base/transform.h"
