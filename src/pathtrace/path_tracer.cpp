@@ -63,7 +63,7 @@ Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, 
             .from = departure.from,
             .near = departure.near,
             .eta_scale = next.eta * next.eta};
-  if (walk.near) walk.ray.t_max = walk.near->most;
+  if (walk.near) walk.ray.t_max = walk.near->max;
   finish(walk);
   return walk.sum.indirect;
 }

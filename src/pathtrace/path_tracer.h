@@ -44,7 +44,7 @@ struct PathSettings {
 // How near to a place light must come from to count, as a distance.
 struct Reach {
   std::function<float(Vec3f place)> at;
-  float most = kInfinity;  // that it is anywhere
+  float max = kInfinity;  // that it is anywhere
 };
 
 class PathTracer {

@@ -18,7 +18,7 @@ constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
 constexpr int kSmallestDenoised = 16;
 // Film samples at edges, beside those of all pixels; under a budget as many as this part of what is left
 // pays, but no fewer than leave fur dotted.
-constexpr int kEdgeSamples = 12, kFewEdgeSamples = 5;
+constexpr int kEdgeSamples = 12, kMinEdgeSamples = 5;
 constexpr double kTimeOfEdges = 0.08;
 // Without a denoiser, in each pass of an unknown number.
 constexpr int kEmissionSamples = 2;
@@ -94,7 +94,7 @@ int PassPicture::edge_samples(double seconds_of_all, double left, methods::Timed
   int samples = kEdgeSamples;
   if (one > 0)
     samples =
-        static_cast<int>(std::clamp(kTimeOfEdges * left / one, 1.0 * kFewEdgeSamples, 1.0 * kEdgeSamples));
+        static_cast<int>(std::clamp(kTimeOfEdges * left / one, 1.0 * kMinEdgeSamples, 1.0 * kEdgeSamples));
   if (const auto earlier = choices.earlier("edge_samples", kEdgeSamples))
     samples = static_cast<int>(*earlier);
   choices.record("edge_samples", samples);

@@ -23,7 +23,7 @@ namespace lumirank::pipeline {
 namespace {
 
 // Samples of a whole pass by default, and the least of a first and of a last one.
-constexpr int kEighths = 8, kFewEighths = 3, kFewestEighths = 2;
+constexpr int kEighths = 8, kMinFirstEighths = 3, kMinEighths = 2;
 constexpr int kFewPasses = 4, kWantedPasses = 3, kDefaultPasses = 16, kMaxPasses = 65536;
 // Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
 // them. More of them in one pass are fewer passes, which have as many altogether.
@@ -38,7 +38,7 @@ constexpr double kClampOfPass = 16;
 constexpr float kNearOfPass = 10;
 // Paths of the rest for each pass: without a budget; and within one at least, at most. What of a pass's
 // seconds they will take, before that is known, and how noisy a pass is.
-constexpr double kRestUntimed = 2, kLeastRest = 0.25, kMostRest = 8;
+constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8;
 constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
 
@@ -234,7 +234,8 @@ class PassRun {
   }
   void choose_part() {
     const double first = kEighths * left() / (kWantedPasses * pace());
-    usual_eighths_ = may_be_smaller() ? std::clamp(static_cast<int>(first), kFewEighths, kEighths) : kEighths;
+    usual_eighths_ =
+        may_be_smaller() ? std::clamp(static_cast<int>(first), kMinFirstEighths, kEighths) : kEighths;
     // About half of what is done for each pixel is drawing lights.
     const double part = static_cast<double>(usual_eighths_) / kEighths;
     expected_.fixed *= part, expected_.by_pixel *= 0.5 + 0.5 * part;
@@ -245,7 +246,7 @@ class PassRun {
     if (!may_be_smaller()) return 0;
     const double drawing = (seconds_.at("method") + seconds_.at("lights")) / passes_;
     const double fits = usual_eighths_ * (1 - (pace() - left()) / std::max(1e-6, drawing));
-    return fits < kFewestEighths ? 0 : std::min(static_cast<int>(fits), usual_eighths_);
+    return fits < kMinEighths ? 0 : std::min(static_cast<int>(fits), usual_eighths_);
   }
   void set_part() {
     int eighths = next_eighths_;
@@ -304,15 +305,15 @@ class PassRun {
                        rest_->plan().pilot.path_seconds;
     if (!timed() || !(all > 0)) return kRestUntimed;
     const double of_pass = passes_ >= kFewPasses ? picture_->noise() * std::sqrt(passes_) : kNoiseOfPass;
-    return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kLeastRest,
-                      kMostRest);
+    return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kMinRest,
+                      kMaxRest);
   }
   bool add_rest(double pass_seconds) {
     if (rest_->plan().paths == 0) return true;
     rest_due_ += rest_per_pass(pass_seconds);
     int paths = std::max(passes_ == 0 ? 1 : 0, static_cast<int>(rest_due_));
     if (timed()) {
-      if (const auto earlier = choices_.earlier("rest_of_pass", static_cast<int>(kMostRest) + 1))
+      if (const auto earlier = choices_.earlier("rest_of_pass", static_cast<int>(kMaxRest) + 1))
         paths = static_cast<int>(*earlier);
       choices_.record("rest_of_pass", paths);
     }

@@ -19,8 +19,8 @@ constexpr float kWhite = 4;
 // How many times what stands beside it, or what is usual, a pixel may be.
 constexpr float kOverNeighbors = 4, kOverUsual = 16;
 
-Rgb least_of(Rgb a, Rgb b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
-Rgb most_of(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
+Rgb min_of(Rgb a, Rgb b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
+Rgb max_of(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
 float distance(Rgb a, Rgb b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
@@ -58,10 +58,10 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, const std::vect
           normal = normal + v.normal * weight, weights += weight;
         }
         if (weights > 0) normal = normal * (1 / weights);
-        const Rgb color = albedo + least_of(sample.straight, Rgb(kWhite));
+        const Rgb color = albedo + min_of(sample.straight, Rgb(kWhite));
         sums.emission += sample.straight, sums.mirrored += sample.emission - sample.straight;
         sums.albedo += albedo;
-        sums.least = least_of(sums.least, color), sums.most = most_of(sums.most, color);
+        sums.min_color = min_of(sums.min_color, color), sums.max_color = max_of(sums.max_color, color);
         sums.normal = sums.normal + normal, sums.normals += length(normal);
         ++sums.count;
       }
@@ -88,7 +88,7 @@ void PixelFeatureTracing::mark_differing() {
   differs_.assign(sums_.size(), 0);
   const auto color = [](const Sums& s) {
     const float part = 1 / static_cast<float>(s.count);
-    return s.albedo * part + least_of(s.emission * part, Rgb(kWhite));
+    return s.albedo * part + min_of(s.emission * part, Rgb(kWhite));
   };
   const auto compare = [&](std::size_t p, std::size_t q) {
     const Sums &a = sums_[p], &b = sums_[q];
@@ -101,7 +101,8 @@ void PixelFeatureTracing::mark_differing() {
     for (std::size_t x = 0; x < width; ++x) {
       const std::size_t p = y * width + x;
       const Sums& s = sums_[p];
-      if (distance(s.most, s.least) > kColorEdge || length(s.normal) < (1 - kNormalSpread) * s.normals)
+      if (distance(s.max_color, s.min_color) > kColorEdge ||
+          length(s.normal) < (1 - kNormalSpread) * s.normals)
         differs_[p] = 1;
       if (x + 1 < width) compare(p, p + 1);
       if (y + 1 < height) compare(p, p + width);
@@ -137,8 +138,8 @@ image::Image without_fireflies(image::Image mirrored, float usual) {
       for (int v = std::max(0, y - 1); v < std::min(all.height, y + 2); ++v)
         for (int u = std::max(0, x - 1); u < std::min(all.width, x + 2); ++u)
           if (u != x || v != y) beside = std::max(beside, luminance(all.at(u, v)));
-      const float most = std::max(kOverNeighbors * beside, kOverUsual * usual);
-      if (here > most) mirrored.at(x, y) = all.at(x, y) * (most / here);
+      const float limit = std::max(kOverNeighbors * beside, kOverUsual * usual);
+      if (here > limit) mirrored.at(x, y) = all.at(x, y) * (limit / here);
     }
   return mirrored;
 }

@@ -40,7 +40,8 @@ class PixelFeatureTracing {
 
  private:
   struct Sums {
-    Rgb emission{0}, mirrored{0}, albedo{0}, least{kInfinity}, most{0};  // the latter two: albedo + emission
+    Rgb emission{0}, mirrored{0}, albedo{0}, min_color{kInfinity},
+        max_color{0};  // the latter two: albedo + emission
     Vec3f normal{0, 0, 0};
     float normals = 0;  // Σ |normal| of the samples: longer than their sum where they differ
     int count = 0;

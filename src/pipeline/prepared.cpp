@@ -134,7 +134,7 @@ Columns trace_columns(const world::World& world, const Recipe& recipe, const tra
   if (recipe.lights.type == LightType::sphere)
     columns.radius_scale =
         transport::make_spherical(*lights, world, {static_cast<float>(recipe.lights.radius_scale)}, sinks);
-  if (recipe.near_lights > 0) columns.most_reach = transport::give_reach(*lights, recipe.near_lights);
+  if (recipe.near_lights > 0) columns.max_reach = transport::give_reach(*lights, recipe.near_lights);
   if (sinks.cancelled()) throw Cancelled();
   columns.lights = std::move(lights);
   return columns;
@@ -145,7 +145,7 @@ std::vector<Rgb> trace_near(const world::World& world, const transport::Receiver
   if ((recipe.near_radii <= 0 && recipe.near_lights <= 0) || recipe.only == LightPart::direct) return {};
   const transport::LightReach reach =
       recipe.near_lights > 0
-          ? transport::LightReach(*columns.lights, recipe.near_lights, columns.most_reach)
+          ? transport::LightReach(*columns.lights, recipe.near_lights, columns.max_reach)
           : transport::LightReach(*columns.lights, world, static_cast<float>(columns.radius_scale),
                                   recipe.near_radii);
   TracedIndirectSettings ts;

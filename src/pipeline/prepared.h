@@ -27,7 +27,7 @@ struct Columns {
   std::shared_ptr<const transport::VirtualLights> lights;
   std::size_t asked = 0;                // how many there were to be
   double radius_scale = 0;              // of spherical lights; 0: points
-  float most_reach = 0;                 // of points (give_reach)
+  float max_reach = 0;                  // of points (give_reach)
   pathtrace::CarriedByColumns carried;  // where the rest is to be traced; bound 0: it is not
 };
 

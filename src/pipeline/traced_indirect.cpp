@@ -25,7 +25,7 @@ class Tracing {
         settings_(settings),
         tracer_(world, {settings.seed, settings.max_depth, pathtrace::Paths::columns, {}}),
         reach_{[near = settings.near](Vec3f place) { return near->at(place); },
-               settings.near ? settings.near->most() : kInfinity} {}
+               settings.near ? settings.near->max_reach() : kInfinity} {}
 
   bool wants(std::size_t i) const {
     if (settings_.max_depth >= 0 && receivers_.depth[i] + 1 > settings_.max_depth) return false;

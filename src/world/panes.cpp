@@ -16,7 +16,7 @@ constexpr float kFaces = 0.75f, kUnlike = 1.1f;
 constexpr float kParallel = 0.9998f;  // cosine
 constexpr float kThin = 0.1f;         // times the root of a face's area
 // More triangles are no window.
-constexpr std::size_t kMostTriangles = 1 << 16;
+constexpr std::size_t kMaxTriangles = 1 << 16;
 
 using Triangles = std::vector<std::uint32_t>;
 
@@ -87,7 +87,7 @@ bool is_plate(const PlacedMesh& mesh, const Triangles& triangles) {
 
 bool is_made_of_panes(const geometry::TriangleMesh& mesh, const Transform& to_world) {
   const std::size_t count = mesh.triangle_count();
-  if (count == 0 || count > kMostTriangles) return false;
+  if (count == 0 || count > kMaxTriangles) return false;
   const PlacedMesh placed{mesh, to_world};
   const std::vector<Triangles> parts = parts_of(mesh);
   if (std::all_of(parts.begin(), parts.end(), [&](const Triangles& t) { return is_plate(placed, t); }))

@@ -11,7 +11,7 @@ namespace {
 
 // Of all lights nine of ten reach less than half of the most.
 constexpr double kOrdinary = 0.9;
-constexpr float kMostOverOrdinary = 2;
+constexpr float kMaxOverOrdinary = 2;
 
 float reach_of(float area, float held) { return std::sqrt(area * held * kInvPi); }
 
@@ -34,7 +34,8 @@ LightReach::LightReach(const VirtualLights& lights, const world::World& world, f
 }
 
 // Areas are measured in halves, of which either is like the other.
-LightReach::LightReach(const VirtualLights& lights, float held, float most) : points_(true), most_(most) {
+LightReach::LightReach(const VirtualLights& lights, float held, float max_reach)
+    : points_(true), max_reach_(max_reach) {
   const std::size_t half = plant(lights, true, kAreaNeighbor);
   if (half == 0) return;
   const auto both =
@@ -46,7 +47,7 @@ LightReach::LightReach(const VirtualLights& lights, float held, float most) : po
 float LightReach::at(Vec3f place) const {
   if (!tree_) return 0;
   const float squared = tree_->kth_distance_squared(place, neighbor_);
-  if (points_) return std::min(most_, scale_ * std::sqrt(squared));
+  if (points_) return std::min(max_reach_, scale_ * std::sqrt(squared));
   return radii_ * sphere_radius(squared, scale_, extent_);
 }
 
@@ -62,9 +63,9 @@ float give_reach(VirtualLights& lights, float held) {
   const auto ordinary =
       of_surfaces.begin() + static_cast<std::ptrdiff_t>(kOrdinary * static_cast<double>(of_surfaces.size()));
   std::nth_element(of_surfaces.begin(), ordinary, of_surfaces.end());
-  const float most = kMostOverOrdinary * *ordinary;
-  for (float& reach : lights.reach) reach = std::min(reach, most);
-  return most;
+  const float max_reach = kMaxOverOrdinary * *ordinary;
+  for (float& reach : lights.reach) reach = std::min(reach, max_reach);
+  return max_reach;
 }
 
 }  // namespace lumirank::transport

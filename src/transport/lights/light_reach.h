@@ -19,12 +19,12 @@ class LightReach {
  public:
   // Of spheres. `scale`: that of the radii (make_spherical); `radii`: how many of them a place reaches.
   LightReach(const VirtualLights& lights, const world::World& world, float scale, float radii);
-  // Of points that have it from give_reach(), which returned `most`.
-  LightReach(const VirtualLights& lights, float held, float most);
+  // Of points that have it from give_reach(), which returned `max_reach`.
+  LightReach(const VirtualLights& lights, float held, float max_reach);
 
   // Distance; 0 if there is no surface light.
   float at(Vec3f place) const;
-  float most() const { return most_; }  // that it can be
+  float max_reach() const { return max_reach_; }  // that it can be
 
  private:
   // Of those, whose neighbors say how dense lights lie.
@@ -33,7 +33,7 @@ class LightReach {
   std::optional<PointTree> tree_;
   int neighbor_ = 0;
   bool points_ = false;
-  float scale_ = 1, radii_ = 1, extent_ = 0, most_ = kInfinity;
+  float scale_ = 1, radii_ = 1, extent_ = 0, max_reach_ = kInfinity;
 };
 
 // Fills `reach` of points: the radius of a disc that holds `held` of the surface lights, by the area that
