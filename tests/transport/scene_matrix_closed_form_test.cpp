@@ -64,6 +64,30 @@ TEST(SceneMatrixClosedForm, SurfaceLightScattersItsFlux) {
   EXPECT_NEAR(entry(matrix, 0, 0).b, expected, 1e-6f * expected);
 }
 
+// Within its reach a light gives nothing, whatever is asked for; beyond it what it gives without one.
+TEST(SceneMatrixClosedForm, NothingComesFromWithinALightsReach) {
+  Plane plane{0.0f, 1.0f, 3.0f};
+  for (const bool shining : {false, true}) {
+    add_light(plane.lights, LightKind::surface, {0, 0, 2}, {0, 0, -1}, Rgb(5));
+    if (shining) {
+      scatter::Closure glossy = plane.lights.closure_at(0);
+      glossy.lobes[0].kind = scatter::LobeKind::ward;
+      glossy.lobes[0].alpha_u = glossy.lobes[0].alpha_v = 0.4f;
+      plane.lights.closure.back() = plane.lights.closures.add(glossy, {0, 0, -1});
+    }
+  }
+  const SceneMatrix whole(plane.world, plane.receivers, plane.lights, unclamped());
+  plane.lights.reach = {2.1f, 2.1f};  // the first receiver is at 2, the second at √5
+  const SceneMatrix without(plane.world, plane.receivers, plane.lights, unclamped());
+  for (matrix::Index j = 0; j < 2; ++j) {
+    EXPECT_EQ(entry(without, 0, j), Rgb(0)) << j;
+    for (matrix::Index i = 1; i < 3; ++i) {
+      EXPECT_GT(entry(whole, i, j).g, 0) << i << ' ' << j;
+      EXPECT_EQ(entry(without, i, j), entry(whole, i, j)) << i << ' ' << j;
+    }
+  }
+}
+
 TEST(SceneMatrixClosedForm, DirectionalLight) {
   Plane plane{0.0f};
   const float angle = 0.6f;

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/warp.h"
 #include "matrix_fixture.h"
+#include "transport/lights/light_areas.h"
 #include "transport/lights/light_reach.h"
 #include "transport/lights/sphere_lights.h"
 #include "transport/pairs/sphere_integral.h"
@@ -315,6 +316,28 @@ TEST(SphericalLights, AReachIsSoManyRadii) {
   // From the middle of a cell: four at √½, eight at √2.5.
   EXPECT_NEAR(reach.at({0.05f, 0.05f, -1}), 3 * 2 * 0.1f * std::sqrt(2.5f), 1e-5);
   EXPECT_EQ(LightReach(VirtualLights(), world, 2, 3).at({0, 0, 0}), 0);
+}
+
+// A reach holds as many lights as were asked for, by the density of the eleven by eleven in their square.
+TEST(SphericalLights, AReachOfPointsHoldsSoManyOfThem) {
+  VirtualLights lights = grid_on_the_floor();
+  lights.half.resize(lights.size()), lights.path.resize(lights.size()), lights.area.resize(lights.size());
+  for (std::size_t j = 0; j < lights.size(); ++j) {
+    lights.half[j] = static_cast<std::uint8_t>(1 + j % 2);
+    lights.path[j] = static_cast<std::uint32_t>(j);
+  }
+  measure_areas(lights, 2);
+  const float max_reach = give_reach(lights, 5);
+  const float dense = std::sqrt(5 * 0.01f / kPi);
+  EXPECT_NEAR(lights.reach[60], dense, 0.15f * dense);
+  const LightReach reach(lights, 5, max_reach);
+  EXPECT_NEAR(reach.at({0.02f, 0.03f, -1}), dense, 0.15f * dense);
+  // Far from them all it is no more than twice what nine of ten lights have.
+  EXPECT_EQ(reach.at({0, 0, 1}), max_reach);
+  EXPECT_LT(max_reach, 4 * dense);
+  VirtualLights none;
+  EXPECT_EQ(give_reach(none, 5), 0);
+  EXPECT_EQ(LightReach(none, 5, 0).at({0, 0, 0}), 0);
 }
 
 // Radii fall with the sixth root of the number of lights: the tenth neighbor's distance with the square root.
