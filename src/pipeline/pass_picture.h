@@ -2,9 +2,9 @@
 // their own, and the denoiser.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "denoise/denoiser.h"
 #include "image/image.h"
@@ -24,7 +24,6 @@ class PassPicture {
   PassPicture(const RenderSettings& settings, const View& view, methods::TimedChoices& choices,
               const Sinks& sinks);
 
-  bool has_denoiser() const { return denoiser_ != nullptr; }
   std::string denoiser_version() const { return denoiser_->version(); }
   // Why there is none although one would be used; else empty.
   const std::string& denoiser_trouble() const { return trouble_; }

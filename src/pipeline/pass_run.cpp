@@ -256,7 +256,8 @@ class PassRun {
       choices_.record("eighths_of_pass", eighths);
     }
     part_ = static_cast<double>(eighths) / kEighths;
-    if (eighths == kEighths) return;
+    if (eighths == eighths_of_method_) return;
+    eighths_of_method_ = eighths;
     auto parameters = asked_.method.parameters;
     parameters["samples"] = std::to_string(eighths);
     task_.method = task_.info->make(parameters);
@@ -397,7 +398,8 @@ class PassRun {
   PassSeconds expected_;
   double pace_ = 0, part_ = 1, rest_due_ = 0;
   int wanted_ = 1, passes_ = 0, usual_eighths_ = kEighths, next_eighths_ = kEighths;
-  bool as_asked_ = false;  // their number is given: no clock lowers it
+  int eighths_of_method_ = kEighths;  // what the method draws for each receiver now
+  bool as_asked_ = false;             // their number is given: no clock lowers it
   std::string shortage_;
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;
