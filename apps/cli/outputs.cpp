@@ -130,10 +130,10 @@ int write_outputs(const OutputOptions& outputs, const RenderResult& result, Cons
   else if (!quiet) {
     for (const auto& file : written) std::fprintf(streams.out, "wrote %s\n", file.c_str());
     if (lacks_denoiser(result.report))
-      std::fprintf(streams.out,
-                   "it has its noise still: `make denoiser` gets Open Image Denoise, which takes it out of "
-                   "this and all "
-                   "later pictures (--denoise off is content without)\n");
+      std::fprintf(
+          streams.out,
+          "it has its noise still: `make denoiser` gets Open Image Denoise, which takes it out of this "
+          "and all later pictures (--denoise off is content without)\n");
   }
   return result.interrupted ? 130 : 0;
 }

@@ -15,6 +15,8 @@ namespace lumirank::transport {
 // reach and the one that it would have at any place are, over all sets of lights, distributed alike
 // (Slivnyak's theorem for points that are scattered independently), so each distance is left to one of them
 // on average.
+// Local lights (Davidovič, Křivánek, Hašan, Slusallek and Bala 2010), divided by distance here instead of by
+// lobe.
 class LightReach {
  public:
   // Of spheres. `scale`: that of the radii (make_spherical); `radii`: how many of them a place reaches.
