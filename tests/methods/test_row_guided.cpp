@@ -61,6 +61,17 @@ TEST(SpreadFraction, AnyStretchOfTwoToTheKIsInDifferentParts) {
   }
 }
 
+// Even numbers are in the lower half as often as in the upper one: neighbors share no pattern over the
+// picture.
+TEST(SpreadFraction, BlocksAreScrambledApart) {
+  for (std::uint64_t mask = 1; mask < 64; mask *= 2) {
+    int low = 0, all = 0;
+    for (std::uint64_t k = 0; k < 64 * 256; ++k)
+      if ((k & mask) == 0) ++all, low += spread_fraction(k, 7) < 0.5 ? 1 : 0;
+    EXPECT_NEAR(static_cast<double>(low) / all, 0.5, 0.13) << mask;  // 4 deviations of 256 flips
+  }
+}
+
 // Probabilities of all columns add up to 1, and draws are as frequent as they say.
 TEST(RecordMixture, SaysWithWhatProbabilityItDraws) {
   const auto matrix = matrix::sparse_matrix({40, 60, 1}, 0.3);

@@ -63,12 +63,15 @@ GuidedColumn RecordMixture::draw(double u) const {
 }
 
 double spread_fraction(std::uint64_t index, std::uint64_t seed) {
-  // Digits from the lowest on, each flipped by a hash of those before it.
+  // Digits from the lowest on, each flipped by a hash of those before it, and of the block: with the same
+  // flips everywhere every second column of the picture would draw from the same half.
+  constexpr int kDigits = 6;
+  const std::uint64_t of_block = mix64(seed ^ mix64(index >> kDigits));
   std::uint64_t before = 1;
   double fraction = 0, weight = 0.5;
-  for (int digit = 0; digit < 24; ++digit, weight *= 0.5) {
+  for (int digit = 0; digit < kDigits; ++digit, weight *= 0.5) {
     const std::uint64_t bit = index >> digit & 1;
-    fraction += weight * static_cast<double>(bit ^ (mix64(seed ^ before) & 1));
+    fraction += weight * static_cast<double>(bit ^ (mix64(of_block ^ before) & 1));
     before = before << 1 | bit;
   }
   return fraction + weight * 2 * unit_double(mix64(seed ^ ~index));

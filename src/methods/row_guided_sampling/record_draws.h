@@ -46,9 +46,10 @@ class RecordMixture {
   float power_share_ = 1;
 };
 
-// The fraction of a scrambled van der Corput sequence (Owen 1995): any 2^k numbers after one another from a
-// multiple of 2^k on are in different parts of as many equal ones. Rows that follow one another lie close in
-// the picture, so errors of neighbors make up for one another (Ahmed and Wonka 2020).
+// The fraction of a scrambled van der Corput sequence (Owen 1995): any 2^k ≤ 64 numbers after one another
+// from a multiple of 2^k on are in different parts of as many equal ones. Rows that follow one another lie
+// close in the picture, so errors of neighbors make up for one another (Ahmed and Wonka 2020); blocks of 64
+// are scrambled apart, since a denoiser takes what is alike in all of them for a pattern of the scene.
 double spread_fraction(std::uint64_t index, std::uint64_t seed);
 
 }  // namespace lumirank::methods
