@@ -82,8 +82,9 @@ TEST(RecordMixture, SaysWithWhatProbabilityItDraws) {
   constexpr int kSteps = 60000;
   std::vector<int> met(60);
   std::vector<float> probability(60);
-  for (int k = 0; k < kSteps; ++k) {
-    const GuidedColumn drawn = mixture.draw((k + 0.5) / kSteps);
+  std::vector<GuidedColumn> all(kSteps);
+  mixture.draw(0.5, all);
+  for (const GuidedColumn& drawn : all) {
     ++met[drawn.column], probability[drawn.column] = drawn.probability;
     EXPECT_GT(drawn.visible, 0);
     EXPECT_LE(drawn.visible, 1);

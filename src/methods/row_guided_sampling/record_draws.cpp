@@ -45,12 +45,25 @@ RecordMixture::RecordMixture(const LightRecords& records, matrix::Index row)
   pieces_[piece_count_++] = {1, LightRecords::kPower};
 }
 
-GuidedColumn RecordMixture::draw(double u) const {
+void RecordMixture::draw(double offset, std::span<GuidedColumn> drawn) const {
+  constexpr std::size_t kTogether = 16;
+  std::array<RunningSum::Search, kTogether> searches;
   std::size_t k = 0;
-  while (k + 1 < piece_count_ && u >= pieces_[k].end) ++k;
-  const double begin = k > 0 ? pieces_[k - 1].end : 0;
-  const double within = std::min((u - begin) / (pieces_[k].end - begin), 0x1.fffffffffffffp-1);
-  const std::uint32_t column = records_.distribution(pieces_[k].distribution).draw(within);
+  for (std::size_t first = 0; first < drawn.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, drawn.size() - first);
+    for (std::size_t m = 0; m < count; ++m) {
+      const double u = (static_cast<double>(first + m) + offset) / static_cast<double>(drawn.size());
+      while (k + 1 < piece_count_ && u >= pieces_[k].end) ++k;
+      const double begin = k > 0 ? pieces_[k - 1].end : 0;
+      const double within = std::min((u - begin) / (pieces_[k].end - begin), 0x1.fffffffffffffp-1);
+      searches[m] = RunningSum::Search(records_.distribution(pieces_[k].distribution), within);
+    }
+    RunningSum::Search::finish(std::span(searches).first(count));
+    for (std::size_t m = 0; m < count; ++m) drawn[first + m] = guided(searches[m].column());
+  }
+}
+
+GuidedColumn RecordMixture::guided(std::uint32_t column) const {
   float probability = power_share_ * static_cast<float>(power_.units(column)), lit = 0, whole = 0;
   for (std::size_t n = 0; n < near_count_; ++n) {
     const NearRecord& near = *near_[n];

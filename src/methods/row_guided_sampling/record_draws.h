@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "matrix/lighting_matrix.h"
 #include "methods/row_guided_sampling/light_records.h"
@@ -23,11 +24,13 @@ class RecordMixture {
  public:
   RecordMixture(const LightRecords& records, matrix::Index row);
 
-  // u in [0, 1). Equal steps of u are spread over the distributions, and in each of them over its columns in
-  // their order.
-  GuidedColumn draw(double u) const;
+  // As many columns as `drawn` holds, in equal steps of [0, 1) from `offset`, in [0, 1), steps on: they are
+  // spread over the distributions, and in each of them over its columns in their order.
+  void draw(double offset, std::span<GuidedColumn> drawn) const;
 
  private:
+  GuidedColumn guided(std::uint32_t column) const;
+
   struct NearRecord {
     RunningSum lit, unoccluded;
     // Of a draw, and of brightness, for each unit of the sums.

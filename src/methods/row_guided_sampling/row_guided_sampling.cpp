@@ -166,13 +166,10 @@ class RowGuidedSampling final : public Method {
     const std::size_t samples = turn.scaled(settings_.samples), count = samples * settings_.candidates;
     const Timer timer;
     const std::uint64_t scramble = hash_ids(seed, Stage::method, turn.number);
-    w.candidates.clear();
-    for (const Index row : rows) {
-      const RecordMixture mixture(records, row);
-      const double offset = spread_fraction(row, scramble);
-      for (std::size_t m = 0; m < count; ++m)
-        w.candidates.push_back(mixture.draw((static_cast<double>(m) + offset) / static_cast<double>(count)));
-    }
+    w.candidates.resize(rows.size() * count);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      RecordMixture(records, rows[r])
+          .draw(spread_fraction(rows[r], scramble), std::span(w.candidates).subspan(r * count, count));
     const double drawn = timer.seconds();
     w.rows.clear(), w.columns.clear(), w.scale.clear(), w.ends.clear();
     if (settings_.candidates > 1)

@@ -25,17 +25,21 @@ bool RunningSum::write(std::span<const float> weights, std::uint32_t* sums, std:
 }
 
 std::uint32_t RunningSum::draw(double u) const {
-  const double target = u * static_cast<double>(total());
-  // Below the total, whatever rounding makes of it.
-  const auto unit = std::min(static_cast<std::uint32_t>(target), total() - 1);
-  std::size_t first = 0, count = size_;  // columns whose sum ends above `unit` begin in there
-  while (count > 0) {
-    const std::size_t half = count / 2;
-    const bool below = at(first + half + 1) <= unit;
-    first = below ? first + half + 1 : first;
-    count = below ? count - half - 1 : half;
+  Search search(*this, u);
+  Search::finish({&search, 1});
+  return search.column();
+}
+
+void RunningSum::Search::finish(std::span<Search> searches) {
+  if (searches.empty()) return;
+  for (std::size_t left = searches.front().size_; left > 1;) {
+    const std::size_t half = left / 2;
+    for (Search& s : searches) {
+      const auto middle = static_cast<std::uint32_t>(s.first_ + half);
+      s.first_ = s.sums_[middle * s.stride_] <= s.unit_ ? middle : s.first_;
+    }
+    left -= half;
   }
-  return static_cast<std::uint32_t>(first);
 }
 
 }  // namespace lumirank::methods

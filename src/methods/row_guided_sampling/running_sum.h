@@ -1,6 +1,7 @@
 // A distribution over columns, kept as its running sum alone.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,9 @@ class RunningSum {
   bool empty() const { return total() == 0; }
   // The column of u in [0, 1); not empty.
   std::uint32_t draw(double u) const;
+  // Draws from sums of one size, side by side: each waits for memory at every step, and all of them together
+  // no longer than one.
+  class Search;
   // Of `total`.
   std::uint32_t units(std::uint32_t column) const { return at(column + 1) - at(column); }
   float probability(std::uint32_t column) const {
@@ -31,9 +35,28 @@ class RunningSum {
   }
 
  private:
+  // Below the total, whatever rounding makes of it.
+  std::uint32_t unit_of(double u) const {
+    return std::min(static_cast<std::uint32_t>(u * static_cast<double>(total())), total() - 1);
+  }
   std::uint32_t at(std::size_t k) const { return sums_[k * stride_]; }
   const std::uint32_t* sums_;
   std::size_t size_, stride_;
+};
+
+class RunningSum::Search {
+ public:
+  Search() = default;
+  Search(const RunningSum& sum, double u)
+      : sums_(sum.sums_), size_(sum.size_), stride_(sum.stride_), unit_(sum.unit_of(u)) {}
+  // The last column whose sum begins at its unit or below.
+  static void finish(std::span<Search> searches);
+  std::uint32_t column() const { return first_; }
+
+ private:
+  const std::uint32_t* sums_ = nullptr;
+  std::size_t size_ = 0, stride_ = 1;
+  std::uint32_t unit_ = 0, first_ = 0;
 };
 
 }  // namespace lumirank::methods
