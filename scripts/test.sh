@@ -9,6 +9,7 @@ quiet_build() { cmake --preset "$1" > /dev/null && cmake --build --preset "$1" -
 # sanitized PRESET ROOM...: the rooms' tests in that build, each program in some processes; all output if one fails.
 sanitized() {
   local preset=$1 shards=4; shift
+  local -x GTEST_FILTER; GTEST_FILTER=-$(IFS=:; echo "${statistical[*]}")
   for room in "$@"; do
     for shard in $(seq 0 $((shards - 1))); do echo "$room $shard"; done
   done | xargs -P "$jobs" -L 1 scripts/test-shard.sh "build/$preset" "$shards"
@@ -42,24 +43,22 @@ export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp"
 # Not the rooms from pathtrace up: their statistical tests take minutes there, over code that the tests of these reach.
 # Readers of formats are what the fuzz targets run, and have neither threads nor numerics.
 checked=(transport methods scatter media world linalg geometry emitters image film matrix base)
+# Without those that repeat one run over many seeds to judge its statistics: they are much of the time and no new loop; all tests have them.
+statistical=(Halves.OfParticlesAreIndependent 'Rules/SphericalPairs.*' Automatic.ReachesItsTargetAndSaysSo
+  SamplingRecovery.TestsTellWhatPredictionsAreWorth SamplingRecovery.StepsAreWorthWhatTheyWere VirtualLights.AimingKeepsTheEnergyBalance
+  VirtualLights.LightBehindAWindowIsUnbiased VirtualLights.AreAimedAtWhatReceiversSee
+  VirtualLights.EmitterSamplesFollowWhatColumnsCarry 'VirtualLights.DiffuseOnlyKeepsThePlaces*')
 step "Build with the address and undefined-behavior sanitizers"
 quiet_build asan -t fuzzers $(printf -- '-t test_%s ' "${checked[@]}")
 step "The rooms' tests under these sanitizers"
 sanitized asan "${checked[@]}"
 step "Fuzz targets, briefly"
-scripts/fuzz.sh build/asan 10 "$jobs"
+scripts/fuzz.sh build/asan 6 "$jobs"
 threaded=(transport methods world geometry base)
 step "Build with the thread sanitizer"
 quiet_build tsan $(printf -- '-t test_%s ' "${threaded[@]}")
 step "Threaded tests under the thread sanitizer"
-# Without those that repeat one run over many seeds to judge its statistics: they are half of the time and no new loop.
-statistical=(Halves.OfParticlesAreIndependent 'Rules/SphericalPairs.*' Automatic.ReachesItsTargetAndSaysSo
-  SamplingRecovery.TestsTellWhatPredictionsAreWorth SamplingRecovery.StepsAreWorthWhatTheyWere VirtualLights.AimingKeepsTheEnergyBalance
-  VirtualLights.LightBehindAWindowIsUnbiased VirtualLights.AreAimedAtWhatReceiversSee
-  VirtualLights.EmitterSamplesFollowWhatColumnsCarry 'VirtualLights.DiffuseOnlyKeepsThePlaces*')
-export GTEST_FILTER; GTEST_FILTER=-$(IFS=:; echo "${statistical[*]}")
 sanitized tsan "${threaded[@]}"
-unset GTEST_FILTER
 unset OPENBLAS_NUM_THREADS
 
 step "All tests"

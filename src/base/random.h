@@ -33,6 +33,7 @@ enum class Stage : std::uint32_t {
   ray_pairs,
   passes,
   segments,
+  gathered,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

@@ -18,6 +18,7 @@ struct PathTracer::Walk {
   int segments = 1;             // traced so far, the current one included; straight passes do not count
   int non_delta_vertices = 0;   // non-specular vertices passed
   bool after_receiver = false;  // the vertex that comes next is the first one after the receiver
+  bool departed = false;        // begun at the receiver: what it sees shining does not count
   bool counts;                  // whether light found now belongs to the wanted paths
   bool specular = true;  // the last vertex was specular (or the eye): light sampling could not find this hit
   float bsdf_pdf = 0;    // of the direction taken at the last non-delta vertex
@@ -57,15 +58,16 @@ Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, 
             .segments = departure.depth + 1,
             .non_delta_vertices = 1,
             .after_receiver = true,
-            .counts = true,
+            .departed = true,
+            .counts = false,
             .specular = false,
             .bsdf_pdf = next.pdf,
             .from = departure.from,
             .near = departure.near,
             .eta_scale = next.eta * next.eta};
-  if (walk.near) walk.ray.t_max = walk.near->max;
+  if (walk.near && settings_.paths == Paths::columns) walk.ray.t_max = walk.near->max;
   finish(walk);
-  return walk.sum.indirect;
+  return walk.sum.direct + walk.sum.indirect;
 }
 
 void PathTracer::finish(Walk& walk) const {
@@ -127,13 +129,13 @@ Rgb PathTracer::missing(float connection, const Closure& closure, Vec3f wo, Vec3
 
 void PathTracer::keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hit, Closure& closure) const {
   // Columns carry this vertex's non-delta lobes, the rest its specular ones; both pass straight through.
-  const bool keep_specular = settings_.paths == Paths::rest;
+  const bool keep_specular = settings_.paths != Paths::columns, keep_others = settings_.paths != Paths::rest;
   const Vec3f place = hit.point.position;
   const bool counts = !walk.near || length_squared(place - walk.from.position) < square(walk.near->at(place));
   int kept = 0;
   for (int k = 0; k < closure.count; ++k) {
     const LobeKind kind = closure.lobes[k].kind;
-    if (kind == LobeKind::delta_pass || (counts && scatter::is_delta(kind) == keep_specular))
+    if (kind == LobeKind::delta_pass || (scatter::is_delta(kind) ? keep_specular : keep_others && counts))
       closure.lobes[kept++] = closure.lobes[k];
   }
   closure.count = kept;
@@ -152,13 +154,16 @@ bool PathTracer::survives(Walk& walk) const {
 bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& closure) const {
   const bool may_continue = settings_.max_depth < 0 || walk.segments < settings_.max_depth;
   const bool first_after_receiver = walk.after_receiver;
-  if (first_after_receiver && settings_.paths != Paths::all) keep_traced_lobes(walk, hit, closure);
+  if (first_after_receiver && (settings_.paths != Paths::all || walk.near))
+    keep_traced_lobes(walk, hit, closure);
   float connection = 0;
   if (first_after_receiver && settings_.carried.bound > 0)
     connection = walk.receiver_term *
                  (closure.is_fiber() ? closure.cosine(walk.ray.direction)
                                      : std::abs(dot(hit.point.ng, walk.ray.direction))) /
                  square(walk.traveled);
+  const bool first_of_departed = first_after_receiver && walk.departed;
+  if (first_of_departed) walk.counts = true;
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_non_delta() && may_continue) {
     // The vertex itself is non-specular for light that is found here.
@@ -192,6 +197,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     }
     if (!survives(walk)) return false;
   }
+  if (pass && first_of_departed) walk.counts = false;
   walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
   return true;
 }

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "base/rgb.h"
-#include "pathtrace/sample_stream.h"
+#include "base/sample_stream.h"
 #include "world/camera.h"
 #include "world/light_sampler.h"
 #include "world/world.h"
@@ -61,11 +61,13 @@ class PathTracer {
     emitters::LitPoint from;
     scatter::BsdfSample next;
     int depth;  // segments from the eye to the vertex
-    // Unless nullptr, light counts only from places that have the vertex within their reach.
+    // Unless nullptr, light counts only from places that have the vertex within their reach; but with
+    // Paths::all whatever follows a specular vertex counts.
     const Reach* near = nullptr;
   };
   // The indirect light that leaves the vertex, one random path with the sample's weight in it; `random` has
-  // chosen the direction. `key` decides cut-outs.
+  // chosen the direction. `key` decides cut-outs. With Paths::all emission that a specular vertex shows is in
+  // it, which is no light sample's.
   Rgb indirect_after(const Departure& departure, SampleStream random, std::uint64_t key) const;
 
  private:

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/sample_stream.h"
 #include "base/timer.h"
 #include "film/filter_sampler.h"
-#include "pathtrace/sample_stream.h"
 #include "pathtrace/volume_path_tracer.h"
 
 namespace lumirank::pathtrace {

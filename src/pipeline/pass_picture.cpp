@@ -10,7 +10,7 @@ namespace {
 
 // The film whose denoising tells what the picture's will take; and what a larger one may take more.
 constexpr int kDenoiserTrial = 192;
-constexpr double kDenoiserMargin = 1.25;
+constexpr double kDenoiserMargin = 1.15;
 // Features that are called clean are worth more, and take this many times longer: where that is at most such
 // a part of the budget.
 constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
@@ -47,6 +47,7 @@ PassPicture::PassPicture(const RenderSettings& settings, const View& view, metho
 
 void PassPicture::try_denoiser(const View& view, methods::TimedChoices& choices) {
   const image::Image trial(kDenoiserTrial, kDenoiserTrial, Rgb(0.5f));
+  denoiser_->denoise(trial, &trial, &trial);  // the first time everything takes longer
   const Timer timer;
   denoiser_->denoise(trial, &trial, &trial);
   denoiser_seconds_ = kDenoiserMargin * timer.seconds() * static_cast<double>(view.width) *
@@ -58,6 +59,11 @@ void PassPicture::try_denoiser(const View& view, methods::TimedChoices& choices)
     denoiser_seconds_ *= kCleanOverNoisy;
   else
     features_are_ = denoise::Features::noisy;
+}
+
+double PassPicture::feature_seconds(double one_sample, double left) const {
+  if (!denoiser_) return 0;
+  return PixelFeatureTracing::kEverywhere * one_sample + kTimeOfEdges * std::max(0.0, left);
 }
 
 View PassPicture::filtered(View view) const {

@@ -29,6 +29,9 @@ class PassPicture {
   const std::string& denoiser_trouble() const { return trouble_; }
   // What denoising the whole film is expected to take; 0 without a budget.
   double denoiser_seconds() const { return denoiser_seconds_; }
+  // What features are expected to take after the first pass, `left` seconds before the end of a budget, where
+  // one film sample in each pixel takes so long.
+  double feature_seconds(double one_sample, double left) const;
   // With the filter that denoised pictures have: a wider one makes the noise of neighbors alike, and a
   // denoiser takes it for shape then.
   View filtered(View view) const;

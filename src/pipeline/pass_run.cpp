@@ -14,6 +14,7 @@
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
 #include "pipeline/pass_picture.h"
+#include "pipeline/pass_plan.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
 #include "pipeline/rest_tracing.h"
@@ -22,13 +23,11 @@
 namespace lumirank::pipeline {
 namespace {
 
-// Samples of a whole pass by default, and the least of a first and of a last one.
-constexpr int kEighths = 8, kMinFirstEighths = 3, kMinEighths = 2;
-constexpr int kFewPasses = 4, kWantedPasses = 3, kDefaultPasses = 16, kMaxPasses = 65536;
+constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
 // Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
-// them. More of them in one pass are fewer passes, which have as many altogether.
-constexpr double kPixelsPerLight = 12;
-constexpr std::size_t kMinLightsOfPass = 1000, kMaxLightsOfPass = 60000;
+// them.
+constexpr double kPixelsPerLight = 8;
+constexpr std::size_t kMinLightsOfPass = 1000, kMaxLightsOfPass = 120000;
 // Samples of traced direct light, and paths of sharp lobes, for each receiver of a pass.
 constexpr int kDirectOfPass = 1, kLocalOfPass = 1;
 // Times the clamping of single pictures: what is near is traced, and what spots remain differ from pass to
@@ -41,6 +40,10 @@ constexpr float kNearOfPass = 10;
 constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8;
 constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
+// What a receiver draws in a whole pass, and what of all that is done for a pixel this is, before it is
+// known.
+constexpr int kSamplesOfPass = 8;
+constexpr double kDrawingShare = 0.5;
 
 std::string pass_number(const char* format, double x) {
   char text[64];
@@ -75,7 +78,7 @@ class PassRun {
     seconds_["survey"] = survey_timer.seconds();
     plan();
     while (wants_more()) {
-      set_part();
+      set_size();
       if (!pass(passes_)) break;
       ++passes_;
     }
@@ -96,7 +99,11 @@ class PassRun {
         asked_.traced.local_paths == 0 && asked_.traced.compensate == 0)
       of_pass.traced.local_paths = kLocalOfPass;
     Recipe recipe = make_recipe(of_pass, view_);
-    recipe.seed = hash_ids(asked_.seed, Stage::passes, number);
+    // Film samples would take a gathered receiver's light for that of a place they see.
+    recipe.gathered = of_pass.traced.local_paths > asked_.traced.local_paths &&
+                      asked_.view.only == LightPart::all && !asked_.view.film_samples;
+    recipe.seed = hash_ids(asked_.seed, Stage::passes);
+    recipe.pass = number;
     recipe.light_seed = hash_ids(asked_.seed, Stage::passes, ~number);
     recipe.spp = 1;
     recipe.film_samples = asked_.view.film_samples.value_or(0);
@@ -107,6 +114,9 @@ class PassRun {
     return recipe;
   }
 
+  // What takes longer the larger a pass is.
+  double seconds_drawing() { return seconds_["method"] + seconds_["lights"]; }
+
   struct PassSeconds {
     double fixed = 0, by_pixel = 0;
     double total() const { return fixed + by_pixel; }
@@ -115,7 +125,8 @@ class PassRun {
   std::size_t lights_of(const View& view) const {
     if (asked_.lights.count) return *asked_.lights.count;
     const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
-    return std::clamp(static_cast<std::size_t>(part_ * pixels / kPixelsPerLight), kMinLightsOfPass,
+    const double part = static_cast<double>(eighths_) / PassPlan::kWhole;
+    return std::clamp(static_cast<std::size_t>(part * pixels / kPixelsPerLight), kMinLightsOfPass,
                       kMaxLightsOfPass);
   }
 
@@ -129,7 +140,7 @@ class PassRun {
       timer = {};
     };
     TracedLight traced;
-    SharedRows rows = trace_rows(world, view, recipe, sinks_);
+    SharedRows rows = gather_rows(world, trace_rows(world, view, recipe, sinks_), recipe, sinks_);
     traced.rows = rows;
     lap("receivers", took.by_pixel);
     if (const auto direct = start_direct(world, *rows, recipe)) {
@@ -162,7 +173,7 @@ class PassRun {
     image = develop(film, estimate_.sums, sent);
     if (asked_.traced.compensate > 0) {
       RenderSettings of_pass = asked_;
-      of_pass.seed = recipe.seed;
+      of_pass.seed = recipe.light_seed;
       if (!compensate_clamping(*prepared_, of_pass, image, sinks_)) return false;
     }
     lap("film", took.by_pixel);
@@ -179,13 +190,15 @@ class PassRun {
       image::Image image;
       PassSeconds took;
       const auto before = seconds_;
-      if (!trace(~0ull, small, image, took)) throw Cancelled();
+      if (!trace(kMaxPasses, small, image, took)) throw Cancelled();
+      const double eye_rays = seconds_["receivers"];
       seconds_ = before, cost_ = {};
       seconds_["pilot"] = took.total();
       const double shrunk = static_cast<double>(small.width) * static_cast<double>(small.height) /
                             (static_cast<double>(view_.width) * static_cast<double>(view_.height));
       expected_ = {took.fixed * static_cast<double>(lights_of(view_)) / static_cast<double>(lights_of(small)),
                    took.by_pixel / shrunk};
+      features_expected_ = picture_->feature_seconds(eye_rays / shrunk, left());
       choose_size();
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
@@ -198,7 +211,10 @@ class PassRun {
     if (timed()) {
       if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
     }
-    choose_part();
+    plan_ = PassPlan(resizes());
+    const double with_rest = 1 + rest_share();
+    plan_.expect((1 - kDrawingShare) * expected_.by_pixel * with_rest,
+                 (expected_.fixed + kDrawingShare * expected_.by_pixel) * with_rest / PassPlan::kWhole);
   }
 
   // A film of half the width and height, enlarged, is better than none.
@@ -209,7 +225,7 @@ class PassRun {
     while (may && divisor < kMaxDivisorOfPasses && expected_.total() > left()) {
       divisor *= 2;
       view_ = smaller(whole_, divisor);
-      expected_.by_pixel /= 4;
+      expected_.by_pixel /= 4, features_expected_ /= 4;
     }
     choices_.record("film_divisor", divisor);
     const double left_now = left();
@@ -226,66 +242,49 @@ class PassRun {
     sinks_.warn(shortage_);
   }
 
-  // Passes may have fewer lights, of which receivers draw fewer: so that there are some of them in little
-  // time, and so that the last one fits.
-  bool may_be_smaller() const {
+  // Passes may have other numbers of lights, of which receivers draw as many fewer or more.
+  bool resizes() const {
     return timed() && !as_asked_ && !asked_.method.parameters.contains("samples") &&
            task_.info->name == kMethodOfPasses;
   }
-  void choose_part() {
-    const double first = kEighths * left() / (kWantedPasses * pace());
-    usual_eighths_ =
-        may_be_smaller() ? std::clamp(static_cast<int>(first), kMinFirstEighths, kEighths) : kEighths;
-    // About half of what is done for each pixel is drawing lights.
-    const double part = static_cast<double>(usual_eighths_) / kEighths;
-    expected_.fixed *= part, expected_.by_pixel *= 0.5 + 0.5 * part;
-  }
-  // The size of the next pass in eighths; 0: none fits.
-  int next_eighths() const {
-    if (passes_ == 0 || !timed() || as_asked_ || pace() < left()) return usual_eighths_;
-    if (!may_be_smaller()) return 0;
-    const double drawing = (seconds_.at("method") + seconds_.at("lights")) / passes_;
-    const double fits = usual_eighths_ * (1 - (pace() - left()) / std::max(1e-6, drawing));
-    return fits < kMinEighths ? 0 : std::min(static_cast<int>(fits), usual_eighths_);
-  }
-  void set_part() {
+  void set_size() {
     int eighths = next_eighths_;
     if (timed()) {
-      if (const auto earlier = choices_.earlier("eighths_of_pass", kEighths))
+      if (const auto earlier = choices_.earlier("eighths_of_pass", 2 * PassPlan::kWhole))
         eighths = static_cast<int>(*earlier);
       choices_.record("eighths_of_pass", eighths);
     }
-    part_ = static_cast<double>(eighths) / kEighths;
-    if (eighths == eighths_of_method_) return;
-    eighths_of_method_ = eighths;
+    if (eighths == eighths_) return;
+    eighths_ = eighths;
     auto parameters = asked_.method.parameters;
-    parameters["samples"] = std::to_string(eighths);
+    parameters["samples"] = std::to_string(eighths * kSamplesOfPass / PassPlan::kWhole);
     task_.method = task_.info->make(parameters);
   }
 
   double end() const { return asked_.time - picture_->denoiser_seconds(); }
-  double left() const { return end() - clock_(); }
-  double pace() const { return std::max(1e-3, pace_ > 0 ? pace_ : expected_.total() * (1 + rest_share())); }
+  double left() const { return end() - clock_() - (passes_ == 0 ? features_expected_ : 0); }
   double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
 
   bool wants_more() {
-    next_eighths_ = next_eighths();
+    next_eighths_ = timed() && !as_asked_ ? plan_.next(left()) : PassPlan::kWhole;
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
     if (passes_ == 0) return true;
     if (asked_.method.target_error > 0 && passes_ >= 4 && picture_->noise() < asked_.method.target_error)
       return false;
-    return !timed() || replays() || next_eighths_ > 0;
+    if (!timed() || replays()) return true;
+    return as_asked_ ? plan_.whole() < left() : next_eighths_ > 0;
   }
 
   bool pass(int number) {
-    const double begin = clock_();
+    const double begin = clock_(), drawn_before = seconds_drawing();
     image::Image image;
     PassSeconds took;
     if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
-    pace_ = (pace_ * number + (clock_() - begin)) / (number + 1);
-    const Recipe of_film = recipe_of(number == 0 ? ~1ull : static_cast<std::uint64_t>(number));
+    plan_.took(eighths_, clock_() - begin, seconds_drawing() - drawn_before);
+    Recipe of_film = recipe_of(static_cast<std::uint64_t>(number));
+    of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
     const Timer timer;
     if (!picture_->add(number, wanted_, image, {*task_.world, view_, of_film, *prepared_->rows, traced_},
                        timed() ? left() : 0, choices_, sinks_))
@@ -396,10 +395,12 @@ class PassRun {
   std::optional<RestTracing> rest_;
   SharedSurvey survey_;
   PassSeconds expected_;
-  double pace_ = 0, part_ = 1, rest_due_ = 0;
-  int wanted_ = 1, passes_ = 0, usual_eighths_ = kEighths, next_eighths_ = kEighths;
-  int eighths_of_method_ = kEighths;  // what the method draws for each receiver now
-  bool as_asked_ = false;             // their number is given: no clock lowers it
+  double features_expected_ = 0;  // what follows the first pass
+  PassPlan plan_{false};
+  double rest_due_ = 0;
+  int wanted_ = 1, passes_ = 0, next_eighths_ = PassPlan::kWhole;
+  int eighths_ = PassPlan::kWhole;  // size of the pass
+  bool as_asked_ = false;           // their number is given: no clock lowers it
   std::string shortage_;
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;

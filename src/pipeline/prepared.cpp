@@ -9,6 +9,7 @@
 #include "pipeline/shot.h"
 #include "pipeline/traced_indirect.h"
 #include "transport/lights/sphere_lights.h"
+#include "transport/rows/gathered_receivers.h"
 
 namespace lumirank::pipeline {
 
@@ -28,7 +29,7 @@ bool some_traced(const transport::Receivers& rows, float below) {
 std::unique_ptr<DirectTracing> start_direct(const world::World& world, const transport::Receivers& rows,
                                             const Recipe& recipe) {
   TracedDirectSettings ts;
-  ts.seed = recipe.seed;
+  ts.seed = recipe.seed, ts.pass = recipe.pass;
   ts.below = recipe.traced_below;
   ts.max_depth = recipe.max_depth;
   if (recipe.traced_below <= 0 || !some_traced(rows, ts.below)) return nullptr;
@@ -39,13 +40,20 @@ std::vector<Rgb> trace_sharp_lobes(const world::World& world, const transport::R
                                    const Recipe& recipe, const Sinks& sinks) {
   if (recipe.only == LightPart::direct || !some_traced(rows, recipe.sharp_below)) return {};
   TracedIndirectSettings ts;
-  ts.seed = recipe.seed;
+  ts.seed = recipe.seed, ts.pass = recipe.pass;
   ts.below = recipe.sharp_below;
   ts.paths = recipe.local_paths;
   ts.max_depth = recipe.max_depth;
   auto light = trace_indirect(world, rows, ts, sinks);
   if (sinks.cancelled()) throw Cancelled();
   return light;
+}
+
+SharedRows gather_rows(const world::World& world, SharedRows rows, const Recipe& recipe, const Sinks& sinks) {
+  if (!recipe.gathered || !some_traced(*rows, recipe.sharp_below)) return rows;
+  return std::make_shared<transport::Receivers>(
+      transport::with_gathered(world, transport::Receivers(*rows),
+                               {recipe.seed, recipe.pass, recipe.sharp_below, recipe.max_depth}, sinks));
 }
 
 SharedRows matrix_rows(const SharedRows& rows, const Recipe& recipe) {
@@ -149,7 +157,7 @@ std::vector<Rgb> trace_near(const world::World& world, const transport::Receiver
           : transport::LightReach(*columns.lights, world, static_cast<float>(columns.radius_scale),
                                   recipe.near_radii);
   TracedIndirectSettings ts;
-  ts.seed = recipe.light_seed;
+  ts.seed = recipe.seed, ts.pass = recipe.pass;
   ts.paths = std::max(1, recipe.local_paths);
   ts.max_depth = recipe.max_depth;
   ts.near = &reach;
@@ -182,10 +190,10 @@ bool same_view(const View& a, const View& b) {
 
 // Rows and the light that is traced at them.
 bool same_rows(const Recipe& a, const Recipe& b) {
-  return a.seed == b.seed && a.spp == b.spp && a.film_samples == b.film_samples && a.only == b.only &&
-         a.traced_below == b.traced_below && a.sharp_below == b.sharp_below &&
-         a.local_paths == b.local_paths && a.first_hits == b.first_hits && a.instants == b.instants &&
-         a.instant == b.instant;
+  return a.seed == b.seed && a.pass == b.pass && a.spp == b.spp && a.film_samples == b.film_samples &&
+         a.only == b.only && a.traced_below == b.traced_below && a.sharp_below == b.sharp_below &&
+         a.local_paths == b.local_paths && a.gathered == b.gathered && a.first_hits == b.first_hits &&
+         a.instants == b.instants && a.instant == b.instant;
 }
 
 bool same_columns(const Recipe& a, const Recipe& b) {

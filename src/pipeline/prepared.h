@@ -69,6 +69,8 @@ SharedPrepared prepare(const SharedWorld& world, const View& view, const Recipe&
 // Rows as the eye finds them.
 SharedRows trace_rows(const world::World& world, const View& view, const Recipe& recipe, const Sinks& sinks);
 bool some_traced(const transport::Receivers& rows, float below);
+// With receivers that stand for their sharp lobes, where the recipe says so.
+SharedRows gather_rows(const world::World& world, SharedRows rows, const Recipe& recipe, const Sinks& sinks);
 // Direct light of the lobes whose share is traced; nothing if there are none. Rows must outlive it.
 std::unique_ptr<DirectTracing> start_direct(const world::World& world, const transport::Receivers& rows,
                                             const Recipe& recipe);

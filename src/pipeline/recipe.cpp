@@ -75,7 +75,7 @@ Recipe make_recipe(const RenderSettings& settings, const View& view) {
 
 transport::ReceiverSettings receiver_settings(const Recipe& recipe, const View& view) {
   transport::ReceiverSettings rs;
-  rs.seed = recipe.seed;
+  rs.seed = recipe.seed, rs.pass = recipe.pass;
   rs.spp = recipe.spp;
   rs.max_depth = recipe.max_depth;
   rs.film_samples = recipe.film_samples;

@@ -29,6 +29,7 @@ pathtrace::ReferenceOptions reference_options(LightPart only, std::uint64_t seed
 struct Recipe {
   std::uint64_t seed = 1;        // of rows, and of what is traced for them
   std::uint64_t light_seed = 1;  // of columns
+  std::uint64_t pass = 0;        // of several with the same seed of rows (transport::ReceiverSettings)
   int spp = 4;
   int film_samples = 0;  // per pixel, apart from receivers; 0: these are the film samples
   int max_depth = -1;    // of the view: -1: unlimited
@@ -41,7 +42,8 @@ struct Recipe {
   float sharp_below = 0, near_radii = 0;
   float near_lights = 0;  // of points: places are near that fewer lights than these lie about
   int local_paths = 0;
-  bool first_hits = false;        // what the eye's first hits know is kept, for layers
+  bool gathered = false;    // indirect light in sharp lobes by receivers of their own (gathered_receivers.h)
+  bool first_hits = false;  // what the eye's first hits know is kept, for layers
   bool group_by_emitter = false;  // clusters may not cross emitters, for layers by light
   bool row_albedo = false;        // rows know their albedo, for methods that carry light between frames
   bool compensated = false;       // what clamping takes is given back by tracing

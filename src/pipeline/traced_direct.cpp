@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
-#include "pathtrace/sample_stream.h"
+#include "base/sample_stream.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -16,8 +16,7 @@ struct Met {
   float light_pdf = 0;  // with which world::LightSampler would have found it
 };
 Met emission_along(const world::World& world, const world::LightSampler& lights,
-                   const emitters::LitPoint& from, Vec3f origin, Vec3f direction,
-                   pathtrace::SampleStream& random) {
+                   const emitters::LitPoint& from, Vec3f origin, Vec3f direction, SampleStream& random) {
   constexpr int kMaxPasses = 64;
   Rgb through{1};
   float traveled = 0;
@@ -54,11 +53,10 @@ Rgb add_direct_at(const world::World& world, const world::LightSampler& lights,
   const scatter::Closure closure = scatter::sharp_part(receivers.closure_at(i), settings.below);
   const Vec3f position = receivers.position[i], ng = receivers.ng[i], wo = receivers.wo[i];
   const emitters::LitPoint at = world::lit_point(position, closure, wo);
-  const std::uint64_t key = receivers.key(i);
+  const std::uint64_t key = pass_key(receivers.key(i), settings.pass);
   for (int k = begin; k < end; ++k) {
-    // One of the stream's two sets: even numbers only.
-    pathtrace::SampleStream random(settings.seed, Stage::traced_direct, key,
-                                   2 * static_cast<std::uint64_t>(k));
+    const std::uint64_t number = pass_sample(k, end, settings.pass);
+    SampleStream random(settings.seed, Stage::traced_direct, key, number);
     const auto [u_light, u_lobe] = random.next_fine();
     const auto s = lights.sample(at, u_light, random.next_2d());
     if (s.pdf > 0) {
@@ -66,9 +64,9 @@ Rgb add_direct_at(const world::World& world, const world::LightSampler& lights,
       if (!is_black(f)) {
         const float bsdf_pdf =
             s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::non_delta);
-        const Rgb visible = world::visible_fraction(
-            world, position, ng, s.direct.direction, s.direct.distance,
-            hash_ids(settings.seed, Stage::opacity, key, static_cast<std::uint64_t>(k)));
+        const Rgb visible =
+            world::visible_fraction(world, position, ng, s.direct.direction, s.direct.distance,
+                                    hash_ids(settings.seed, Stage::opacity, key, number));
         sum += f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf));
       }
     }

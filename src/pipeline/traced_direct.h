@@ -19,6 +19,7 @@ struct TracedDirectSettings {
   float below = 0.3f;  // lobes with a roughness below this are traced; > 1: all
   int samples = 16;    // light samples and as many BSDF samples per receiver
   int max_depth = -1;
+  std::uint64_t pass = 0;  // as in transport::ReceiverSettings, where add() is called once
 };
 
 // Samples are added in passes; the bits depend on their number alone. World and receivers must outlive it.

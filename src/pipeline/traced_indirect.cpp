@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/sample_stream.h"
 #include "pathtrace/path_tracer.h"
-#include "pathtrace/sample_stream.h"
 #include "pipeline/traced_direct.h"
 
 namespace lumirank::pipeline {
@@ -23,13 +23,16 @@ class Tracing {
           const TracedIndirectSettings& settings)
       : receivers_(receivers),
         settings_(settings),
-        tracer_(world, {settings.seed, settings.max_depth, pathtrace::Paths::columns, {}}),
+        of_columns_(world, {settings.seed, settings.max_depth, pathtrace::Paths::columns, {}}),
+        of_gathered_(world, {settings.seed, settings.max_depth, pathtrace::Paths::all, {}}),
         reach_{[near = settings.near](Vec3f place) { return near->at(place); },
                settings.near ? settings.near->max_reach() : kInfinity} {}
 
   bool wants(std::size_t i) const {
     if (settings_.max_depth >= 0 && receivers_.depth[i] + 1 > settings_.max_depth) return false;
-    return settings_.near || is_traced(receivers_, i, settings_.below);
+    if (settings_.near) return true;
+    if (receivers_.gathered > 0 && !receivers_.is_gathered(i)) return false;
+    return is_traced(receivers_, i, settings_.below);
   }
 
   // pathtrace::Paths with an even number belong to the picture, odd ones to the pilot: two sets of numbers.
@@ -37,22 +40,23 @@ class Tracing {
     scatter::Closure closure = receivers_.closure_at(i);
     if (!settings_.near) closure = scatter::sharp_part(closure, settings_.below);
     const Vec3f position = receivers_.position[i], wo = receivers_.wo[i];
-    const std::uint64_t key = receivers_.key(i);
+    const std::uint64_t key = pass_key(receivers_.key(i), settings_.pass);
     const Stage stage = settings_.near ? Stage::traced_near : Stage::traced_sharp;
     pathtrace::PathTracer::Departure departure{
         position, receivers_.ng[i],    world::lit_point(position, closure, wo),
         {},       receivers_.depth[i], settings_.near ? &reach_ : nullptr};
+    const pathtrace::PathTracer& tracer = receivers_.is_gathered(i) ? of_gathered_ : of_columns_;
     Rgb sum{0};
     double sum_y = 0, sum_y2 = 0;
     for (int k = 0; k < paths; ++k) {
-      const std::uint64_t number = 2 * static_cast<std::uint64_t>(k) + (pilot ? 1 : 0);
-      pathtrace::SampleStream random(settings_.seed, stage, key, number);
+      const std::uint64_t number = pass_sample(k, paths, settings_.pass) + (pilot ? 1 : 0);
+      SampleStream random(settings_.seed, stage, key, number);
       const float u_lobe = random.next_2d().x;
       const auto next = scatter::sample(closure, wo, u_lobe, random.next_2d(), scatter::Lobes::non_delta);
       if (!next || is_black(next->weight)) continue;
       departure.next = *next;
       const Rgb light =
-          tracer_.indirect_after(departure, random, hash_ids(settings_.seed, stage, ~key, number));
+          tracer.indirect_after(departure, random, hash_ids(settings_.seed, stage, ~key, number));
       sum += light;
       const double y = luminance(light);
       sum_y += y, sum_y2 += y * y;
@@ -65,7 +69,7 @@ class Tracing {
  private:
   const transport::Receivers& receivers_;
   TracedIndirectSettings settings_;
-  pathtrace::PathTracer tracer_;
+  pathtrace::PathTracer of_columns_, of_gathered_;
   pathtrace::Reach reach_;
 };
 

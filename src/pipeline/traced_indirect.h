@@ -19,6 +19,7 @@ struct TracedIndirectSettings {
   float below = 0;  // lobes with a roughness below this are traced
   int paths = 16;   // per receiver with such a lobe
   int max_depth = -1;
+  std::uint64_t pass = 0;  // as in transport::ReceiverSettings
   // Unless nullptr: all lobes instead of sharp ones, and only what comes from within reach.
   const transport::LightReach* near = nullptr;
 };
@@ -27,7 +28,9 @@ struct TracedIndirectSettings {
 std::vector<Rgb> per_sample(const transport::Receivers& receivers, const std::vector<Rgb>& values);
 
 // pathtrace::Radiance towards the eye, one per receiver. The paths are those of columns
-// (docs/conventions.md): no specular vertex right after the receiver.
+// (docs/conventions.md): no specular vertex right after the receiver. Gathered receivers, of which nobody
+// else traces the rest, have that as well; the sharp lobes of those that they were gathered for have their
+// light from them.
 std::vector<Rgb> trace_indirect(const world::World& world, const transport::Receivers& receivers,
                                 const TracedIndirectSettings& settings, const Sinks& sinks = {});
 

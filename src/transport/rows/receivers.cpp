@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/sample_stream.h"
 #include "transport/rows/eye_chain.h"
 #include "transport/rows/film_order.h"
 #include "transport/rows/film_receivers.h"
@@ -146,9 +147,12 @@ class ReceiverTracer {
     for (int k = 0; k < settings_.spp; ++k, ++sample) {
       if (!instants_.has(id, k)) continue;
       if (!kept_.empty()) kept_[sample] = 1;
-      Rng rng(settings_.seed, Stage::receivers, id, static_cast<std::uint64_t>(k));
-      const Vec2f film_jitter = rng.next_2d();
-      const auto place = pattern.place(k, film_jitter, rng.next_2d());
+      const auto number = static_cast<std::uint64_t>(k);
+      Rng rng(settings_.seed, Stage::receivers, id, number | settings_.pass << 32);
+      SampleStream jitter(settings_.seed, Stage::receivers, hash_ids(id, Stage::passes, number),
+                          settings_.pass);
+      const Vec2f film_jitter = jitter.next_2d();
+      const auto place = pattern.place(k, film_jitter, jitter.next_2d());
       const Vec2f on_film = on_pixel({x, y}, place.film);
       result_.film[sample] = on_film;
       FirstHit first;
@@ -316,6 +320,7 @@ Receivers broad_receivers(Receivers all, float limit) {
     out.id.push_back(all.id[i]), out.sample.push_back(all.sample[i]), out.depth.push_back(all.depth[i]);
     out.closure.push_back(closure);
     if (!all.surface.empty()) out.surface.push_back(all.surface[i]);
+    if (all.is_gathered(i)) ++out.gathered;
   }
   out.closures.shrink();
   out.added = all.added;

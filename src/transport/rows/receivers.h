@@ -18,7 +18,10 @@ namespace lumirank::transport {
 
 struct ReceiverSettings {
   std::uint64_t seed = 1;
-  int spp = 4;         // film samples per pixel, stratified √spp × √spp when square
+  int spp = 4;  // film samples per pixel, stratified √spp × √spp when square
+  // Of several pictures with one seed, whose mean is wanted, the number of this one: their samples are spread
+  // evenly together.
+  std::uint64_t pass = 0;
   int max_depth = -1;  // Mitsuba's count
   // What is traced, 0: the whole film. A picture of a window needs as much around it as its filter reaches.
   int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;
@@ -59,6 +62,9 @@ struct Receivers {
   std::vector<std::array<std::int16_t, 2>> media;
   EyeSegments segments;           // rows within them
   scatter::ClosurePool closures;  // non-delta lobes only
+  // The last so many are one scattering further from the eye than the others (gathered_receivers.h).
+  std::size_t gathered = 0;
+  bool is_gathered(std::size_t i) const { return i >= size() - gathered; }
   // The closure of any receiver, lambertian or not, without its delta lobes.
   scatter::Closure closure_at(std::size_t i) const;
 

@@ -1,8 +1,8 @@
-#include "pathtrace/sample_stream.h"
+#include "base/sample_stream.h"
 
 #include <algorithm>
 
-namespace lumirank::pathtrace {
+namespace lumirank {
 namespace {
 
 std::uint32_t reversed(std::uint32_t x) {
@@ -46,4 +46,4 @@ SampleStream::Bits SampleStream::next_pair() {
           reversed(scramble_from_lowest(pascal(i), mix64(key ^ 2)))};
 }
 
-}  // namespace lumirank::pathtrace
+}  // namespace lumirank

@@ -1,5 +1,5 @@
 // Evenly spread random numbers are even, uniform, and independent where they must be.
-#include "pathtrace/sample_stream.h"
+#include "base/sample_stream.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/statistics.h"
 
-namespace lumirank::pathtrace {
+namespace lumirank {
 namespace {
 
 using test::mean_of;
@@ -82,4 +82,4 @@ TEST(SampleStream, TheHalvesOfAPixelAreIndependent) {
 }
 
 }  // namespace
-}  // namespace lumirank::pathtrace
+}  // namespace lumirank

@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 
-namespace lumirank::pathtrace {
+namespace lumirank {
 
 class SampleStream {
  public:
@@ -53,4 +53,12 @@ class SampleStream {
   Rng rng_;
 };
 
-}  // namespace lumirank::pathtrace
+// Numbers for a picture that is the mean of several: sample k of `count` in pass `pass` has this number, in
+// the set of even ones alone, and its stream this key. So all passes of even number are spread evenly
+// together, and so are those of odd number, of which the others know nothing.
+inline std::uint64_t pass_sample(int k, int count, std::uint64_t pass) {
+  return 2 * ((pass >> 1) * static_cast<std::uint64_t>(count) + static_cast<std::uint64_t>(k));
+}
+inline std::uint64_t pass_key(std::uint64_t key, std::uint64_t pass) { return pass & 1 ? mix64(key) : key; }
+
+}  // namespace lumirank

@@ -1,0 +1,32 @@
+// How large the passes of a budget are, so that all of it is used: a pass may draw fewer or more lights for
+// each receiver, and have as many fewer or more.
+#pragma once
+
+namespace lumirank::pipeline {
+
+class PassPlan {
+ public:
+  // Size of a pass, in eighths of a whole one.
+  static constexpr int kWhole = 8;
+
+  // Whether passes may be of another size than whole.
+  explicit PassPlan(bool resizes) : resizes_(resizes) {}
+
+  // Before any pass: seconds that one takes whatever its size, and what each eighth of it takes.
+  void expect(double fixed, double per_eighth);
+  // A pass took so many seconds, `drawing` of them in proportion to its size.
+  void took(int eighths, double seconds, double drawing);
+
+  // Of the next pass; 0: none fits into `left` seconds. The first one always is.
+  int next(double left) const;
+  // Seconds of a whole pass, as far as is known.
+  double whole() const { return fixed_ + kWhole * per_eighth_; }
+
+ private:
+  bool resizes_;
+  int passes_ = 0;
+  double weight_ = 0, eighths_ = 0, seconds_ = 0, drawing_ = 0;  // of passes so far, the later the more
+  double fixed_ = 0, per_eighth_ = 0;
+};
+
+}  // namespace lumirank::pipeline
