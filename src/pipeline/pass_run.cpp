@@ -24,9 +24,9 @@ namespace lumirank::pipeline {
 namespace {
 
 constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
-// Lights of a pass: as their tracing and the records over them take about as long as what receivers draw from
-// them.
-constexpr double kPixelsPerLight = 8;
+// Lights of a pass, for the root of the pixels: a small picture shows as much of a room as a large one, whose
+// receivers pay for better records.
+constexpr double kLightsOfRoot = 40;
 constexpr std::size_t kMinLightsOfPass = 1000, kMaxLightsOfPass = 120000;
 // Samples of traced direct light, and paths of sharp lobes, for each receiver of a pass.
 constexpr int kDirectOfPass = 1, kLocalOfPass = 1;
@@ -126,7 +126,7 @@ class PassRun {
     if (asked_.lights.count) return *asked_.lights.count;
     const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
     const double part = static_cast<double>(eighths_) / PassPlan::kWhole;
-    return std::clamp(static_cast<std::size_t>(part * pixels / kPixelsPerLight), kMinLightsOfPass,
+    return std::clamp(static_cast<std::size_t>(part * kLightsOfRoot * std::sqrt(pixels)), kMinLightsOfPass,
                       kMaxLightsOfPass);
   }
 
