@@ -20,6 +20,8 @@ constexpr int kSmallestDenoised = 16;
 // pays, but no fewer than leave fur dotted.
 constexpr int kEdgeSamples = 12, kMinEdgeSamples = 5;
 constexpr double kTimeOfEdges = 0.08;
+// Beside these where emission glares.
+constexpr int kGlaringSamples = 48;
 // Without a denoiser, in each pass of an unknown number.
 constexpr int kEmissionSamples = 2;
 
@@ -86,24 +88,32 @@ bool PassPicture::trace_features(int number, const FilmInput& film, double left,
   if (number == 0) {
     const Timer timer;
     features_.emplace(film.world, film.view, film.recipe);
-    return features_->trace_all(sinks) &&
-           features_->trace_differing(edge_samples(timer.seconds(), left, choices), sinks);
+    if (!features_->trace_all(sinks)) return false;
+    const double one = timer.seconds() / PixelFeatureTracing::kEverywhere;  // in each pixel
+    if (!features_->trace_differing(edge_samples(one, left, choices), sinks)) return false;
+    const int glaring =
+        samples_for("glaring_samples", one * features_->glaring(), left, {0, kGlaringSamples}, choices);
+    return settings_.view.film_samples || features_->trace_glaring(glaring, sinks);
   }
   return number < kEdgeSamples || features_->trace_another(static_cast<std::uint64_t>(number), sinks);
 }
 
-int PassPicture::edge_samples(double seconds_of_all, double left, methods::TimedChoices& choices) const {
+int PassPicture::edge_samples(double one_everywhere, double left, methods::TimedChoices& choices) const {
   if (settings_.view.film_samples)
     return std::max(0, *settings_.view.film_samples - PixelFeatureTracing::kEverywhere);
-  if (!timed()) return kEdgeSamples;
-  const double one = seconds_of_all / PixelFeatureTracing::kEverywhere * features_->differing();
-  int samples = kEdgeSamples;
+  return samples_for("edge_samples", one_everywhere * features_->differing(), left,
+                     {kMinEdgeSamples, kEdgeSamples}, choices);
+}
+
+// As many as may be had, or under a budget as a part of what is left pays, where one takes so long.
+int PassPicture::samples_for(const char* choice, double one, double left, SampleRange range,
+                             methods::TimedChoices& choices) const {
+  if (!timed()) return range.max;
+  int samples = range.max;
   if (one > 0)
-    samples =
-        static_cast<int>(std::clamp(kTimeOfEdges * left / one, 1.0 * kMinEdgeSamples, 1.0 * kEdgeSamples));
-  if (const auto earlier = choices.earlier("edge_samples", kEdgeSamples))
-    samples = static_cast<int>(*earlier);
-  choices.record("edge_samples", samples);
+    samples = static_cast<int>(std::clamp(kTimeOfEdges * left / one, 1.0 * range.min, 1.0 * range.max));
+  if (const auto earlier = choices.earlier(choice, range.max)) samples = static_cast<int>(*earlier);
+  choices.record(choice, samples);
   return samples;
 }
 

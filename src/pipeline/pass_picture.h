@@ -54,7 +54,12 @@ class PassPicture {
   bool timed() const { return settings_.time > 0; }
   bool trace_features(int number, const FilmInput& film, double left, methods::TimedChoices& choices,
                       const Sinks& sinks);
-  int edge_samples(double seconds_of_all, double left, methods::TimedChoices& choices) const;
+  int edge_samples(double one_everywhere, double left, methods::TimedChoices& choices) const;
+  struct SampleRange {
+    int min, max;
+  };
+  int samples_for(const char* choice, double one, double left, SampleRange range,
+                  methods::TimedChoices& choices) const;
   image::Image emission_of_pass(int wanted, const FilmInput& film) const;
 
   const RenderSettings& settings_;

@@ -14,6 +14,8 @@ namespace {
 // From which difference on a pixel is at an edge: of albedo and emission, of the mean normal's length below
 // that of its samples, and between the mean normals of neighbors.
 constexpr float kColorEdge = 0.04f, kNormalSpread = 0.02f, kNormalEdge = 0.15f;
+// The same of emission that glares: albedos cannot differ by as much.
+constexpr float kGlare = 1;
 // Emission that a screen shows as white.
 constexpr float kWhite = 4;
 // How many times what stands beside it, or what is usual, a pixel may be.
@@ -31,10 +33,11 @@ PixelFeatureTracing::PixelFeatureTracing(const world::World& world, const View& 
     : world_(world),
       view_(view),
       recipe_(recipe),
-      sums_(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height)) {}
+      sums_(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height)),
+      edges_(sums_.size(), Edge::none) {}
 
-bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, const std::vector<std::uint8_t>* wanted,
-                                const Sinks& sinks) {
+bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, const Sinks& sinks) {
+  if (samples <= 0) return !sinks.cancelled();
   const world::Camera camera(view_.sensor, world_.units());
   transport::ReceiverSettings settings = receiver_settings(recipe_, view_);
   settings.film_samples = samples;
@@ -44,7 +47,7 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, const std::vect
     if (sinks.cancelled()) return;
     transport::FilmEye eye(world_, camera, settings);
     for (std::size_t p = begin * width; p < end * width; ++p) {
-      if (wanted && !(*wanted)[p]) continue;
+      if (edges_[p] < least) continue;
       eye.begin({view_.crop_x + static_cast<int>(p % width), view_.crop_y + static_cast<int>(p / width)});
       Sums& sums = sums_[p];
       for (int k = 0; k < samples; ++k) {
@@ -71,47 +74,55 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, const std::vect
 }
 
 bool PixelFeatureTracing::trace_all(const Sinks& sinks) {
-  if (!trace(kEverywhere, hash_ids(recipe_.seed, Stage::film_samples, 1), nullptr, sinks)) return false;
-  mark_differing();
+  if (!trace(kEverywhere, hash_ids(recipe_.seed, Stage::film_samples, 1), Edge::none, sinks)) return false;
+  mark_edges();
   return true;
 }
 
 bool PixelFeatureTracing::trace_differing(int samples, const Sinks& sinks) {
-  return samples <= 0 || trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 2), &differs_, sinks);
+  return trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 2), Edge::some, sinks);
+}
+
+bool PixelFeatureTracing::trace_glaring(int samples, const Sinks& sinks) {
+  return trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 4), Edge::glaring, sinks);
 }
 
 bool PixelFeatureTracing::trace_another(std::uint64_t number, const Sinks& sinks) {
-  return trace(1, hash_ids(recipe_.seed, Stage::film_samples, 3, number), nullptr, sinks);
+  return trace(1, hash_ids(recipe_.seed, Stage::film_samples, 3, number), Edge::none, sinks);
 }
 
-void PixelFeatureTracing::mark_differing() {
-  differs_.assign(sums_.size(), 0);
+void PixelFeatureTracing::mark_edges() {
   const auto color = [](const Sums& s) {
     const float part = 1 / static_cast<float>(s.count);
     return s.albedo * part + min_of(s.emission * part, Rgb(kWhite));
   };
+  const auto mark = [&](std::size_t p, float colors, bool of_normals) {
+    const Edge edge = colors > kGlare                     ? Edge::glaring
+                      : colors > kColorEdge || of_normals ? Edge::some
+                                                          : Edge::none;
+    edges_[p] = std::max(edges_[p], edge);
+  };
   const auto compare = [&](std::size_t p, std::size_t q) {
     const Sums &a = sums_[p], &b = sums_[q];
-    const float part = 1 / static_cast<float>(a.count);
-    if (distance(color(a), color(b)) > kColorEdge || length(a.normal - b.normal) * part > kNormalEdge)
-      differs_[p] = differs_[q] = 1;
+    const float colors = distance(color(a), color(b));
+    const bool of_normals = length(a.normal - b.normal) > kNormalEdge * static_cast<float>(a.count);
+    mark(p, colors, of_normals), mark(q, colors, of_normals);
   };
   const auto width = static_cast<std::size_t>(view_.width), height = static_cast<std::size_t>(view_.height);
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x) {
       const std::size_t p = y * width + x;
       const Sums& s = sums_[p];
-      if (distance(s.max_color, s.min_color) > kColorEdge ||
-          length(s.normal) < (1 - kNormalSpread) * s.normals)
-        differs_[p] = 1;
+      mark(p, distance(s.max_color, s.min_color), length(s.normal) < (1 - kNormalSpread) * s.normals);
       if (x + 1 < width) compare(p, p + 1);
       if (y + 1 < height) compare(p, p + width);
     }
 }
 
-double PixelFeatureTracing::differing() const {
-  return static_cast<double>(std::count(differs_.begin(), differs_.end(), 1)) /
-         static_cast<double>(std::max<std::size_t>(1, differs_.size()));
+double PixelFeatureTracing::part_from(Edge least) const {
+  return static_cast<double>(
+             std::count_if(edges_.begin(), edges_.end(), [&](Edge edge) { return edge >= least; })) /
+         static_cast<double>(std::max<std::size_t>(1, edges_.size()));
 }
 
 PixelFeatures PixelFeatureTracing::means() const {

@@ -30,10 +30,13 @@ class PixelFeatureTracing {
   static constexpr int kEverywhere = 4;  // film samples of each pixel
   // The first of them. False if it was cancelled.
   bool trace_all(const Sinks& sinks);
-  // The part of the pixels that differ from a neighbor, or within themselves.
-  double differing() const;
+  // The part of the pixels that differ from a neighbor, or within themselves; and of those that differ in
+  // emission by more than a screen shows: a hundredth of a sunny window is seen on a bar across it.
+  double differing() const { return part_from(Edge::some); }
+  double glaring() const { return part_from(Edge::glaring); }
   // So many more for these. False if it was cancelled.
   bool trace_differing(int samples, const Sinks& sinks);
+  bool trace_glaring(int samples, const Sinks& sinks);
   // One more for each pixel; `number`: which. False if it was cancelled.
   bool trace_another(std::uint64_t number, const Sinks& sinks);
   PixelFeatures means() const;
@@ -46,14 +49,17 @@ class PixelFeatureTracing {
     float normals = 0;  // Σ |normal| of the samples: longer than their sum where they differ
     int count = 0;
   };
-  bool trace(int samples, std::uint64_t seed, const std::vector<std::uint8_t>* wanted, const Sinks& sinks);
-  void mark_differing();
+  enum class Edge : std::uint8_t { none, some, glaring };
+  // In pixels with such an edge, or more.
+  bool trace(int samples, std::uint64_t seed, Edge least, const Sinks& sinks);
+  void mark_edges();
+  double part_from(Edge least) const;
 
   const world::World& world_;
   View view_;
   Recipe recipe_;
   std::vector<Sums> sums_;
-  std::vector<std::uint8_t> differs_;
+  std::vector<Edge> edges_;  // by pixel
 };
 
 // Without single pixels that are far brighter than all around them and than `usual`, a luminance: what one

@@ -64,6 +64,31 @@ TEST(PixelFeatures, EdgesHaveTheirCoverageAndTheRestFewSamples) {
     }
 }
 
+// A tenth of a window in a pixel is white on a screen, so its edge takes more samples than that of two walls.
+TEST(PixelFeatures, EdgesOfWhatGlaresAreKnownFromOthers) {
+  const auto glaring = [](Rgb radiance) {
+    auto desc = square_in_view();
+    const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.9f)}});
+    use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), gray);
+    const int lamp = add_shape(desc, sd::RectangleDesc{},
+                               Transform::translate(3 + 0.6 / kSize, 0, 1e-4) * Transform::scale(3, 3, 1));
+    use(desc, lamp, add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0)}}));
+    shine(desc, lamp, sd::ColorInput{radiance});
+    const world::World world = build(desc);
+    const View view = view_of(desc);
+    PixelFeatureTracing tracing(world, view, make_recipe({}, view));
+    EXPECT_TRUE(tracing.trace_all({}));
+    EXPECT_GT(tracing.differing(), 0);
+    EXPECT_TRUE(tracing.trace_glaring(252, {}));
+    for (int y = 0; y < kSize; ++y)
+      EXPECT_NEAR(tracing.means().emission.at(kSize / 2, y).g, 0.7f * radiance.g,
+                  radiance.g > 1 ? 0.04f * radiance.g : 0.5f * radiance.g);
+    return tracing.glaring();
+  };
+  EXPECT_NEAR(glaring(Rgb(20)), 2.0 / kSize, 1.0 / kSize);
+  EXPECT_EQ(glaring(Rgb(0.8f)), 0);
+}
+
 // A mirror shows a lamp behind the camera, and beside it a red wall.
 TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   auto desc = square_in_view();
