@@ -116,6 +116,7 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
   numbers["traced_direct.below_roughness"] =
       traced.direct.empty() ? 0.0 : static_cast<double>(prepared.recipe.traced_below);
   numbers["panes.straight"] = static_cast<double>(prepared.world->info().panes);
+  numbers["panes.bending"] = static_cast<double>(prepared.world->info().bending_glass);
   numbers["meshes.left_out"] = static_cast<double>(prepared.world->info().meshes_left_out);
   report.memory = {peak_memory_bytes(), prepared.world->info().memory_bytes,
                    prepared.receivers().memory_bytes(), lights.memory_bytes(), scene_matrix.memory_bytes()};

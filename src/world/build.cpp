@@ -170,9 +170,12 @@ class World::Builder {
     const auto& placement = geometry_.placements[i];
     auto& materials = w_.materials.materials;
     const auto* glass = std::get_if<scatter::DielectricMaterial>(&materials[index_of(material_of_[i])]);
-    if (!glass || !glass->smooth || (with_media_ && geometry_.placed[i].shape->media.divides) ||
-        !is_made_of_panes(geometry_.meshes[placement.mesh], placement.to_world))
+    if (!glass || !glass->smooth) return;
+    if ((with_media_ && geometry_.placed[i].shape->media.divides) ||
+        !is_made_of_panes(geometry_.meshes[placement.mesh], placement.to_world)) {
+      ++w_.info.bending_glass;
       return;
+    }
     const auto [known, is_new] =
         face_of_pane_.try_emplace(material_of_[i], static_cast<int>(materials.size()));
     material_of_[i] = known->second;

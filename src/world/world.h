@@ -40,7 +40,8 @@ struct WorldInfo {
   std::size_t meshes_left_out = 0;  // without a triangle, or without their file; not among `meshes`
   std::size_t segments = 0;         // of fibers
   std::size_t textures = 0, materials = 0, media = 0, emitters = 0;
-  std::size_t panes = 0;  // shapes that light passes straight because BuildOptions::straight_panes says so
+  // With BuildOptions::straight_panes: shapes that light passes straight, and others of smooth glass.
+  std::size_t panes = 0, bending_glass = 0;
   // Meshes, textures and acceleration structure, without what is shared with BuildOptions::before.
   std::size_t memory_bytes = 0;
 };

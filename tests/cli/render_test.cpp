@@ -49,6 +49,24 @@ TEST_F(Render, EveryFormatInOneRun) {
   EXPECT_EQ(files_in(folder_ / "").size(), 4u) << "no temporary file is left";
 }
 
+// Once, beside what it has written, and not to who does not want one.
+TEST_F(Render, SaysWhatADenoiserWouldGain) {
+  const auto said = [&](const Arguments& more) {
+    const Outcome outcome = start_lumirank(render_small(scene_, folder_ / "a.exr") + more, {},
+                                           "export LUMIRANK_DENOISER=/nowhere");
+    EXPECT_SUCCESS(outcome);
+    const auto first = outcome.out.find("`make denoiser`");
+    if (first != std::string::npos) {
+      EXPECT_EQ(outcome.out.find("`make denoiser`", first + 1), std::string::npos);
+    }
+    return first != std::string::npos;
+  };
+  EXPECT_TRUE(said({"--passes", "2"}));
+  EXPECT_FALSE(said({"--passes", "2", "--denoise", "off"}));
+  EXPECT_FALSE(said({"--passes", "2", "--quiet"}));
+  EXPECT_FALSE(said({"--method", "slice-cuts"})) << "which is not denoised";
+}
+
 TEST_F(Render, IlluminanceHasAFalseColorPictureBesideEachPng) {
   const Outcome outcome =
       lumirank(render_small(scene_, folder_ / "a.exr") +

@@ -64,6 +64,21 @@ TEST(Panes, NeedTwoFacesThatLookApart) {
   EXPECT_FALSE(is_made_of_panes({}, {}));
 }
 
+TEST(Panes, OtherGlassIsCounted) {
+  auto desc = empty_scene();
+  const int glass = add_bsdf(desc, sd::DielectricDesc{});
+  for (const float height : {0.01f, 0.5f}) {
+    const int shape = add_shape(desc, sd::CubeDesc{}, Transform::scale(1, 1, height));
+    desc.shapes[static_cast<std::size_t>(shape)].bsdf = glass;
+  }
+  std::vector<sd::Warning> warnings;
+  BuildOptions options;
+  options.straight_panes = true;
+  const World world = World::build(desc, options, warnings);
+  EXPECT_EQ(world.info().panes, 1u);
+  EXPECT_EQ(world.info().bending_glass, 1u);
+}
+
 TEST(Panes, LetShadowRaysPassWithWhatASlabLetsThrough) {
   auto desc = empty_scene();
   const int glass = add_bsdf(desc, sd::DielectricDesc{});
@@ -76,6 +91,7 @@ TEST(Panes, LetShadowRaysPassWithWhatASlabLetsThrough) {
   const World passes = World::build(desc, options, warnings);
   EXPECT_EQ(bends.info().panes, 0u);
   EXPECT_EQ(passes.info().panes, 1u);
+  EXPECT_EQ(passes.info().bending_glass, 0u);
   const Vec3f from{0, 0, -1}, up{0, 0, 1};
   EXPECT_EQ(visible_fraction(bends, from, up, up, 2, 1), Rgb(0));
   // Each face reflects 4 %; what goes to and fro between them is left to paths.

@@ -26,8 +26,7 @@ struct GatheredPiece {
 
 class Gathering {
  public:
-  Gathering(const world::World& world, const Receivers& rows, const GatherSettings& settings)
-      : world_(world), rows_(rows), settings_(settings) {}
+  Gathering(const Receivers& rows, const GatherSettings& settings) : rows_(rows), settings_(settings) {}
 
   void follow(std::size_t i, EyeChain& chain, GatheredPiece& piece) const {
     if (rows_.closure[i] == Receivers::kLambertian) return;
@@ -53,7 +52,6 @@ class Gathering {
   }
 
  private:
-  const world::World& world_;
   const Receivers& rows_;
   const GatherSettings& settings_;
 };
@@ -62,7 +60,7 @@ class Gathering {
 
 Receivers with_gathered(const world::World& world, Receivers rows, const GatherSettings& settings,
                         const Sinks& sinks) {
-  const Gathering gathering(world, rows, settings);
+  const Gathering gathering(rows, settings);
   std::vector<GatheredPiece> pieces((rows.size() + kRowsPerPiece - 1) / kRowsPerPiece);
   parallel_for(rows.size(), kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
