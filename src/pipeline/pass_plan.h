@@ -19,10 +19,10 @@ class PassPlan {
 
   // Of the next pass; 0: none fits into `left` seconds. The first one always is.
   int next(double left) const;
-  // Seconds of a whole pass, as far as is known.
-  double whole() const { return fixed_ + kWhole * per_eighth_; }
 
  private:
+  double whole() const { return fixed_ + kWhole * per_eighth_; }
+
   bool resizes_;
   int passes_ = 0;
   double weight_ = 0, eighths_ = 0, seconds_ = 0, drawing_ = 0;  // of passes so far, the later the more

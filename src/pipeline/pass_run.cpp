@@ -272,8 +272,7 @@ class PassRun {
     if (passes_ == 0) return true;
     if (asked_.method.target_error > 0 && passes_ >= 4 && picture_->noise() < asked_.method.target_error)
       return false;
-    if (!timed() || replays()) return true;
-    return as_asked_ ? plan_.whole() < left() : next_eighths_ > 0;
+    return !timed() || replays() || as_asked_ || next_eighths_ > 0;
   }
 
   bool pass(int number) {
