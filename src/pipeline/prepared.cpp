@@ -42,6 +42,7 @@ std::vector<Rgb> trace_sharp_lobes(const world::World& world, const transport::R
   TracedIndirectSettings ts;
   ts.seed = recipe.seed, ts.pass = recipe.pass;
   ts.below = recipe.sharp_below;
+  ts.gathered = recipe.gathered;
   ts.paths = recipe.local_paths;
   ts.max_depth = recipe.max_depth;
   auto light = trace_indirect(world, rows, ts, sinks);

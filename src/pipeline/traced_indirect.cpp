@@ -31,7 +31,7 @@ class Tracing {
   bool wants(std::size_t i) const {
     if (settings_.max_depth >= 0 && receivers_.depth[i] + 1 > settings_.max_depth) return false;
     if (settings_.near) return true;
-    if (receivers_.gathered > 0 && !receivers_.is_gathered(i)) return false;
+    if (settings_.gathered && !receivers_.is_gathered(i)) return false;
     return is_traced(receivers_, i, settings_.below);
   }
 

@@ -20,6 +20,8 @@ struct TracedIndirectSettings {
   int paths = 16;   // per receiver with such a lobe
   int max_depth = -1;
   std::uint64_t pass = 0;  // as in transport::ReceiverSettings
+  // Sharp lobes have their light from gathered receivers, be there any or not: only theirs are traced.
+  bool gathered = false;
   // Unless nullptr: all lobes instead of sharp ones, and only what comes from within reach.
   const transport::LightReach* near = nullptr;
 };

@@ -64,6 +64,13 @@ TEST(Panes, NeedTwoFacesThatLookApart) {
   EXPECT_FALSE(is_made_of_panes({}, {}));
 }
 
+World build_straight(const sd::SceneDesc& desc) {
+  std::vector<sd::Warning> warnings;
+  BuildOptions options;
+  options.straight_panes = true;
+  return World::build(desc, options, warnings);
+}
+
 TEST(Panes, OtherGlassIsCounted) {
   auto desc = empty_scene();
   const int glass = add_bsdf(desc, sd::DielectricDesc{});
@@ -71,10 +78,7 @@ TEST(Panes, OtherGlassIsCounted) {
     const int shape = add_shape(desc, sd::CubeDesc{}, Transform::scale(1, 1, height));
     desc.shapes[static_cast<std::size_t>(shape)].bsdf = glass;
   }
-  std::vector<sd::Warning> warnings;
-  BuildOptions options;
-  options.straight_panes = true;
-  const World world = World::build(desc, options, warnings);
+  const World world = build_straight(desc);
   EXPECT_EQ(world.info().panes, 1u);
   EXPECT_EQ(world.info().bending_glass, 1u);
 }
@@ -85,10 +89,7 @@ TEST(Panes, LetShadowRaysPassWithWhatASlabLetsThrough) {
   const int shape = add_shape(desc, sd::CubeDesc{}, Transform::scale(1, 1, 0.01));
   desc.shapes[static_cast<std::size_t>(shape)].bsdf = glass;
   const World bends = build(desc);
-  std::vector<sd::Warning> warnings;
-  BuildOptions options;
-  options.straight_panes = true;
-  const World passes = World::build(desc, options, warnings);
+  const World passes = build_straight(desc);
   EXPECT_EQ(bends.info().panes, 0u);
   EXPECT_EQ(passes.info().panes, 1u);
   EXPECT_EQ(passes.info().bending_glass, 0u);

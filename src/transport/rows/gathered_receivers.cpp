@@ -1,8 +1,6 @@
 #include "transport/rows/gathered_receivers.h"
 
 #include <algorithm>
-#include <atomic>
-#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -38,7 +36,7 @@ class Gathering {
     const auto next =
         scatter::sample(sharp, rows_.wo[i], u_lobe, random.next_2d(), scatter::Lobes::non_delta);
     if (!next) return;
-    Rgb weight = rows_.weight[i] * next->weight;
+    const Rgb weight = rows_.weight[i] * next->weight;
     const float survival = std::min(1.0f, max_component(weight) / kLightLobe);
     if (!(u_survival < survival)) return;
     EyeVertex from;

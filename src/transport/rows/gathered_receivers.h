@@ -19,8 +19,9 @@ struct GatherSettings {
 // `rows`, and behind them (Receivers::gathered) what stands for the indirect light in their sharp lobes: for
 // each that has such lobes one direction of them is drawn and followed to what it meets, which becomes a
 // receiver of the same film sample with f·cosine / density in its weight. A light lobe is followed in
-// proportion to what it weighs. What it meets shining is not for these receivers, nor is what follows a
-// specular vertex there: those paths are direct light of `rows`, and no columns' (docs/conventions.md).
+// proportion to what it weighs. Emission that it meets is direct light of `rows`, and not in what these
+// receivers send; specular vertices that it meets are passed by, as their paths are the rest's and no
+// columns' (docs/conventions.md).
 // (Final gathering: H. W. Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001; one direction at a
 // time.)
 Receivers with_gathered(const world::World& world, Receivers rows, const GatherSettings& settings,
