@@ -18,6 +18,7 @@
 #include "pipeline/media_run.h"
 #include "pipeline/memory.h"
 #include "pipeline/pass_run.h"
+#include "pipeline/path_run.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/render_run.h"
 #include "pipeline/report.h"
@@ -58,7 +59,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
                     const PreviewCallback& on_preview) {
   RenderSettings chosen = settings;
   api::InShot alone;
-  if (pipeline::passes_by_default(scene.impl().desc, settings)) {
+  if (!pipeline::paths_by_default(scene.impl().desc, settings) &&
+      pipeline::passes_by_default(scene.impl().desc, settings)) {
     chosen.method.name = pipeline::kMethodOfPasses;
     alone.why = "the default";
   }
@@ -73,7 +75,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     pipeline::RenderTask task;
     task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
-    const bool in_media = pipeline::some_scatter(scene.impl().desc) && !settings.view.is_open();
+    const bool by_paths = pipeline::paths_by_default(scene.impl().desc, settings);
+    const bool in_media = by_paths || (pipeline::some_scatter(scene.impl().desc) && !settings.view.is_open());
     task.info = in_media ? &pipeline::chosen_method_in_media(settings, &task.why)
                          : &pipeline::chosen_method(settings, &task.why);
     task.by_default = settings.method.name == "auto" && settings.method.parameters.empty() &&
@@ -113,9 +116,10 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     if (sinks.cancelled()) throw Cancelled();
     pipeline::check_lights(*task.world, settings, pipeline::make_recipe(settings, task.view));
     task.lumens_per_unit = scene.impl().desc.lumens_per_unit;
-    result = in_media ? pipeline::run_in_media(std::move(task), settings, sinks, on_preview)
-             : passes ? pipeline::run_in_passes(std::move(task), settings, sinks, on_preview)
-                      : pipeline::run_render(std::move(task), settings, sinks, on_preview);
+    result = by_paths   ? pipeline::run_by_paths(std::move(task), settings, sinks, on_preview)
+             : in_media ? pipeline::run_in_media(std::move(task), settings, sinks, on_preview)
+             : passes   ? pipeline::run_in_passes(std::move(task), settings, sinks, on_preview)
+                        : pipeline::run_render(std::move(task), settings, sinks, on_preview);
   });
   return result;
 }

@@ -91,6 +91,12 @@ Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::ui
 VolumePathTracer::Flight VolumePathTracer::fly(Walk& walk, float distance) const {
   if (walk.medium < 0) return Flight::arrived;
   const media::Medium& medium = world_.media()[static_cast<std::size_t>(walk.medium)];
+  if (!medium.scatters() && !medium.emits()) {
+    // Colored glass: what comes through is known, and a path that collided would only end.
+    walk.path.multiply(media::transmittance(medium, walk.ray.origin, walk.ray.direction, distance,
+                                            [&walk] { return walk.random.next_float(); }));
+    return is_black(walk.path.throughput) ? Flight::ended : Flight::arrived;
+  }
   LitStretch lit;
   if (lights_.place_share() > 0 && medium.scatters() && (max_depth_ < 0 || walk.segments < max_depth_)) {
     // What the eye sees of a medium is seen by itself; later flights are worth what lamps are among lights.

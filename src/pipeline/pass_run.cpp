@@ -70,7 +70,7 @@ class PassRun {
   RenderResult run() {
     sinks_.say("method: " + task_.info->name + " (" + task_.why + ")");
     picture_.emplace(asked_, view_, choices_, sinks_);
-    view_ = whole_ = picture_->filtered(view_);
+    view_ = whole_ = picture_->denoising().filtered(view_);
     rest_.emplace(task_.world, view_, asked_, sinks_);
     if (rest_->plan().piloted) seconds_["rest_pilot"] = rest_->pilot_seconds();
     const Timer survey_timer;
@@ -198,7 +198,7 @@ class PassRun {
                             (static_cast<double>(view_.width) * static_cast<double>(view_.height));
       expected_ = {took.fixed * static_cast<double>(lights_of(view_)) / static_cast<double>(lights_of(small)),
                    took.by_pixel / shrunk};
-      features_expected_ = picture_->feature_seconds(eye_rays / shrunk, left());
+      features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
       choose_size();
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
@@ -230,7 +230,7 @@ class PassRun {
     choices_.record("film_divisor", divisor);
     const double left_now = left();
     if (divisor == 1 && expected_.total() <= left_now) return;
-    const double enough = task_.build_seconds + picture_->denoiser_seconds() + kFewPasses * whole;
+    const double enough = task_.build_seconds + picture_->denoising().seconds() + kFewPasses * whole;
     const std::string budget = pass_number("%.3g s", asked_.time);
     shortage_ = asked_.time < task_.build_seconds
                     ? "building the scene took " + pass_number("%.2g s", task_.build_seconds) +
@@ -261,7 +261,7 @@ class PassRun {
     task_.method = task_.info->make(parameters);
   }
 
-  double end() const { return asked_.time - picture_->denoiser_seconds(); }
+  double end() const { return asked_.time - picture_->denoising().seconds(); }
   double left() const { return end() - clock_() - (passes_ == 0 ? features_expected_ : 0); }
   double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
 
@@ -286,14 +286,14 @@ class PassRun {
     of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
     const Timer timer;
     if (!picture_->add(number, wanted_, image, {*task_.world, view_, of_film, *prepared_->rows, traced_},
-                       timed() ? left() : 0, choices_, sinks_))
+                       timed() ? left() : 0, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
                                 : static_cast<double>(number + 1) / wanted_;
     sinks_.report("passes", std::clamp(part, 0.0, 1.0));
     if (previews_ && throttle_.due())
-      throttle_.show(as_asked(picture_->with_emission(picture_->sent(*rest_))));
+      throttle_.show(sized_for(picture_->with_emission(picture_->sent(*rest_)), task_.view));
     return true;
   }
 
@@ -322,22 +322,16 @@ class PassRun {
 
   // ------------------------------------------------------------ the picture
 
-  Picture as_asked(const image::Image& image) const {
-    Picture picture = to_picture(image);
-    if (picture.width == task_.view.width && picture.height == task_.view.height) return picture;
-    return enlarged(picture, task_.view.width, task_.view.height);
-  }
-
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
     const image::Image sent = picture_->sent(*rest_);
-    result_.picture = as_asked(picture_->with_emission(sent));
+    result_.picture = sized_for(picture_->with_emission(sent), task_.view);
     if (!result_.interrupted) {
       const Timer timer;
-      if (const auto denoised = picture_->denoised(sent)) {
+      if (const auto denoised = picture_->denoising().denoised(sent)) {
         std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-        result_.picture = as_asked(picture_->with_emission(*denoised));
+        result_.picture = sized_for(picture_->with_emission(*denoised), task_.view);
         result_.picture.planes.push_back({"undenoised", std::move(before)});
         seconds_["denoise"] = timer.seconds();
       }
@@ -360,10 +354,7 @@ class PassRun {
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
     estimate_.trace.notes["method.why"] = task_.why;
-    estimate_.trace.notes["denoiser"] =
-        seconds_.contains("denoise") ? "Open Image Denoise " + picture_->denoiser_version() : "none";
-    if (!picture_->denoiser_trouble().empty())
-      estimate_.trace.notes["denoiser.trouble"] = picture_->denoiser_trouble();
+    picture_->denoising().note(seconds_.contains("denoise"), estimate_.trace.notes);
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
     if (passes_ > 1) result_.report.notes["error.of"] = "the noise of all passes, before a denoiser";

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "media/tracking.h"
 #include "scatter/closure.h"
 #include "transport/rows/film_samples.h"
 
@@ -21,10 +22,33 @@ constexpr float kWhite = 4;
 // How many times what stands beside it, or what is usual, a pixel may be.
 constexpr float kOverNeighbors = 4, kOverUsual = 16;
 
+// Into so many parts an eye ray's way through a medium is cut at most, and what a medium is like of which
+// nothing is known at a place.
+constexpr int kMediumParts = 4;
+constexpr float kUsualAlbedo = 0.8f;
+
 Rgb min_of(Rgb a, Rgb b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
 Rgb max_of(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
 float distance(Rgb a, Rgb b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+// What a part of an eye ray hides of what is behind it, and what it sends of light that shines on it from all
+// around, as albedos of surfaces tell it.
+struct PartOfMedium {
+  Rgb hidden, albedo;
+};
+PartOfMedium look_at(const world::World& world, const transport::EyeSegment& part, Rng& rng) {
+  const media::Medium& medium = world.media()[static_cast<std::size_t>(part.medium)];
+  const Rgb through = media::transmittance(medium, part.origin, part.direction, part.length,
+                                           [&rng] { return rng.next_float(); });
+  const media::Coefficients there = medium.at(part.origin + part.direction * part.length);
+  Rgb albedo(kUsualAlbedo);
+  for (int c = 0; c < 3; ++c)
+    if (there.extinction[c] > 0) albedo[c] = there.scattering[c] / there.extinction[c];
+  // Estimates of what comes through leave these bounds.
+  const auto within = [](Rgb c) { return min_of(max_of(c, Rgb(0)), Rgb(1)); };
+  return {within(part.weight * (Rgb(1) - through)), within(albedo)};
 }
 
 }  // namespace
@@ -42,6 +66,7 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
   transport::ReceiverSettings settings = receiver_settings(recipe_, view_);
   settings.film_samples = samples;
   settings.seed = seed;
+  if (!world_.media().empty()) settings.segments = kMediumParts, settings.eye_medium = view_.sensor.medium;
   const auto width = static_cast<std::size_t>(view_.width);
   parallel_for(static_cast<std::size_t>(view_.height), 4, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
@@ -59,6 +84,14 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
           const float weight = luminance(v.weight);
           albedo += v.weight * v.albedo;
           normal = normal + v.normal * weight, weights += weight;
+        }
+        if (!eye.segments().empty()) {
+          Rng rng(seed, Stage::pilot, p, static_cast<std::uint64_t>(k));
+          for (const transport::EyeSegment& part : eye.segments()) {
+            const PartOfMedium seen = look_at(world_, part, rng);
+            albedo += seen.hidden * seen.albedo;
+            weights += luminance(seen.hidden);
+          }
         }
         if (weights > 0) normal = normal * (1 / weights);
         const Rgb color = albedo + min_of(sample.straight, Rgb(kWhite));

@@ -228,12 +228,6 @@ class RenderRun {
 
   // ------------------------------------------------------------ the method and what is traced around it
 
-  Picture as_asked(const image::Image& image) const {
-    Picture picture = to_picture(image);
-    if (picture.width == task_.view.width && picture.height == task_.view.height) return picture;
-    return enlarged(picture, task_.view.width, task_.view.height);
-  }
-
   // A preview shows receivers alone, which takes no time.
   image::Image image_of(std::span<const Rgb> sums, bool preview) {
     const FilmInput film{*task_.world, view_, recipe_, *rows_, traced_};
@@ -253,7 +247,7 @@ class RenderRun {
     run.sinks = sinks_;
     if (previews_)
       run.on_estimate = [&](std::span<const Rgb> sums) {
-        if (throttle_.due()) throttle_.show(as_asked(image_of(sums, true)));
+        if (throttle_.due()) throttle_.show(sized_for(image_of(sums, true), task_.view));
       };
     Timer timer;
     const matrix::MeteredMatrix metered(*prepared_->matrix);
@@ -347,7 +341,7 @@ class RenderRun {
     if (rest_->seconds() > 0) seconds_["rest"] = rest_->seconds();
     image::Image image = image_of(estimate_.sums, false);
     compensate(image);
-    result_.picture = as_asked(image);
+    result_.picture = sized_for(image, task_.view);
     layers();
     seconds_["film"] = film_timer.seconds() - (timed() ? 0 : rest_->seconds());
     report();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "pipeline/develop.h"
 #include "scenedesc/schema/film_size.h"
 
 namespace lumirank::pipeline {
@@ -61,6 +62,12 @@ Picture enlarged(const Picture& picture, int width, int height) {
     larger.planes.push_back(std::move(out));
   }
   return larger;
+}
+
+Picture sized_for(const image::Image& image, const View& view) {
+  Picture picture = to_picture(image);
+  if (picture.width == view.width && picture.height == view.height) return picture;
+  return enlarged(picture, view.width, view.height);
 }
 
 }  // namespace lumirank::pipeline

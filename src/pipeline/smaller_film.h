@@ -1,6 +1,7 @@
 // A film that is rendered smaller than it was asked for, because a budget is short, and enlarged.
 #pragma once
 
+#include "image/image.h"
 #include "lumirank/lumirank.h"
 #include "world/view.h"
 
@@ -16,5 +17,7 @@ View smaller(const View& view, int divisor);
 
 // The picture at another size, linearly interpolated between centers of pixels.
 Picture enlarged(const Picture& picture, int width, int height);
+// The image as a picture of the size that the view asks for.
+Picture sized_for(const image::Image& image, const View& view);
 
 }  // namespace lumirank::pipeline

@@ -108,6 +108,29 @@ TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   for (const Rgb& p : features.normal.pixels) EXPECT_LT(p.b, -0.99f);
 }
 
+// A wall in fog: what the fog hides of it is of the fog's albedo, and has no normal.
+TEST(PixelFeatures, AMediumHidesWhatIsBehindIt) {
+  auto desc = square_in_view();
+  const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.4f)}});
+  use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), gray);
+  sd::MediumDesc fog;
+  fog.extinction.value = Rgb(0.1f, 0.05f, 0), fog.albedo.value = Rgb(0.9f);
+  desc.media.push_back(fog);
+  desc.sensors[0].medium = 0;
+  const PixelFeatures features = traced(desc);
+  const float red = std::exp(-1.0f), green = std::exp(-0.5f);
+  double normal = 0, r = 0, g = 0;
+  for (std::size_t p = 0; p < features.albedo.pixels.size(); ++p) {
+    r += features.albedo.pixels[p].r, g += features.albedo.pixels[p].g;
+    normal += features.normal.pixels[p].b;
+    EXPECT_NEAR(features.albedo.pixels[p].b, 0.4f, 1e-3f);
+  }
+  constexpr double kPixels = kSize * kSize;
+  EXPECT_NEAR(r / kPixels, 0.4f * red + 0.9f * (1 - red), 0.02);
+  EXPECT_NEAR(g / kPixels, 0.4f * green + 0.9f * (1 - green), 0.02);
+  EXPECT_NEAR(normal / kPixels, luminance(Rgb(red, green, 1)), 0.05);
+}
+
 TEST(PixelFeatures, OnePixelIsAFireflyAndTwoAreALamp) {
   image::Image picture(8, 8);
   picture.at(2, 2) = Rgb(1000);

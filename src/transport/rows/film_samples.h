@@ -27,7 +27,7 @@ struct FilmSample {
 // thread.
 class FilmEye {
  public:
-  // Of the settings: seed, film_samples, max_depth, max_splits.
+  // Of the settings: seed, film_samples, max_depth, max_splits, eye_medium, segments.
   FilmEye(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings);
 
   // The pixel of the whole film that the following calls are about.
@@ -37,6 +37,8 @@ class FilmEye {
   FilmSample trace(int k, FirstHit* first, scatter::ClosurePool* pool = nullptr);
   // Of the sample traced last; without a pool they have their albedo and roughness.
   const std::vector<EyeVertex>& vertices() const { return vertices_; }
+  // What it passed of participating media, if settings ask for segments.
+  const std::vector<EyeSegment>& segments() const { return chain_.segments(); }
   // Width of a pixel where a vertex lies, out of focus that of the circle of confusion. An estimate: mirrors
   // are taken for flat.
   float footprint(const EyeVertex& vertex) const;

@@ -1,0 +1,203 @@
+#include "pipeline/path_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/version.h"
+#include "pathtrace/reference.h"
+#include "pipeline/picture_denoising.h"
+#include "pipeline/preview_throttle.h"
+#include "pipeline/report.h"
+#include "pipeline/smaller_film.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+constexpr int kUsualPaths = 64, kMaxPaths = 1 << 20;
+// Fewer are no picture, even for a denoiser.
+constexpr int kFewPaths = 2;
+// Before a target for the error is believed.
+constexpr int kPathsForError = 16;
+// A part of the film of this many times fewer pixels a side tells what a path takes.
+constexpr int kPathTrialDivisor = 4, kMaxPathDivisor = 4;
+// Seconds after which a run can be interrupted, or its preview shown.
+constexpr double kAtOnce = 0.5;
+
+class PathRun {
+ public:
+  PathRun(RenderTask task, const RenderSettings& asked, const Sinks& sinks, const PreviewCallback& preview)
+      : task_(std::move(task)),
+        asked_(asked),
+        sinks_(sinks),
+        throttle_(preview),
+        choices_(asked.choices.empty() ? methods::TimedChoices{} : methods::TimedChoices(asked.choices)),
+        denoising_(asked, task_.view, choices_, sinks),
+        view_(denoising_.filtered(task_.view)) {}
+
+  RenderResult run() {
+    sinks_.say(std::string("method: ") + kByPaths + " (" + task_.why + ")");
+    plan();
+    film_.emplace(*task_.world, view_, reference_options(asked_.view.only, asked_.seed, ReferencePaths::all));
+    bool whole = add(1) && trace_features();
+    while (whole && paths() < wanted_) {
+      const int more = next();
+      if (more < 1) break;
+      whole = add(more);
+    }
+    if (paths() == 0) throw Cancelled();
+    result_.interrupted = !whole;
+    picture();
+    report();
+    return std::move(result_);
+  }
+
+ private:
+  bool timed() const { return asked_.time > 0; }
+  int paths() const { return film_->result().spp; }
+  double left() const { return asked_.time - denoising_.seconds() - task_.timer.seconds(); }
+  double pixels(const View& view) const {
+    return static_cast<double>(view.width) * static_cast<double>(view.height);
+  }
+
+  void plan() {
+    const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
+    wanted_ = by_hand > 0 ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPaths : kUsualPaths;
+    if (!timed()) return;
+    if (const auto earlier = choices_.earlier("paths", kMaxPaths)) wanted_ = static_cast<int>(*earlier);
+    const int divisor = chosen_divisor();
+    choices_.record("film_divisor", divisor);
+    if (divisor > 1) view_ = smaller(view_, divisor);
+  }
+
+  // A film of half the width and height, enlarged, is better than none.
+  int chosen_divisor() {
+    if (const auto earlier = choices_.earlier("film_divisor", kMaxPathDivisor))
+      return static_cast<int>(*earlier);
+    const Timer timer;
+    const View small = smaller(view_, is_whole_film(view_) ? kPathTrialDivisor : 1);
+    pathtrace::PathFilm trial(*task_.world, small,
+                              reference_options(asked_.view.only, asked_.seed, ReferencePaths::all));
+    if (!trial.add(1, sinks_)) throw Cancelled();
+    double few = kFewPaths * timer.seconds() * pixels(view_) / pixels(small);
+    seconds_["pilot"] = timer.seconds();
+    const double enough = task_.build_seconds + denoising_.seconds() + few;
+    int divisor = 1;
+    while (is_whole_film(task_.view) && divisor < kMaxPathDivisor && few > left()) divisor *= 2, few /= 4;
+    if (divisor == 1 && few <= left()) return divisor;
+    char text[200];
+    std::snprintf(text, sizeof text, "the budget of %.3g s is short for this view%s; about %.2g s would do",
+                  asked_.time, divisor > 1 ? ": rendered smaller, and enlarged" : "", enough);
+    shortage_ = text;
+    sinks_.warn(shortage_);
+    return divisor;
+  }
+
+  bool add(int more) {
+    const Timer timer;
+    const bool whole = film_->add(more, sinks_, [&](double fraction) {
+      const double of_all = wanted_ < kMaxPaths ? (paths() + fraction * more) / wanted_
+                                                : (task_.timer.seconds() - task_.build_seconds) /
+                                                      std::max(1e-3, asked_.time - task_.build_seconds);
+      sinks_.report("paths", std::clamp(of_all, 0.0, 1.0));
+    });
+    seconds_["paths"] += timer.seconds();
+    if (whole && throttle_.due()) throttle_.show(sized_for(film_->result().image, task_.view));
+    return whole;
+  }
+
+  bool trace_features() {
+    if (!denoising_.wanted()) return true;
+    const Timer timer;
+    Recipe recipe = make_recipe(asked_, view_);
+    recipe.seed = hash_ids(asked_.seed, Stage::film_samples);
+    const bool whole =
+        denoising_.trace_first(*task_.world, view_, recipe, timed() ? std::max(0.0, left()) : 0, sinks_);
+    seconds_["features"] = timer.seconds();
+    return whole;
+  }
+
+  // Paths for each pixel that come next; 0: it is enough.
+  int next() {
+    if (asked_.method.target_error > 0 && paths() >= kPathsForError &&
+        film_->result().error < asked_.method.target_error)
+      return 0;
+    const double each = seconds_["paths"] / paths();
+    const double at_once = std::clamp(kAtOnce / std::max(each, 1e-9), 1.0, 1.0 * kMaxPaths);
+    int more = std::min(wanted_ - paths(), static_cast<int>(at_once));
+    if (timed() && wanted_ == kMaxPaths)
+      more = std::min(more, static_cast<int>(std::max(0.0, left()) / each));
+    return more;
+  }
+
+  void picture() {
+    if (timed() && !result_.interrupted) choices_.record("paths", paths());
+    if (result_.interrupted) choices_ = {};
+    const image::Image& traced = film_->result().image;
+    result_.picture = sized_for(traced, task_.view);
+    if (result_.interrupted) return;
+    const Timer timer;
+    if (const auto denoised = denoising_.denoised(traced)) {
+      std::vector<float> before = std::move(result_.picture.planes[0].rgb);
+      result_.picture = sized_for(*denoised, task_.view);
+      result_.picture.planes.push_back({"undenoised", std::move(before)});
+      seconds_["denoise"] = timer.seconds();
+    }
+  }
+
+  void report() {
+    Report& report = result_.report;
+    report.method = kByPaths;
+    report.version = program_version();
+    report.seed = asked_.seed;
+    report.notes["method.why"] = task_.why;
+    denoising_.note(seconds_.contains("denoise"), report.notes);
+    if (!shortage_.empty()) report.notes["budget.short"] = shortage_;
+    report.numbers["spp"] = paths();
+    if (paths() > 1) {
+      report.numbers["error.noise"] = report.numbers["error.estimate"] = film_->result().error;
+      report.notes["error.of"] = "the noise of all paths, before a denoiser";
+    }
+    if (view_.width < task_.view.width)
+      report.numbers["film.rendered_part"] =
+          static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
+    report.choices = choices_.made();
+    report.memory.peak = peak_memory_bytes();
+    report.memory.scene = task_.world->info().memory_bytes;
+    report.settings = asked_;
+    seconds_["build"] = task_.build_seconds;
+    seconds_["total"] = task_.timer.seconds();
+    report.seconds = seconds_;
+  }
+
+  RenderTask task_;
+  const RenderSettings& asked_;
+  Sinks sinks_;
+  PreviewThrottle throttle_;
+  methods::TimedChoices choices_;
+  PictureDenoising denoising_;
+  View view_;
+  std::optional<pathtrace::PathFilm> film_;
+  int wanted_ = kUsualPaths;  // paths per pixel
+  std::string shortage_;
+  std::map<std::string, double> seconds_;
+  RenderResult result_;
+};
+
+}  // namespace
+
+bool paths_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& settings) {
+  return !desc.media.empty() && settings.method.name == "auto" && settings.method.parameters.empty() &&
+         settings.layers.empty() && !settings.view.is_open() && !settings.view.film_samples &&
+         !settings.lights.count && settings.lights.type == LightType::point &&
+         settings.traced.compensate == 0 && settings.traced.local_paths == 0;
+}
+
+RenderResult run_by_paths(RenderTask task, const RenderSettings& settings, const Sinks& sinks,
+                          const PreviewCallback& on_preview) {
+  return PathRun(std::move(task), settings, sinks, on_preview).run();
+}
+
+}  // namespace lumirank::pipeline

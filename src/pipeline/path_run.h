@@ -1,0 +1,20 @@
+// One render by path tracing alone, denoised: for a scene whose light the default's rows and columns cannot
+// carry well enough yet.
+#pragma once
+
+#include "pipeline/render_run.h"
+
+namespace lumirank::pipeline {
+
+inline constexpr const char* kByPaths = "path-tracing";
+
+// Whether "auto" comes to that: where something is filled with a medium, unless settings ask for what only a
+// matrix has. Smoke by columns is noisier than by paths in the same time, glass around a medium is black by
+// them, and a medium that only absorbs is left out (docs/decisions.md).
+bool paths_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& settings);
+
+// Of the task it reads world, view, why and the timer. The world must have its media.
+RenderResult run_by_paths(RenderTask task, const RenderSettings& settings, const Sinks& sinks,
+                          const PreviewCallback& on_preview);
+
+}  // namespace lumirank::pipeline
