@@ -63,6 +63,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
       pipeline::passes_by_default(scene.impl().desc, settings)) {
     chosen.method.name = pipeline::kMethodOfPasses;
     alone.why = "the default";
+    alone.may_be_paths = pipeline::may_be_paths(settings) && settings.passes == 0 && !settings.view.spp &&
+                         settings.view.only == LightPart::all;
   }
   return api::render_in_shot(scene, chosen, alone, sinks, on_preview);
 }
@@ -83,6 +85,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
                       settings.method.target_error <= 0 && !task.info->contract.combination;
     if (in_media) pipeline::check_media(*task.info, settings);
     if (!shot.why.empty()) task.why = shot.why;
+    task.may_be_paths = shot.may_be_paths;
     const bool passes = pipeline::runs_in_passes(*task.info, settings) && !in_media;
     if (passes) pipeline::check_passes(settings);
     pipeline::check_layers(*task.info, settings);

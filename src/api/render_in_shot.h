@@ -21,7 +21,8 @@ struct InShot {
   // If given: the world of a frame before (nullptr: none), whose structures are refitted and which nobody
   // else may trace; becomes this frame's. Not with an open shutter.
   std::shared_ptr<const world::World>* refit = nullptr;
-  std::string why = {};  // it is this method; empty: as the settings say
+  std::string why = {};       // it is this method; empty: as the settings say
+  bool may_be_paths = false;  // where these have less noise (paths_beside.h)
 };
 
 // As render(), of a frame of a shot.

@@ -28,6 +28,8 @@ struct PathFilmHalf {
 
 namespace {
 
+constexpr std::size_t kPixelsAtOnce = 8192;
+
 struct ImageParts {
   bool emission, direct, indirect;
 };
@@ -38,12 +40,14 @@ image::Image mean_image(const world::View& view, std::span<const PathFilmHalf* c
   int count = 0;
   for (const PathFilmHalf* h : halves) count += h->count;
   const double scale = 1.0 / std::max(1, count);
-  for (std::size_t p = 0; p < image.pixels.size(); ++p)
-    for (const PathFilmHalf* h : halves) {
-      if (wanted.emission) image.pixels[p] += h->emission[p].scaled(scale);
-      if (wanted.direct) image.pixels[p] += h->direct[p].scaled(scale);
-      if (wanted.indirect) image.pixels[p] += h->indirect[p].scaled(scale);
-    }
+  parallel_for(image.pixels.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      for (const PathFilmHalf* h : halves) {
+        if (wanted.emission) image.pixels[p] += h->emission[p].scaled(scale);
+        if (wanted.direct) image.pixels[p] += h->direct[p].scaled(scale);
+        if (wanted.indirect) image.pixels[p] += h->indirect[p].scaled(scale);
+      }
+  });
   return image;
 }
 
@@ -154,7 +158,20 @@ PathFilm::PathFilm(std::vector<Instant> instants, const ReferenceOptions& option
   for (const Instant& instant : impl_->instants) impl_->add_instant(*instant.world, instant.view);
 }
 PathFilm::~PathFilm() = default;
+int PathFilm::paths() const { return impl_->result.spp; }
+
 const ReferenceResult& PathFilm::result() const { return impl_->result; }
+
+image::Image PathFilm::halves_difference() const {
+  const Impl& m = *impl_;
+  const ImageParts wanted{m.options.emission, m.options.direct, m.options.indirect};
+  const PathFilmHalf *a[] = {&m.halves[0]}, *b[] = {&m.halves[1]};
+  image::Image difference = mean_image(m.view, a, wanted);
+  const image::Image other = mean_image(m.view, b, wanted);
+  for (std::size_t p = 0; p < other.pixels.size(); ++p)
+    difference.pixels[p] = difference.pixels[p] - other.pixels[p];
+  return difference;
+}
 
 bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(double)>& progress) {
   Impl& m = *impl_;

@@ -49,7 +49,10 @@ class PathFilm {
   // So many more paths per pixel. `progress` (may be empty) gets the finished fraction of the pass. False if
   // it was cancelled: result() is then still that of the passes before, and no more can be added.
   bool add(int paths, const Sinks& sinks, const std::function<void(double)>& progress = {});
+  int paths() const;  // per pixel, so far
   const ReferenceResult& result() const;
+  // The image of one half of the paths less that of the other: twice the noise of the image. Needs two paths.
+  image::Image halves_difference() const;
 
  private:
   struct Impl;

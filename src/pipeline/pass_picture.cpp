@@ -37,12 +37,22 @@ image::Image PassPicture::emission_of_pass(int wanted, const FilmInput& film) co
 image::Image PassPicture::sent(const RestTracing& rest) const {
   image::Image image = mean_.mean();
   rest.add_to(image);
-  if (!denoising_.traced() || !parts_.emission) return image;
-  double sum = 0;
-  for (const Rgb& p : image.pixels) sum += static_cast<double>(luminance(p));
-  const double usual = sum / static_cast<double>(image.pixels.size());
-  add_image(without_fireflies(denoising_.features().mirrored, static_cast<float>(usual)), image);
   return image;
+}
+
+NoisyPicture PassPicture::with_noise(const RestTracing& rest) const {
+  NoisyPicture passes{sent(rest), mean_.difference()};
+  rest.add_difference_to(passes.difference);
+  return passes;
+}
+
+image::Image PassPicture::with_mirrored(image::Image sent) const {
+  if (!denoising_.traced() || !parts_.emission) return sent;
+  double sum = 0;
+  for (const Rgb& p : sent.pixels) sum += static_cast<double>(luminance(p));
+  const double usual = sum / static_cast<double>(sent.pixels.size());
+  add_image(without_fireflies(denoising_.features().mirrored, static_cast<float>(usual)), sent);
+  return sent;
 }
 
 image::Image PassPicture::with_emission(image::Image sent) const {

@@ -6,6 +6,7 @@
 #include "image/image.h"
 #include "lumirank/settings.h"
 #include "pipeline/develop.h"
+#include "pipeline/paths_beside.h"
 #include "pipeline/picture_denoising.h"
 #include "pipeline/picture_mean.h"
 #include "pipeline/rest_tracing.h"
@@ -28,10 +29,16 @@ class PassPicture {
   bool add(int number, int wanted, const image::Image& sent, const FilmInput& film, double left,
            const Sinks& sinks);
 
+  // Features of one sample more, for who adds paths.
+  bool trace_another(int number, const Sinks& sinks) { return denoising_.trace_another(number, sinks); }
+
   // Relative L1 of the mean's noise (PictureMean).
   double noise() const { return mean_.noise(); }
-  // What surfaces and mirrors send, and `rest`.
+  // What surfaces send by passes and `rest`; and its noise, with two passes at least.
   image::Image sent(const RestTracing& rest) const;
+  NoisyPicture with_noise(const RestTracing& rest) const;
+  // With what mirrors and glass show of lamps; with what is seen of them straight.
+  image::Image with_mirrored(image::Image sent) const;
   image::Image with_emission(image::Image sent) const;
 
  private:

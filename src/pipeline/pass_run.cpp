@@ -15,6 +15,7 @@
 #include "pipeline/media_run.h"
 #include "pipeline/pass_picture.h"
 #include "pipeline/pass_plan.h"
+#include "pipeline/paths_beside.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
 #include "pipeline/rest_tracing.h"
@@ -39,6 +40,14 @@ constexpr float kNearOfPass = 10;
 // seconds they will take, before that is known, and how noisy a pass is.
 constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8;
 constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
+// After so many passes paths for all light are tried for this part of the passes' seconds, if so many passes
+// more would fit.
+constexpr int kPassesBeforePaths = 2;
+constexpr double kPartOfTrial = 0.4, kWorthATrial = 3;
+constexpr int kMaxBeside = 1 << 16;
+constexpr int kPathsForError = 16;  // before a target for the error is believed
+// Seconds after which a run by paths can be interrupted, or its preview shown.
+constexpr double kPathsAtOnce = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
 // What a receiver draws in a whole pass, and what of all that is done for a pixel this is, before it is
 // known.
@@ -81,6 +90,7 @@ class PassRun {
       set_size();
       if (!pass(passes_)) break;
       ++passes_;
+      if (passes_ == kPassesBeforePaths && !compare_with_paths()) break;
     }
     if (passes_ == 0) throw Cancelled();
     return picture();
@@ -266,6 +276,7 @@ class PassRun {
   double rest_share() const { return rest_->plan().paths > 0 ? kRestOfPass : 0; }
 
   bool wants_more() {
+    if (by_paths_) return false;
     next_eighths_ = timed() && !as_asked_ ? plan_.next(left()) : PassPlan::kWhole;
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
@@ -281,6 +292,7 @@ class PassRun {
     PassSeconds took;
     if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
+    passes_seconds_ += clock_() - begin;
     plan_.took(eighths_, clock_() - begin, seconds_drawing() - drawn_before);
     Recipe of_film = recipe_of(static_cast<std::uint64_t>(number));
     of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
@@ -289,12 +301,15 @@ class PassRun {
                        timed() ? left() : 0, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
-    const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
-                                : static_cast<double>(number + 1) / wanted_;
-    sinks_.report("passes", std::clamp(part, 0.0, 1.0));
-    if (previews_ && throttle_.due())
-      throttle_.show(sized_for(picture_->with_emission(picture_->sent(*rest_)), task_.view));
+    report_progress(number + 1);
+    if (previews_ && throttle_.due()) throttle_.show(sized_for(picture_->with_emission(sent()), task_.view));
     return true;
+  }
+
+  void report_progress(int passes) const {
+    const double part = timed() ? (clock_() - task_.build_seconds) / (asked_.time - task_.build_seconds)
+                                : static_cast<double>(passes) / wanted_;
+    sinks_.report("passes", std::clamp(part, 0.0, 1.0));
   }
 
   // Two sorts of noise are least together, for their seconds, where each has samples in proportion to its
@@ -320,16 +335,83 @@ class PassRun {
     return paths == 0 || rest_->add_paths(view_, paths, sinks_);
   }
 
+  // ------------------------------------------------------------ or paths
+
+  // False if it was cancelled.
+  bool compare_with_paths() {
+    if (!timed() || !task_.may_be_paths) return true;
+    if (!try_paths()) return false;
+    choices_.record("trial_paths", paths_ ? paths_->paths() : 0);
+    if (!paths_) return true;
+    const auto by_paths = choices_.earlier("by_paths", 1), more = choices_.earlier("more_paths", kMaxBeside);
+    passes_over_paths_ = passes_over_paths(picture_->with_noise(*rest_), passes_seconds_,
+                                           {paths_->sent(), paths_->difference()}, paths_->seconds());
+    by_paths_ = by_paths ? *by_paths == 1 : passes_over_paths_ > 1;
+    choices_.record("by_paths", by_paths_ ? 1 : 0);
+    sinks_.say(
+        "noise of passes over that of paths in the same time: " + pass_number("%.2g", passes_over_paths_) +
+        (by_paths_ ? ", so paths go on" : ", so passes go on"));
+    const int before = paths_->paths();
+    const bool whole = !by_paths_ || go_on_by_paths(more);
+    choices_.record("more_paths", paths_->paths() - before);
+    return whole;
+  }
+
+  bool try_paths() {
+    const auto earlier = choices_.earlier("trial_paths", kMaxBeside);
+    const double pass = passes_seconds_ / passes_;
+    if (earlier ? *earlier == 0 : left() < kWorthATrial * pass) return true;
+    paths_.emplace(*task_.world, view_, asked_);
+    if (earlier) return paths_->add(static_cast<int>(*earlier), sinks_);
+    do {
+      if (!paths_->add(2, sinks_)) return false;
+    } while (paths_->seconds() < kPartOfTrial * passes_seconds_);
+    return true;
+  }
+
+  // Until the budget is over, or as many as an earlier run had.
+  bool go_on_by_paths(std::optional<std::int64_t> earlier) {
+    for (std::int64_t done = 0;;) {
+      if (!earlier && paths_->paths() >= kPathsForError && paths_->error() < asked_.method.target_error)
+        return true;
+      const double each = paths_->seconds() / paths_->paths();
+      const std::int64_t wanted =
+          earlier ? *earlier - done : static_cast<std::int64_t>(std::max(0.0, left()) / each);
+      if (wanted < 1) return true;
+      const auto more =
+          std::min(wanted, std::max<std::int64_t>(1, static_cast<std::int64_t>(kPathsAtOnce / each)));
+      if (!paths_->add(static_cast<int>(more), sinks_)) return false;
+      done += more;
+      if (!features_of_paths()) return false;
+      report_progress(0);
+      if (previews_ && throttle_.due())
+        throttle_.show(sized_for(picture_->with_emission(sent()), task_.view));
+    }
+  }
+
+  // What mirrors show of lamps is theirs alone. As many as the paths say, in whatever portions these came.
+  bool features_of_paths() {
+    constexpr int kPathsForOne = 8, kFirstNumber = 1 << 10;
+    if (!picture_->denoising().traced()) return true;
+    for (; features_of_paths_ < paths_->paths() / kPathsForOne; ++features_of_paths_)
+      if (!picture_->trace_another(kFirstNumber + features_of_paths_, sinks_)) return false;
+    return true;
+  }
+
   // ------------------------------------------------------------ the picture
+
+  image::Image sent() const {
+    return picture_->with_mirrored(by_paths_ ? paths_->sent() : picture_->sent(*rest_));
+  }
 
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
-    const image::Image sent = picture_->sent(*rest_);
-    result_.picture = sized_for(picture_->with_emission(sent), task_.view);
+    const image::Image all = sent();
+    result_.picture = sized_for(picture_->with_emission(all), task_.view);
     if (!result_.interrupted) {
       const Timer timer;
-      if (const auto denoised = picture_->denoising().denoised(sent)) {
+      if (const auto denoised = picture_->denoising().denoised(all)) {
         std::vector<float> before = std::move(result_.picture.planes[0].rgb);
         result_.picture = sized_for(picture_->with_emission(*denoised), task_.view);
         result_.picture.planes.push_back({"undenoised", std::move(before)});
@@ -342,6 +424,11 @@ class PassRun {
 
   void report() {
     if (rest_->seconds() > 0) seconds_["rest"] = rest_->seconds();
+    if (paths_) {
+      seconds_["paths"] = paths_->seconds();
+      estimate_.trace.numbers["paths"] = paths_->paths();
+      estimate_.trace.numbers["passes_over_paths"] = passes_over_paths_;
+    }
     auto& numbers = estimate_.trace.numbers;
     if (result_.interrupted) choices_ = {};
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
@@ -349,7 +436,8 @@ class PassRun {
     numbers["passes"] = passes_;
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
-    if (passes_ > 1) numbers["error.noise"] = numbers["error.estimate"] = picture_->noise();
+    if (passes_ > 1)
+      numbers["error.noise"] = numbers["error.estimate"] = by_paths_ ? paths_->error() : picture_->noise();
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
@@ -357,7 +445,9 @@ class PassRun {
     picture_->denoising().note(seconds_.contains("denoise"), estimate_.trace.notes);
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
-    if (passes_ > 1) result_.report.notes["error.of"] = "the noise of all passes, before a denoiser";
+    if (passes_ > 1)
+      result_.report.notes["error.of"] =
+          std::string("the noise of all ") + (by_paths_ ? "paths" : "passes") + ", before a denoiser";
     of_all_passes(result_.report);
     seconds_["total"] = task_.timer.seconds();
     result_.report.seconds = seconds_;
@@ -390,7 +480,11 @@ class PassRun {
   double rest_due_ = 0;
   int wanted_ = 1, passes_ = 0, next_eighths_ = PassPlan::kWhole;
   int eighths_ = PassPlan::kWhole;  // size of the pass
-  bool as_asked_ = false;           // their number is given: no clock lowers it
+  std::optional<PathsBeside> paths_;
+  int features_of_paths_ = 0;
+  double passes_seconds_ = 0, passes_over_paths_ = 0;
+  bool by_paths_ = false;  // after the first passes
+  bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
   // Of the last pass: what reports tell of sizes.
   SharedPrepared prepared_;

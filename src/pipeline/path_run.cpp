@@ -20,7 +20,7 @@ constexpr int kUsualPaths = 64, kMaxPaths = 1 << 20;
 // Fewer are no picture, even for a denoiser.
 constexpr int kFewPaths = 2;
 // Before a target for the error is believed.
-constexpr int kPathsForError = 16;
+constexpr int kPathsBeforeError = 16;
 // A part of the film of this many times fewer pixels a side tells what a path takes.
 constexpr int kPathTrialDivisor = 4, kMaxPathDivisor = 4;
 // Seconds after which a run can be interrupted, or its preview shown.
@@ -56,7 +56,7 @@ class PathRun {
 
  private:
   bool timed() const { return asked_.time > 0; }
-  int paths() const { return film_->result().spp; }
+  int paths() const { return film_->paths(); }
   double left() const { return asked_.time - denoising_.seconds() - task_.timer.seconds(); }
   double pixels(const View& view) const {
     return static_cast<double>(view.width) * static_cast<double>(view.height);
@@ -121,7 +121,7 @@ class PathRun {
 
   // Paths for each pixel that come next; 0: it is enough.
   int next() {
-    if (asked_.method.target_error > 0 && paths() >= kPathsForError &&
+    if (asked_.method.target_error > 0 && paths() >= kPathsBeforeError &&
         film_->result().error < asked_.method.target_error)
       return 0;
     const double each = seconds_["paths"] / paths();
@@ -188,11 +188,15 @@ class PathRun {
 
 }  // namespace
 
+bool may_be_paths(const RenderSettings& settings) {
+  return settings.method.name == "auto" && settings.method.parameters.empty() && settings.layers.empty() &&
+         !settings.view.is_open() && !settings.view.film_samples && !settings.lights.count &&
+         settings.lights.type == LightType::point && settings.traced.compensate == 0 &&
+         settings.traced.local_paths == 0;
+}
+
 bool paths_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& settings) {
-  return !desc.media.empty() && settings.method.name == "auto" && settings.method.parameters.empty() &&
-         settings.layers.empty() && !settings.view.is_open() && !settings.view.film_samples &&
-         !settings.lights.count && settings.lights.type == LightType::point &&
-         settings.traced.compensate == 0 && settings.traced.local_paths == 0;
+  return !desc.media.empty() && may_be_paths(settings);
 }
 
 RenderResult run_by_paths(RenderTask task, const RenderSettings& settings, const Sinks& sinks,

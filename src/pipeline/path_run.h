@@ -8,9 +8,11 @@ namespace lumirank::pipeline {
 
 inline constexpr const char* kByPaths = "path-tracing";
 
-// Whether "auto" comes to that: where something is filled with a medium, unless settings ask for what only a
-// matrix has. Smoke by columns is noisier than by paths in the same time, glass around a medium is black by
-// them, and a medium that only absorbs is left out (docs/decisions.md).
+// Whether "auto" may come to paths: unless settings ask for what only a matrix has.
+bool may_be_paths(const RenderSettings& settings);
+// Whether it comes to that before anything is tried: where something is filled with a medium. Smoke by
+// columns is noisier than by paths in the same time, glass around a medium is black by them, and a medium
+// that only absorbs is left out (docs/decisions.md).
 bool paths_by_default(const scenedesc::SceneDesc& desc, const RenderSettings& settings);
 
 // Of the task it reads world, view, why and the timer. The world must have its media.

@@ -29,18 +29,27 @@ image::Image PictureMean::mean() const {
   return mean;
 }
 
-double PictureMean::noise() const {
-  if (count_[1] == 0) return 0;
+image::Image PictureMean::difference() const {
+  if (count_[1] == 0) return {};
   const double n0 = static_cast<double>(count_[0]), n1 = static_cast<double>(count_[1]);
-  double off = 0, light = 0;
-  for (std::size_t p = 0; p < sum_[0].pixels.size(); ++p)
-    for (int c = 0; c < 3; ++c) {
-      const double a = static_cast<double>(sum_[0].pixels[p][c]),
-                   b = static_cast<double>(sum_[1].pixels[p][c]);
-      off += std::abs(a / n0 - b / n1), light += std::abs((a + b) / (n0 + n1));
-    }
   // Var(A − B) = σ² (1/n0 + 1/n1) where the mean has σ² / (n0 + n1).
-  return light > 0 ? off * std::sqrt(n0 * n1) / (n0 + n1) / light : 0;
+  const double scale = 2 * std::sqrt(n0 * n1) / (n0 + n1);
+  const auto of_a = static_cast<float>(scale / n0), of_b = static_cast<float>(scale / n1);
+  image::Image difference = sum_[0];
+  for (std::size_t p = 0; p < difference.pixels.size(); ++p)
+    difference.pixels[p] = of_a * difference.pixels[p] - of_b * sum_[1].pixels[p];
+  return difference;
+}
+
+double PictureMean::noise() const {
+  const image::Image difference = this->difference(), mean = this->mean();
+  double off = 0, light = 0;
+  for (std::size_t p = 0; p < difference.pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c) {
+      off += std::abs(static_cast<double>(difference.pixels[p][c]));
+      light += std::abs(static_cast<double>(mean.pixels[p][c]));
+    }
+  return light > 0 ? off / 2 / light : 0;
 }
 
 }  // namespace lumirank::pipeline

@@ -19,6 +19,8 @@ class PictureMean {
   // Relative L1 of the mean's noise, Σ|first half − second half| / (2 Σ mean), over pixels and channels;
   // where halves are of different size, in proportion. 0 with fewer than two pictures.
   double noise() const;
+  // The halves' difference, scaled so that it is twice the noise of the mean. Empty with fewer than two.
+  image::Image difference() const;
 
  private:
   image::Image sum_[2];

@@ -30,7 +30,7 @@ RestTracing::RestTracing(SharedWorld world, const RenderSettings& settings, cons
 
 bool RestTracing::add(int paths, const Sinks& sinks) {
   if (!film_->add(paths, sinks, [&](double fraction) { sinks.report("rest", fraction); })) return false;
-  paths_ = film_->result().spp;
+  paths_ = film_->paths();
   return true;
 }
 
@@ -87,6 +87,12 @@ bool RestTracing::trace_all(const View& view, const Sinks& sinks) {
 void RestTracing::add_to(image::Image& image) const {
   const image::Image& part = film_ ? film_->result().image : all_;
   for (std::size_t p = 0; p < part.pixels.size(); ++p) image.pixels[p] += part.pixels[p];
+}
+
+void RestTracing::add_difference_to(image::Image& image) const {
+  if (!film_) return;
+  const image::Image difference = film_->halves_difference();
+  for (std::size_t p = 0; p < image.pixels.size(); ++p) image.pixels[p] += difference.pixels[p];
 }
 
 }  // namespace lumirank::pipeline

@@ -36,7 +36,8 @@ class RestTracing {
 
   int paths() const { return paths_; }  // traced, per pixel
   double seconds() const { return seconds_; }
-  void add_to(image::Image& image) const;  // nothing if none were traced
+  void add_to(image::Image& image) const;             // nothing if none were traced
+  void add_difference_to(image::Image& image) const;  // twice the noise of that
 
   static constexpr int kMaxPaths = 4096;  // beyond which more is not seen
 

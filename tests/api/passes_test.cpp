@@ -52,6 +52,32 @@ TEST(Passes, ABudgetIsRepeatedBitByBit) {
   EXPECT_EQ(first.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb);
 }
 
+// Which of both goes on after two passes is the clock's choice; here it is written down by hand.
+TEST(Passes, PathsThatGoOnAreThePicture) {
+  const Scene scene = example_box();
+  RenderSettings s;
+  s.view.width = 24, s.view.height = 18;
+  s.denoise = Denoise::off;
+  s.time = 0.8;
+  const RenderResult first = render(scene, s);
+  s.choices = first.report.choices;
+  const std::int64_t divisor = s.choices.at("film_divisor").at(0);
+  s.choices["passes"] = {2};
+  s.choices["trial_paths"] = {2}, s.choices["by_paths"] = {1}, s.choices["more_paths"] = {1022};
+  for (const char* what : {"eighths_of_pass", "rest_of_pass"})
+    if (s.choices.contains(what)) s.choices[what].resize(2, s.choices[what].front());
+  const RenderResult result = render(scene, s);
+  EXPECT_EQ(said(result)["paths"], 1024);
+  EXPECT_EQ(said(result)["choices"]["by_paths"][0], 1);
+  RenderSettings truth;
+  truth.view = s.view;
+  truth.seed = 5;
+  EXPECT_EQ(divisor, 1);
+  EXPECT_NEAR(mean_of(result.picture), mean_of(reference(scene, truth, {.spp = 1024}).picture),
+              0.02 * mean_of(result.picture));
+  EXPECT_EQ(result.picture.planes[0].rgb, render(scene, s).picture.planes[0].rgb);
+}
+
 TEST(Passes, OtherMethodsHaveThemToo) {
   RenderSettings s = few_passes(2);
   s.method.name = "slice-cuts";

@@ -33,6 +33,10 @@ TEST(PictureMean, StatesTheNoiseOfTheMean) {
     for (const Rgb& p : mean.mean().pixels)
       for (int c = 0; c < 3; ++c) off += std::abs(static_cast<double>(p[c]) - 1) / 30000;
     EXPECT_NEAR(mean.noise(), off, 0.03 * off) << count;
+    double twice = 0;
+    for (const Rgb& p : mean.difference().pixels)
+      for (int c = 0; c < 3; ++c) twice += std::abs(static_cast<double>(p[c])) / 30000;
+    EXPECT_NEAR(twice / 2, off, 0.03 * off) << count;
     EXPECT_NEAR(off, 0.2 * std::sqrt(2 / 3.14159265 / count), 0.03 * off);
   }
 }

@@ -1,0 +1,72 @@
+#include "pipeline/paths_beside.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "base/timer.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+constexpr double kOfUsual = 0.1;
+// From which noise on the denoised pictures of fifteen scenes are worse by passes (docs/decisions.md).
+constexpr double kPassesLookWorse = 1.7;
+
+pathtrace::ReferenceOptions all_but_emission(const RenderSettings& settings) {
+  pathtrace::ReferenceOptions options =
+      reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
+  options.emission = false;
+  return options;
+}
+
+// Over what is usual around a pixel: a pixel's own noise is in its own value, and few paths that found
+// something bright would hide how bright that was.
+constexpr int kAround = 16;
+
+double brightness(Rgb c) { return static_cast<double>(c.r + c.g + c.b) / 3; }
+
+double relative_size(const image::Image& difference, const image::Image& picture) {
+  double usual = 0;
+  for (const Rgb& p : picture.pixels) usual += brightness(p);
+  usual *= kOfUsual / static_cast<double>(picture.pixels.size());
+  if (!(usual > 0)) return 0;
+  double sum = 0;
+  for (int y = 0; y < picture.height; y += kAround)
+    for (int x = 0; x < picture.width; x += kAround) {
+      double off = 0, light = 0;
+      int pixels = 0;
+      for (int v = y; v < std::min(y + kAround, picture.height); ++v)
+        for (int u = x; u < std::min(x + kAround, picture.width); ++u, ++pixels) {
+          const Rgb d = difference.at(u, v);
+          off += brightness({std::abs(d.r), std::abs(d.g), std::abs(d.b)});
+          light += brightness(picture.at(u, v));
+        }
+      sum += pixels * off / (light + pixels * usual);
+    }
+  return sum / 2 / static_cast<double>(picture.pixels.size());
+}
+
+}  // namespace
+
+PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings)
+    : film_(world, view, all_but_emission(settings)) {}
+
+bool PathsBeside::add(int paths, const Sinks& sinks) {
+  const Timer timer;
+  const bool whole = film_.add(paths, sinks);
+  seconds_ += timer.seconds();
+  return whole;
+}
+
+double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
+                         double seconds_of_paths) {
+  image::Image picture = passes.picture;
+  for (std::size_t p = 0; p < picture.pixels.size(); ++p)
+    picture.pixels[p] = 0.5f * (picture.pixels[p] + paths.picture.pixels[p]);
+  const double by_paths = relative_size(paths.difference, picture) * std::sqrt(seconds_of_paths);
+  const double by_passes = relative_size(passes.difference, picture) * std::sqrt(seconds_of_passes);
+  return by_paths > 0 ? kPassesLookWorse * by_passes / by_paths : 0;
+}
+
+}  // namespace lumirank::pipeline

@@ -1,0 +1,43 @@
+// Paths that carry all light, traced beside passes of rows and columns: which of both has less noise for its
+// seconds is found on the picture itself.
+#pragma once
+
+#include "base/sinks.h"
+#include "image/image.h"
+#include "pathtrace/reference.h"
+#include "pipeline/recipe.h"
+#include "world/world.h"
+
+namespace lumirank::pipeline {
+
+class PathsBeside {
+ public:
+  // Must outlive it: the world.
+  PathsBeside(const world::World& world, const View& view, const RenderSettings& settings);
+
+  // So many more for each pixel. False if it was cancelled: then none of them counts.
+  bool add(int paths, const Sinks& sinks);
+  int paths() const { return film_.paths(); }
+  double seconds() const { return seconds_; }
+  double error() const { return film_.result().error; }  // relative L1, as halves state it
+  // What surfaces send; twice its noise.
+  image::Image sent() const { return film_.result().image; }
+  image::Image difference() const { return film_.halves_difference(); }
+
+ private:
+  pathtrace::PathFilm film_;
+  double seconds_ = 0;
+};
+
+// An estimate of a picture, with a difference that is twice its noise.
+struct NoisyPicture {
+  image::Image picture, difference;
+};
+
+// Noise of passes over that of paths for the same seconds, as eyes see it: over what is there and a tenth of
+// what is usual, in the mean over pixels. That of passes counts worse than it is: it is alike in neighbors,
+// which share lights, and a denoiser leaves more of it.
+double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
+                         double seconds_of_paths);
+
+}  // namespace lumirank::pipeline
