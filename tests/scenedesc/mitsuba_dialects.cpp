@@ -81,7 +81,7 @@ const char* kScene3 = R"(<scene version="3.0.0">
   <shape type="instance"><ref id="group"/><transform name="to_world"><scale value="2"/></transform></shape>
   <shape type="rectangle">
     <ref id="plastic"/>
-    <emitter type="area" id="lamp"><spectrum name="radiance" value="12"/></emitter>
+    <emitter type="area" id="lamp"><rgb name="radiance" value="12"/></emitter>
   </shape>
   <emitter type="spot">
     <float name="cutoff_angle" value="30"/>

@@ -342,6 +342,25 @@ TEST(MitsubaSpectrum, FilesAndPairsAreTheSame) {
   EXPECT_NEAR(color(2).g, 0.215861, 1e-5);  // ((128/255 + 0.055)/1.055)^2.4
 }
 
+// As Mitsuba 3.9 renders them: a number for all wavelengths is equal energy there, the color of a flat
+// spectrum, and the same in all channels in 0.6.
+TEST(MitsubaSpectrum, OneNumberIsEqualEnergyInThree) {
+  const auto radiance = [](const char* version, const std::string& value) {
+    const SceneDesc scene =
+        parse(kCamera + "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"" + value +
+                  "\"/></emitter>",
+              version);
+    return std::get<ConstantEnvironmentDesc>(scene.emitters.at(0).kind).radiance;
+  };
+  const Rgb modern = radiance("3.0.0", "2"), older = radiance("0.6.0", "2");
+  EXPECT_EQ(older, Rgb(2));
+  EXPECT_NEAR(modern.r, 2.4096, 1e-3);
+  EXPECT_NEAR(modern.g, 1.8966, 1e-3);
+  EXPECT_NEAR(modern.b, 1.8178, 1e-3);
+  const Rgb flat = radiance("3.0.0", "400:2, 700:2");
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(flat[c], modern[c], 0.02) << c;
+}
+
 TEST(MitsubaFilter, MitchellParametersByDialect) {
   const auto filter = [](const char* version, const char* first, const char* second) {
     return parse(std::string("<sensor type=\"perspective\"><film type=\"hdrfilm\"><rfilter "

@@ -126,6 +126,12 @@ bool is_color_tag(const std::string& tag) {
          tag == "integer" || tag == "color";
 }
 
+bool is_even_spectrum(const Element& element) {
+  const std::string* value = element.tag == "spectrum" ? element.find("value") : nullptr;
+  return value && !element.find("filename") && value->find_first_of(":#") == std::string::npos &&
+         parse_list(*value, element.where, "value of <spectrum>").size() == 1;
+}
+
 Rgb parse_color(const Element& element, Intent intent) {
   Rgb value;
   if (element.tag == "rgb" || element.tag == "srgb" || element.tag == "color")

@@ -179,6 +179,9 @@ std::optional<ColorInput> Plugin::color_if(const std::string& name, Intent inten
     if (!reader_.constant_texture(target, intent, out.value)) out.texture = reader_.build_texture(target);
   } else if (is_color_tag(target.tag)) {
     out.value = parse_color(target, intent);
+    // Equal energy is no gray under the white of sRGB. 0.6 has three channels, and they are alike.
+    if (intent == Intent::emission && !reader_.dialect().camel_case() && is_even_spectrum(target))
+      out.value *= kEqualEnergy;
   } else if (target.tag == "texture") {
     out.texture = reader_.build_texture(target);
   } else {

@@ -28,6 +28,9 @@ Transform parse_transform(const Element& element);
 enum class Intent { reflectance, emission, index };
 // <rgb>, <srgb>, <spectrum value|filename>, <blackbody>, <float>, <integer>.
 Rgb parse_color(const Element& element, Intent intent);
+// Whether it is a <spectrum> of one number for all wavelengths, and what white of equal energy is then.
+bool is_even_spectrum(const Element& element);
+inline constexpr Rgb kEqualEnergy{1.20479f, 0.948315f, 0.908916f};
 bool is_color_tag(const std::string& tag);
 
 }  // namespace lumirank::scenedesc::mitsuba
