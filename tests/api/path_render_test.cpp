@@ -72,6 +72,7 @@ TEST(PathRender, ABudgetsChoicesRepeatTheBits) {
   const Scene scene = load_text(ball("0.9, 0.8, 0.7", 200));
   for (const double seconds : {1e-3, 0.2}) {
     RenderSettings settings;
+    settings.denoise = Denoise::off;
     settings.time = seconds;
     std::string warnings;
     Sinks sinks;
@@ -108,6 +109,7 @@ TEST(PathRender, InterruptedItIsThePathsSoFar) {
 TEST(PathRender, AnErrorAskedForEndsIt) {
   const Scene scene = load_text(ball("0.9, 0.8, 0.7", 16));
   RenderSettings settings;
+  settings.denoise = Denoise::off;
   settings.method.target_error = 0.05;
   const RenderResult result = render(scene, settings);
   EXPECT_LT(result.report.numbers.at("error.noise"), 0.05);
