@@ -363,9 +363,14 @@ class PassRun {
     if (earlier ? *earlier == 0 : left() < kWorthATrial * pass) return true;
     paths_.emplace(*task_.world, view_, asked_);
     if (earlier) return paths_->add(static_cast<int>(*earlier), sinks_);
-    do {
-      if (!paths_->add(2, sinks_)) return false;
-    } while (paths_->seconds() < kPartOfTrial * passes_seconds_);
+    if (!paths_->add(1, sinks_)) return false;
+    // Where one path takes longer than a pass, there is no time to find out.
+    if (paths_->seconds() > pass) {
+      paths_.reset();
+      return true;
+    }
+    for (int more = 1; more == 1 || paths_->seconds() < kPartOfTrial * passes_seconds_; more = 2)
+      if (!paths_->add(more, sinks_)) return false;
     return true;
   }
 
