@@ -15,6 +15,7 @@
 #include "pipeline/media_run.h"
 #include "pipeline/pass_picture.h"
 #include "pipeline/pass_plan.h"
+#include "pipeline/path_run.h"
 #include "pipeline/paths_beside.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
@@ -446,13 +447,15 @@ class PassRun {
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
-    estimate_.trace.notes["method.why"] = task_.why;
+    estimate_.trace.notes["method.why"] =
+        by_paths_ ? "less noise than by " + task_.info->name + " in the same time" : task_.why;
     picture_->denoising().note(seconds_.contains("denoise"), estimate_.trace.notes);
     if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
     if (passes_ > 1)
       result_.report.notes["error.of"] =
           std::string("the noise of all ") + (by_paths_ ? "paths" : "passes") + ", before a denoiser";
+    if (by_paths_) result_.report.method = kByPaths;
     of_all_passes(result_.report);
     seconds_["total"] = task_.timer.seconds();
     result_.report.seconds = seconds_;

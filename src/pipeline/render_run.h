@@ -18,7 +18,7 @@ struct RenderTask {
   std::unique_ptr<methods::Method> method;
   std::shared_ptr<const ShotLights> shot_lights;  // see Recipe; may be nullptr
   std::string why;                                // it is this method
-  bool may_be_paths = false;                      // nor does anything ask for what only a matrix has
+  bool may_be_paths = false;                      // instead of passes, where they have less noise
   bool by_default = false;                        // nobody asked for it: a short time may choose another
   double lumens_per_unit = 1;
   Timer timer;  // since the scene was loaded
