@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "base/version.h"
 #include "matrix/metered_matrix.h"
 #include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
@@ -195,10 +194,7 @@ class MediaRun {
   }
 
   void report() {
-    Report& report = result_.report;
-    report.method = task_.info->name;
-    report.version = program_version();
-    report.seed = asked_.seed;
+    Report& report = result_.report = begin_report(task_.info->name, asked_);
     report.numbers = estimate_.trace.numbers, report.notes = estimate_.trace.notes;
     report.notes["method.why"] = task_.why;
     if (report.numbers.contains("error.estimate")) report.notes["error.of"] = "the light that columns carry";
@@ -226,7 +222,6 @@ class MediaRun {
         lights_.points.paths};
     report.memory = {peak_memory_bytes(), task_.world->info().memory_bytes, rows_.memory_bytes(),
                      lights_.points.memory_bytes() + lights_.rays.memory_bytes(), matrix_->memory_bytes()};
-    report.settings = asked_;
     seconds_["build"] = task_.build_seconds;
     seconds_["total"] = task_.timer.seconds();
     report.seconds = seconds_;

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "base/version.h"
 #include "pathtrace/reference.h"
 #include "pipeline/picture_denoising.h"
 #include "pipeline/preview_throttle.h"
@@ -148,10 +147,7 @@ class PathRun {
   }
 
   void report() {
-    Report& report = result_.report;
-    report.method = kByPaths;
-    report.version = program_version();
-    report.seed = asked_.seed;
+    Report& report = result_.report = begin_report(kByPaths, asked_);
     report.notes["method.why"] = task_.why;
     denoising_.note(seconds_.contains("denoise"), report.notes);
     if (!shortage_.empty()) report.notes["budget.short"] = shortage_;
@@ -166,7 +162,6 @@ class PathRun {
     report.choices = choices_.made();
     report.memory.peak = peak_memory_bytes();
     report.memory.scene = task_.world->info().memory_bytes;
-    report.settings = asked_;
     seconds_["build"] = task_.build_seconds;
     seconds_["total"] = task_.timer.seconds();
     report.seconds = seconds_;

@@ -78,13 +78,19 @@ void add_film_numbers(std::map<std::string, double>& numbers, const Recipe& reci
   numbers["film.from_any"] = fits.share(FilmFit::any) + fits.share(FilmFit::none);
 }
 
+Report begin_report(const std::string& method, const RenderSettings& settings) {
+  Report report;
+  report.method = method;
+  report.version = program_version();
+  report.seed = settings.seed;
+  report.settings = settings;
+  return report;
+}
+
 Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
                    const methods::MethodInfo& method, const methods::Estimate& estimate,
                    const matrix::Cost& spent, const methods::TimedChoices::Lists& choices) {
-  Report report;
-  report.method = method.name;
-  report.version = program_version();
-  report.seed = settings.seed;
+  Report report = begin_report(method.name, settings);
   report.seconds = prepared.seconds;
   report.numbers = estimate.trace.numbers;
   report.notes = estimate.trace.notes;
@@ -120,7 +126,6 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
   numbers["meshes.left_out"] = static_cast<double>(prepared.world->info().meshes_left_out);
   report.memory = {peak_memory_bytes(), prepared.world->info().memory_bytes,
                    prepared.receivers().memory_bytes(), lights.memory_bytes(), scene_matrix.memory_bytes()};
-  report.settings = settings;
   report.choices = choices;
   return report;
 }

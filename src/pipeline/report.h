@@ -8,6 +8,9 @@
 
 namespace lumirank::pipeline {
 
+// Who made the picture, and from which settings.
+Report begin_report(const std::string& method, const RenderSettings& settings);
+
 // What every report says of a prepared matrix and what a method did with it. `choices`: of the clock; empty
 // without a budget. `cost`: of the method.
 Report make_report(const Prepared& prepared, const TracedLight& traced, const RenderSettings& settings,
