@@ -212,8 +212,8 @@ TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSetting
         warn_of_error(how.target_error, estimate, sinks);
         // Whether the rest of the light matters is asked once, so that it does not come and go.
         const std::size_t middle = frames.size() / 2;
-        const pipeline::RestPlan rest_plan =
-            pipeline::plan_rest(*worlds[middle], views[middle], settings, silent);
+        const pipeline::RestPlan rest_plan = pipeline::plan_rest(*worlds[middle], views[middle], settings,
+                                                                 pipeline::LightPaths::beside, silent);
         for (std::size_t k = 0; k < frames.size(); ++k) {
           const pipeline::Prepared& frame = *frames[k];
           RenderResult result;

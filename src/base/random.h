@@ -34,6 +34,7 @@ enum class Stage : std::uint32_t {
   passes,
   segments,
   gathered,
+  light_paths,
 };
 
 // A 64-bit mix with full avalanche (the finaliser of SplitMix64).

@@ -195,6 +195,12 @@ Rgb SpotEmitter::intensity_towards(Vec3f direction) const {
   return intensity * ((cutoff - std::acos(cosine)) / (cutoff - beam));
 }
 
+Rgb DirectionalEmitter::radiance_from(Vec3f towards) const {
+  // E = L π sin²α on a facing surface.
+  if (!(dot(towards, direction) < -cos_half_angle)) return Rgb{};
+  return irradiance / (kPi * (1 - square(cos_half_angle)));
+}
+
 Rgb power(const Emitter& emitter, float scene_radius) {
   return std::visit(Power{scene_radius}, emitter.kind);
 }

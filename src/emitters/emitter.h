@@ -55,6 +55,7 @@ struct DirectionalEmitter {
   Vec3f direction;           // in which the light travels
   Rgb irradiance;            // on a surface facing it
   float cos_half_angle = 1;  // < 1: a sun disc of that half angle, irradiance spread evenly over it
+  Rgb radiance_from(Vec3f towards) const;  // of the disc
 };
 // Radiance from all directions: a constant or a latitude-longitude image (an environment map or a sky model).
 struct EnvironmentEmitter {

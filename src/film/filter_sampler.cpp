@@ -20,6 +20,7 @@ FilterSampler::FilterSampler(const Filter& filter) : filter_(filter) {
   }
   table_ = Distribution1D(magnitude);
   scale_ = absolute / integral;
+  integral_ = integral * 2 * static_cast<double>(filter.radius) / kBins;
 }
 
 FilterSampler::Axis FilterSampler::axis(float u) const {
@@ -34,6 +35,30 @@ FilterSampler::Sample FilterSampler::sample(Vec2f u) const {
     return {{filter_.radius * (2 * u.x - 1), filter_.radius * (2 * u.y - 1)}, 1};
   const Axis x = axis(u.x), y = axis(u.y);
   return {{x.offset, y.offset}, x.weight * y.weight};
+}
+
+FilterSampler::AxisPixel FilterSampler::axis_pixel(float film, float u) const {
+  const int own = static_cast<int>(std::floor(film));
+  if (filter_.kind == FilterKind::box && filter_.radius == 0.5f) return {own, 1};
+  const auto value = [&](int pixel) { return filter_.eval(film - (static_cast<float>(pixel) + 0.5f)); };
+  const int reach = filter_.reach();
+  float sum = 0;
+  for (int p = own - reach; p <= own + reach; ++p) sum += std::abs(value(p));
+  float left = u * sum;
+  AxisPixel drawn{own, 0};
+  for (int p = own - reach; p <= own + reach; ++p) {
+    const float v = value(p);
+    if (v == 0) continue;
+    drawn = {p, std::copysign(sum, v) / static_cast<float>(integral_)};
+    left -= std::abs(v);
+    if (left < 0) break;
+  }
+  return drawn;
+}
+
+FilterSampler::Pixel FilterSampler::pixel(Vec2f film, Vec2f u) const {
+  const AxisPixel x = axis_pixel(film.x, u.x), y = axis_pixel(film.y, u.y);
+  return {{x.at, y.at}, x.weight * y.weight};
 }
 
 }  // namespace lumirank::film

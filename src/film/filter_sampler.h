@@ -19,15 +19,28 @@ class FilterSampler {
   };
   Sample sample(Vec2f u) const;
 
+  // The other way round: one of the pixels for which a place on the film counts, drawn by the filter.
+  struct Pixel {
+    Vec2i at;
+    float weight;  // its expectation over all pixels is 1
+  };
+  Pixel pixel(Vec2f film, Vec2f u) const;
+
  private:
   struct Axis {
     float offset, weight;
   };
   Axis axis(float u) const;
+  struct AxisPixel {
+    int at;
+    float weight;
+  };
+  AxisPixel axis_pixel(float film, float u) const;
 
   Filter filter_;
   Distribution1D table_;
-  double scale_ = 1;  // ∫|f| / ∫f
+  double scale_ = 1;     // ∫|f| / ∫f
+  double integral_ = 1;  // ∫f
 };
 
 }  // namespace lumirank::film

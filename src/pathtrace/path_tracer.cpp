@@ -1,6 +1,7 @@
 #include "pathtrace/path_tracer.h"
 
 #include "pathtrace/found_emission.h"
+#include "pathtrace/light_tracer.h"
 #include "scatter/closure.h"
 
 namespace lumirank::pathtrace {
@@ -27,6 +28,8 @@ struct PathTracer::Walk {
   float receiver_term = 0;      // π f_x·cosθx of the step away from the receiver
   const Reach* near = nullptr;  // what may come next after the receiver, see Departure
   float eta_scale = 1;          // undoes refraction's scaling for Russian roulette
+  bool from_eye = false;        // the eye sees the vertex that comes next
+  float light_paths = 0;        // light_path_ratio() of a first vertex that the eye sees; 0: of none
   Radiance sum{};
 
   void add(Rgb value) {
@@ -44,7 +47,8 @@ Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t
   Walk walk{.random = SampleStream(settings_.seed, Stage::reference, pixel, sample),
             .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
             .ray = ray,
-            .counts = settings_.paths != Paths::rest};
+            .counts = settings_.paths != Paths::rest,
+            .from_eye = starts_ != nullptr};
   finish(walk);
   return walk.sum;
 }
@@ -93,7 +97,19 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
   const FoundEmission found = found_emission(world_, lights_, walk.specular ? nullptr : &walk.from, hit,
                                              walk.ray.direction, walk.traveled);
   if (is_black(found.radiance)) return;
-  const float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + found.light_pdf);
+  const auto shared = [&](float share) {
+    const float density = hit ? starts_->density(hit->emitter, hit->hit.triangle, walk.ray.direction)
+                              : starts_->density(world_.environment(), 0, walk.ray.direction);
+    return share / (1 + walk.light_paths * share * density);
+  };
+  float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + found.light_pdf);
+  if (walk.light_paths > 0 && (walk.specular || walk.non_delta_vertices > 1)) {
+    if (!hit && walk.specular) {
+      walk.add(walk.throughput * starts_->background_left(walk.ray.direction, walk.light_paths));
+      return;
+    }
+    weight = shared(weight);
+  }
   walk.add(walk.throughput * found.radiance * weight);
 }
 
@@ -111,7 +127,21 @@ void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const C
                               mix64(walk.key + static_cast<std::uint64_t>(walk.segments)));
   if (is_black(visible)) return;
   const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
-  walk.add(walk.throughput * f * s.direct.radiance * visible * (1 / (s.pdf + bsdf_pdf)));
+  float share = 1;
+  if (walk.light_paths > 0) share = share_of_sampled(walk, s, closure, bsdf_pdf);
+  walk.add(walk.throughput * f * s.direct.radiance * visible * (share / (s.pdf + bsdf_pdf)));
+}
+
+// What light paths leave to a sampled light.
+float PathTracer::share_of_sampled(const Walk& walk, const world::LightSampler::Sample& s,
+                                   const Closure& closure, float bsdf_pdf) const {
+  const emitters::DirectSample& direct = s.direct;
+  const float density =
+      direct.delta
+          ? starts_->delta_density(s.emitter, direct.direction, direct.distance) *
+                scatter::pdf(closure, -walk.ray.direction, direct.direction, Lobes::all) / s.pdf
+          : starts_->density(s.emitter, direct.triangle, direct.direction) * bsdf_pdf / (s.pdf + bsdf_pdf);
+  return 1 / (1 + walk.light_paths * density);
 }
 
 Rgb PathTracer::missing(float connection, const Closure& closure, Vec3f wo, Vec3f wi) const {
@@ -179,6 +209,10 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   const bool pass = next->delta && next->kind == LobeKind::delta_pass;
   if (!pass) {
     if (!may_continue) return false;
+    if (walk.from_eye && !next->delta)
+      walk.light_paths = light_path_ratio(light_paths_, camera_->density(walk.ray, walk.traveled), hit,
+                                          closure, wo, next->wi, next->pdf);
+    walk.from_eye = false;
     ++walk.segments;
     walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;

@@ -47,9 +47,18 @@ struct Reach {
   float max = kInfinity;  // that it is anywhere
 };
 
+class EmissionSampler;
+
 class PathTracer {
  public:
   PathTracer(const world::World& world, const PathSettings& settings);
+
+  // Light paths are traced beside (light_tracer.h), so many of them for one eye path of `camera` in each
+  // pixel, and what they find as well counts the less. Both must outlive it.
+  void share_with_light_paths(const EmissionSampler& starts, const world::Camera& camera,
+                              double light_paths) {
+    starts_ = &starts, camera_ = &camera, light_paths_ = light_paths;
+  }
 
   // Radiance arriving along `ray`, one random path keyed by (pixel, sample). Passing straight through null
   // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth.
@@ -76,6 +85,8 @@ class PathTracer {
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
                      double u_light, float connection) const;
+  float share_of_sampled(const Walk& walk, const world::LightSampler::Sample& s,
+                         const scatter::Closure& closure, float bsdf_pdf) const;
   // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular
   // vertices.
   Rgb missing(float connection, const scatter::Closure& closure, Vec3f wo, Vec3f wi) const;
@@ -87,6 +98,9 @@ class PathTracer {
   const world::World& world_;
   const world::LightSampler& lights_;
   PathSettings settings_;
+  const EmissionSampler* starts_ = nullptr;
+  const world::Camera* camera_ = nullptr;
+  double light_paths_ = 0;
 };
 
 }  // namespace lumirank::pathtrace

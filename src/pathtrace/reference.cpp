@@ -1,6 +1,7 @@
 #include "pathtrace/reference.h"
 
 #include <cmath>
+#include <optional>
 #include <variant>
 
 #include "base/error.h"
@@ -8,6 +9,7 @@
 #include "base/sample_stream.h"
 #include "base/timer.h"
 #include "film/filter_sampler.h"
+#include "pathtrace/light_tracer.h"
 #include "pathtrace/volume_path_tracer.h"
 
 namespace lumirank::pathtrace {
@@ -28,7 +30,7 @@ struct PathFilmHalf {
 
 namespace {
 
-constexpr std::size_t kPixelsAtOnce = 8192;
+constexpr std::size_t kPixelsAtOnce = 8192, kLightPathsAtOnce = 1024;
 
 struct ImageParts {
   bool emission, direct, indirect;
@@ -92,7 +94,9 @@ struct PathFilm::Impl {
   std::vector<Instant> instants;  // keep their worlds
   std::vector<Tracing> tracing;
   film::FilterSampler filter;
-  std::size_t pixels;
+  std::size_t pixels, light_paths = 0;  // these for one path in each pixel
+  std::optional<EmissionSampler> starts;
+  std::optional<LightTracer> light_tracer;
   PathFilmHalf halves[2];
   ReferenceResult result;
 
@@ -111,6 +115,23 @@ struct PathFilm::Impl {
       const PathSettings settings{options.seed, v.max_depth, options.paths, options.carried};
       tracing.push_back({PathTracer(world, settings), camera});
     }
+  }
+
+  void trace_light_paths(const world::World& world) {
+    if (!(options.light_paths > 0) || options.paths == Paths::columns || !world.media().empty()) return;
+    starts.emplace(world);
+    light_paths = static_cast<std::size_t>(std::ceil(options.light_paths * static_cast<double>(pixels)));
+    if (starts->empty()) return;
+    Tracing& by = tracing.front();
+    const auto number = static_cast<double>(light_paths);
+    const auto reach = static_cast<float>(world::make_filter(view.sensor.film.filter).reach());
+    const Vec2f corner{static_cast<float>(view.crop_x), static_cast<float>(view.crop_y)};
+    const LightTracer::Window window{{corner.x - reach, corner.y - reach},
+                                     {corner.x + static_cast<float>(view.width) + reach,
+                                      corner.y + static_cast<float>(view.height) + reach}};
+    light_tracer.emplace(world, by.camera, *starts, window,
+                         PathSettings{options.seed, view.max_depth, options.paths, {}}, number);
+    std::get<PathTracer>(by.tracer).share_with_light_paths(*starts, by.camera, number);
   }
 
   const Tracing& at(std::uint64_t pixel, int sample) const {
@@ -146,16 +167,49 @@ struct PathFilm::Impl {
       half.indirect[p].add(radiance.indirect * at.weight);
     }
   }
+
+  // Those that belong to sample s of all pixels. The order of sums is fixed.
+  void add_light_paths(int s, const Sinks& sinks) {
+    const std::size_t parts = (light_paths + kLightPathsAtOnce - 1) / kLightPathsAtOnce;
+    std::vector<std::vector<LightTracer::Splat>> splats(parts);
+    const auto half = static_cast<std::uint64_t>(s & 1);
+    const std::uint64_t before = (static_cast<std::uint64_t>(s) >> 1) * light_paths;
+    parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
+      if (sinks.cancelled()) return;
+      for (std::size_t part = begin; part < end; ++part)
+        for (std::size_t k = part * kLightPathsAtOnce;
+             k < std::min(light_paths, (part + 1) * kLightPathsAtOnce); ++k) {
+          const std::uint64_t number = 2 * (before + k) + half;
+          light_tracer->trace(SampleStream(options.seed, Stage::light_paths, 0, number),
+                              hash_ids(options.seed, Stage::opacity, ~0ull, number), splats[part]);
+        }
+    });
+    if (sinks.cancelled()) return;
+    PathFilmHalf& sums = halves[s & 1];
+    std::uint64_t number = 0;
+    for (const auto& part : splats)
+      for (const LightTracer::Splat& splat : part) {
+        Rng random(options.seed, Stage::light_paths, ~static_cast<std::uint64_t>(s), ++number);
+        const auto pixel = filter.pixel(splat.film, random.next_2d());
+        const int x = pixel.at.x - view.crop_x, y = pixel.at.y - view.crop_y;
+        if (x < 0 || y < 0 || x >= view.width || y >= view.height) continue;
+        const std::size_t p =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+        (splat.direct ? sums.direct : sums.indirect)[p].add(splat.value * pixel.weight);
+      }
+  }
 };
 
 PathFilm::PathFilm(const world::World& world, const world::View& view, const ReferenceOptions& options)
     : impl_(std::make_unique<Impl>(view, options)) {
   impl_->add_instant(world, view);
+  impl_->trace_light_paths(world);
 }
 PathFilm::PathFilm(std::vector<Instant> instants, const ReferenceOptions& options)
     : impl_(std::make_unique<Impl>(instants.at(0).view, options)) {
   impl_->instants = std::move(instants);
   for (const Instant& instant : impl_->instants) impl_->add_instant(*instant.world, instant.view);
+  if (impl_->instants.size() == 1) impl_->trace_light_paths(*impl_->instants.front().world);
 }
 PathFilm::~PathFilm() = default;
 int PathFilm::paths() const { return impl_->result.spp; }
@@ -184,6 +238,7 @@ bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(doubl
     const double fraction = static_cast<double>(finished += end - begin) / static_cast<double>(m.pixels);
     if (progress) progress(fraction);
   });
+  for (int s = begin_path; s < end_path && m.light_tracer; ++s) m.add_light_paths(s, sinks);
   if (sinks.cancelled()) {
     // The pass was left half done: its samples are unevenly spread and cannot be used.
     m.result.interrupted = true;

@@ -29,6 +29,9 @@ struct ReferenceOptions {
   // With a bound the indirect part is only what clamped columns lack; `direct` and `emission` mean nothing
   // then.
   CarriedByColumns carried;
+  // Paths from the emitters for each pixel and path from the eye, which share the work with these
+  // (light_tracer.h); 0: none. Not with media, nor over several instants.
+  double light_paths = 0;
 };
 
 // The scene at an instant of an open shutter, and the view of it: windows are of one size and place.

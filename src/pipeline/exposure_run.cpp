@@ -47,7 +47,8 @@ class ExposureRun {
   void plan_rest_of_light() {
     const Timer timer;
     for (const std::size_t k : {std::size_t{0}, instants_.size() / 2, instants_.size() - 1}) {
-      const RestPlan plan = plan_rest(*instants_[k].world, instants_[k].view, asked_, sinks_);
+      const RestPlan plan =
+          plan_rest(*instants_[k].world, instants_[k].view, asked_, LightPaths::none, sinks_);
       if (k == 0 || plan.pilot.share > rest_.pilot.share) rest_ = plan;
       if (!plan.piloted) break;
     }

@@ -346,7 +346,8 @@ class PassRun {
     if (!paths_) return true;
     const auto by_paths = choices_.earlier("by_paths", 1), more = choices_.earlier("more_paths", kMaxBeside);
     passes_over_paths_ = passes_over_paths(picture_->with_noise(*rest_), passes_seconds_,
-                                           {paths_->sent(), paths_->difference()}, paths_->seconds());
+                                           {paths_->sent(), paths_->difference()}, paths_->seconds(),
+                                           paths_->light_paths() > 0);
     by_paths_ = by_paths ? *by_paths == 1 : passes_over_paths_ > 1;
     choices_.record("by_paths", by_paths_ ? 1 : 0);
     sinks_.say(
@@ -362,7 +363,7 @@ class PassRun {
     const auto earlier = choices_.earlier("trial_paths", kMaxBeside);
     const double pass = passes_seconds_ / passes_;
     if (earlier ? *earlier == 0 : left() < kWorthATrial * pass) return true;
-    paths_.emplace(*task_.world, view_, asked_);
+    paths_.emplace(*task_.world, view_, asked_, sinks_);
     if (earlier) return paths_->add(static_cast<int>(*earlier), sinks_);
     if (!paths_->add(1, sinks_)) return false;
     // Where one path takes longer than a pass, there is no time to find out.
@@ -433,12 +434,14 @@ class PassRun {
     if (paths_) {
       seconds_["paths"] = paths_->seconds();
       estimate_.trace.numbers["paths"] = paths_->paths();
+      estimate_.trace.numbers["paths.light_paths"] = paths_->light_paths();
       estimate_.trace.numbers["passes_over_paths"] = passes_over_paths_;
     }
     auto& numbers = estimate_.trace.numbers;
     if (result_.interrupted) choices_ = {};
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
     numbers["rest.paths"] = rest_->paths();
+    numbers["rest.light_paths"] = rest_->light_paths();
     numbers["passes"] = passes_;
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");

@@ -5,18 +5,21 @@
 
 #include "base/random.h"
 #include "base/timer.h"
+#include "pipeline/light_path_pilot.h"
 
 namespace lumirank::pipeline {
 namespace {
 
 constexpr double kOfUsual = 0.1;
 // From which noise on the denoised pictures of fifteen scenes are worse by passes (docs/decisions.md).
-constexpr double kPassesLookWorse = 1.7;
+constexpr double kPassesLookWorse = 1.7, kWorseThanWithLightPaths = 2;
 
-pathtrace::ReferenceOptions all_but_emission(const RenderSettings& settings) {
+pathtrace::ReferenceOptions all_but_emission(const world::World& world, const View& view,
+                                             const RenderSettings& settings, const Sinks& sinks) {
   pathtrace::ReferenceOptions options =
       reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
   options.emission = false;
+  options.light_paths = pilot_light_paths(world, view, settings.seed, options.paths, sinks).light_paths;
   return options;
 }
 
@@ -49,8 +52,9 @@ double relative_size(const image::Image& difference, const image::Image& picture
 
 }  // namespace
 
-PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings)
-    : film_(world, view, all_but_emission(settings)) {}
+PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
+                         const Sinks& sinks)
+    : options_(all_but_emission(world, view, settings, sinks)), film_(world, view, options_) {}
 
 bool PathsBeside::add(int paths, const Sinks& sinks) {
   const Timer timer;
@@ -60,13 +64,14 @@ bool PathsBeside::add(int paths, const Sinks& sinks) {
 }
 
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
-                         double seconds_of_paths) {
+                         double seconds_of_paths, bool light_paths) {
   image::Image picture = passes.picture;
   for (std::size_t p = 0; p < picture.pixels.size(); ++p)
     picture.pixels[p] = 0.5f * (picture.pixels[p] + paths.picture.pixels[p]);
   const double by_paths = relative_size(paths.difference, picture) * std::sqrt(seconds_of_paths);
   const double by_passes = relative_size(passes.difference, picture) * std::sqrt(seconds_of_passes);
-  return by_paths > 0 ? kPassesLookWorse * by_passes / by_paths : 0;
+  const double worse = light_paths ? kWorseThanWithLightPaths : kPassesLookWorse;
+  return by_paths > 0 ? worse * by_passes / by_paths : 0;
 }
 
 }  // namespace lumirank::pipeline

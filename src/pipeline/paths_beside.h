@@ -13,11 +13,13 @@ namespace lumirank::pipeline {
 class PathsBeside {
  public:
   // Must outlive it: the world.
-  PathsBeside(const world::World& world, const View& view, const RenderSettings& settings);
+  PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
+              const Sinks& sinks);
 
   // So many more for each pixel. False if it was cancelled: then none of them counts.
   bool add(int paths, const Sinks& sinks);
   int paths() const { return film_.paths(); }
+  double light_paths() const { return options_.light_paths; }  // beside each of them
   double seconds() const { return seconds_; }
   double error() const { return film_.result().error; }  // relative L1, as halves state it
   // What surfaces send; twice its noise.
@@ -25,6 +27,7 @@ class PathsBeside {
   image::Image difference() const { return film_.halves_difference(); }
 
  private:
+  pathtrace::ReferenceOptions options_;
   pathtrace::PathFilm film_;
   double seconds_ = 0;
 };
@@ -36,8 +39,9 @@ struct NoisyPicture {
 
 // Noise of passes over that of paths for the same seconds, as eyes see it: over what is there and a tenth of
 // what is usual, in the mean over pixels. That of passes counts worse than it is: it is alike in neighbors,
-// which share lights, and a denoiser leaves more of it.
+// which share lights, and a denoiser leaves more of it. Still worse beside light paths, without which the
+// paths' own noise would be rare and bright.
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
-                         double seconds_of_paths);
+                         double seconds_of_paths, bool light_paths);
 
 }  // namespace lumirank::pipeline

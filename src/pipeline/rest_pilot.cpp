@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
+#include "pipeline/light_path_pilot.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -91,7 +92,7 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
 }
 
 RestPlan plan_rest(const world::World& world, const View& view, const RenderSettings& settings,
-                   const Sinks& sinks) {
+                   LightPaths light_paths, const Sinks& sinks) {
   RestPlan plan;
   if (settings.traced.rest == RestOfPaths::skip) return plan;
   if (settings.traced.rest == RestOfPaths::automatic) {
@@ -102,6 +103,13 @@ RestPlan plan_rest(const world::World& world, const View& view, const RenderSett
     plan.paths = std::max(16, settings.view.spp_or_default());
   else if (plan.pilot.matters())
     plan.paths = plan.pilot.paths();
+  if (plan.paths == 0 || light_paths == LightPaths::none) return plan;
+  const LightPathPilot light = pilot_light_paths(world, view, settings.seed, pathtrace::Paths::rest, sinks);
+  plan.light_paths = light.light_paths;
+  if (!plan.piloted) return plan;
+  plan.pilot.deviation *= std::sqrt(light.variance);
+  plan.pilot.path_seconds *= light.seconds;
+  plan.paths = plan.pilot.paths();
   return plan;
 }
 

@@ -32,11 +32,14 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
 
 // What the settings' `rest` comes to.
 struct RestPlan {
-  int paths = 0;  // per pixel; 0: none are traced
+  int paths = 0;           // per pixel; 0: none are traced
+  double light_paths = 0;  // from the emitters, beside each of them
   bool piloted = false;
   RestPilot pilot;
 };
+// Whether what traces the rest can trace light paths as well: not over the instants of an open shutter.
+enum class LightPaths { none, beside };
 RestPlan plan_rest(const world::World& world, const View& view, const RenderSettings& settings,
-                   const Sinks& sinks);
+                   LightPaths light_paths, const Sinks& sinks);
 
 }  // namespace lumirank::pipeline

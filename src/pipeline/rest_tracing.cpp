@@ -11,7 +11,8 @@ RestTracing::RestTracing(SharedWorld world, const View& view, const RenderSettin
     : world_(std::move(world)),
       options_(reference_options(settings.view.only, settings.seed, ReferencePaths::rest)) {
   const Timer timer;
-  plan_ = plan_rest(*world_, view, settings, sinks);
+  plan_ = plan_rest(*world_, view, settings, LightPaths::beside, sinks);
+  options_.light_paths = plan_.light_paths;
   if (!plan_.piloted) return;
   pilot_seconds_ = timer.seconds();
   char share[32];
@@ -26,7 +27,9 @@ RestTracing::RestTracing(SharedWorld world, const View& view, const RenderSettin
 RestTracing::RestTracing(SharedWorld world, const RenderSettings& settings, const RestPlan& plan)
     : world_(std::move(world)),
       options_(reference_options(settings.view.only, settings.seed, ReferencePaths::rest)),
-      plan_(plan) {}
+      plan_(plan) {
+  options_.light_paths = plan.light_paths;
+}
 
 bool RestTracing::add(int paths, const Sinks& sinks) {
   if (!film_->add(paths, sinks, [&](double fraction) { sinks.report("rest", fraction); })) return false;

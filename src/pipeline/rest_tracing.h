@@ -34,7 +34,8 @@ class RestTracing {
   // Without a budget all at once, after the method. False if it was interrupted.
   bool trace_all(const View& view, const Sinks& sinks);
 
-  int paths() const { return paths_; }  // traced, per pixel
+  double light_paths() const { return options_.light_paths; }  // beside each of them
+  int paths() const { return paths_; }                         // traced, per pixel
   double seconds() const { return seconds_; }
   void add_to(image::Image& image) const;             // nothing if none were traced
   void add_difference_to(image::Image& image) const;  // twice the noise of that

@@ -50,6 +50,19 @@ Camera::Camera(const scenedesc::SensorDesc& sensor, const Units& units)
   tan_x_ =
       sensor.kind == scenedesc::SensorKind::orthographic ? 1.0 : std::tan(0.5 * sensor.fov_x * kPiD / 180.0);
   tan_y_ = tan_x_ / aspect;
+  to_camera_ = *sensor_.to_world.inverse();
+  pixels_per_area_ = static_cast<double>(width_) * height_ / (4 * tan_x_ * tan_y_);
+  const Vec3f x = sensor_.to_world.vector({1, 0, 0}), y = sensor_.to_world.vector({0, 1, 0});
+  scale_ =
+      orthographic()
+          ? static_cast<double>(std::abs(dot(cross(x, y), normalize(sensor_.to_world.vector({0, 0, 1})))))
+          : std::abs(sensor_.to_world.determinant3());
+}
+
+Vec3f Camera::lens_point(Vec2f lens) const {
+  if (sensor_.kind != scenedesc::SensorKind::thinlens || !(sensor_.aperture_radius > 0)) return {0, 0, 0};
+  const Vec2f disc = warp_disk(lens) * sensor_.aperture_radius;
+  return {disc.x, disc.y, 0};
 }
 
 geometry::Ray Camera::ray(Vec2f film, Vec2f lens) const {
@@ -59,7 +72,7 @@ geometry::Ray Camera::ray(Vec2f film, Vec2f lens) const {
   const double up = 1.0 - 2.0 * (film.y / static_cast<double>(height_) + sensor_.principal_point_offset.y);
   const double x = -right * tan_x_, y = up * tan_y_;
   geometry::Ray ray;
-  if (sensor_.kind == scenedesc::SensorKind::orthographic) {
+  if (orthographic()) {
     ray.origin = sensor_.to_world.point({static_cast<float>(x), static_cast<float>(y), 0});
     ray.direction = normalize(sensor_.to_world.vector({0, 0, 1}));
     // The clipping planes are measured along the local axis; a scaled transform stretches them.
@@ -68,11 +81,9 @@ geometry::Ray Camera::ray(Vec2f film, Vec2f lens) const {
     ray.t_max = (sensor_.far_clip - sensor_.near_clip) * stretch;
     return ray;
   }
-  Vec3f from{0, 0, 0};
+  const Vec3f from = lens_point(lens);
   Vec3f towards{static_cast<float>(x), static_cast<float>(y), 1};  // on the plane z = 1
   if (sensor_.kind == scenedesc::SensorKind::thinlens && sensor_.aperture_radius > 0) {
-    const Vec2f disc = warp_disk(lens) * sensor_.aperture_radius;
-    from = {disc.x, disc.y, 0};
     towards = towards * sensor_.focus_distance - from;
     towards = towards / towards.z;
   }
@@ -83,6 +94,42 @@ geometry::Ray Camera::ray(Vec2f film, Vec2f lens) const {
   ray.t_min = sensor_.near_clip * stretch;
   ray.t_max = sensor_.far_clip * stretch;
   return ray;
+}
+
+std::optional<Camera::Seen> Camera::project(Vec3f point, Vec2f lens) const {
+  const Vec3f local = to_camera_.point(point);
+  if (!(local.z > sensor_.near_clip && local.z < sensor_.far_clip)) return std::nullopt;
+  Seen seen;
+  double x = local.x, y = local.y;
+  Vec3f origin;
+  if (orthographic()) {
+    origin = point - normalize(sensor_.to_world.vector({0, 0, 1})) *
+                         ((local.z - sensor_.near_clip) * length(sensor_.to_world.vector({0, 0, 1})));
+  } else {
+    const Vec3f from = lens_point(lens);
+    // In the focus all places on the lens see a point at the same place.
+    const double focus = sensor_.kind == scenedesc::SensorKind::thinlens && sensor_.aperture_radius > 0
+                             ? static_cast<double>(sensor_.focus_distance)
+                             : 1.0;
+    const double z = local.z;
+    x = from.x / focus + (x - from.x) / z;
+    y = from.y / focus + (y - from.y) / z;
+    origin = sensor_.to_world.point(from);
+  }
+  seen.film = {static_cast<float>((0.5 * (1 - x / tan_x_) - sensor_.principal_point_offset.x) * width_),
+               static_cast<float>((0.5 * (1 - y / tan_y_) - sensor_.principal_point_offset.y) * height_)};
+  seen.distance = length(origin - point);
+  if (!(seen.distance > 0)) return std::nullopt;
+  seen.to_eye = (origin - point) / seen.distance;
+  seen.density = density({origin, -seen.to_eye}, seen.distance);
+  return seen;
+}
+
+float Camera::density(const geometry::Ray& ray, float distance) const {
+  if (orthographic()) return static_cast<float>(pixels_per_area_ / scale_);
+  const double along = to_camera_.vector(ray.direction).z;
+  return static_cast<float>(pixels_per_area_ /
+                            (along * along * along * scale_ * static_cast<double>(distance) * distance));
 }
 
 }  // namespace lumirank::world

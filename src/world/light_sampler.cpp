@@ -201,6 +201,13 @@ float LightSampler::pdf_background(const emitters::LitPoint& at, Vec3f direction
   return (1 - near_share(at)) * far_choice_.pmf(k) * environment.pdf(direction);
 }
 
+float LightSampler::probability_of_delta(const emitters::LitPoint& at, int emitter) const {
+  const auto far = std::find(far_.begin(), far_.end(), emitter);
+  if (far == far_.end())
+    return near_share(at) * tree_.pmf(at, first_leaf_[static_cast<std::size_t>(emitter)]);
+  return (1 - near_share(at)) * far_choice_.pmf(static_cast<std::size_t>(far - far_.begin()));
+}
+
 Rgb visible_fraction(const World& world, Vec3f from, Vec3f ng, Vec3f direction, float distance,
                      std::uint64_t key) {
   const Vec3f origin = World::offset_origin(from, ng, direction);

@@ -36,6 +36,9 @@ class LightSampler {
   // The same for a ray that leaves the scene.
   float pdf_background(const emitters::LitPoint& at, Vec3f direction) const;
 
+  // Probability with which sample() takes a delta emitter.
+  float probability_of_delta(const emitters::LitPoint& at, int emitter) const;
+
   // A place on a near light, drawn for one point and to shine on others: where along a flight its light is
   // worth looking for is known only once the place is.
   struct Place {

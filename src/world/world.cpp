@@ -69,12 +69,8 @@ Rgb World::background(Vec3f direction) const {
 
 Rgb World::sun_disc(Vec3f direction) const {
   Rgb sum;
-  for (const std::size_t k : impl_->suns) {
-    const auto& sun = std::get<emitters::DirectionalEmitter>(impl_->emitters[k].kind);
-    // E = L π sin²α on a facing surface.
-    if (dot(direction, sun.direction) < -sun.cos_half_angle)
-      sum += sun.irradiance / (kPi * (1 - square(sun.cos_half_angle)));
-  }
+  for (const std::size_t k : impl_->suns)
+    sum += std::get<emitters::DirectionalEmitter>(impl_->emitters[k].kind).radiance_from(direction);
   return sum;
 }
 

@@ -14,12 +14,12 @@ NoisyPicture even_noise(float light, float noise) {
 // Noise falls with the root of the seconds, so ten times the seconds for the same noise are √10 times as bad.
 TEST(PathsBeside, WhatIsComparedIsNoiseForTheSameSeconds) {
   const NoisyPicture noise = even_noise(1, 0.2f), twice = even_noise(1, 0.4f);
-  const double even = passes_over_paths(noise, 1, noise, 1);
+  const double even = passes_over_paths(noise, 1, noise, 1, false);
   EXPECT_GT(even, 1) << "that of passes looks worse";
-  EXPECT_NEAR(passes_over_paths(twice, 1, noise, 1), 2 * even, 1e-6);
-  EXPECT_NEAR(passes_over_paths(noise, 1, twice, 1), even / 2, 1e-6);
-  EXPECT_NEAR(passes_over_paths(noise, 10, noise, 1), std::sqrt(10) * even, 1e-6);
-  EXPECT_NEAR(passes_over_paths(noise, 1, noise, 10), even / std::sqrt(10), 1e-6);
+  EXPECT_NEAR(passes_over_paths(twice, 1, noise, 1, false), 2 * even, 1e-6);
+  EXPECT_NEAR(passes_over_paths(noise, 1, twice, 1, false), even / 2, 1e-6);
+  EXPECT_NEAR(passes_over_paths(noise, 10, noise, 1, false), std::sqrt(10) * even, 1e-6);
+  EXPECT_NEAR(passes_over_paths(noise, 1, noise, 10, false), even / std::sqrt(10), 1e-6);
 }
 
 // A thousandth of the picture is a window, and the noise of all else is what is seen.
@@ -28,10 +28,10 @@ TEST(PathsBeside, NoiseInTheDarkCounts) {
   for (NoisyPicture* picture : {&a, &b})
     for (int x = 0; x < 4; ++x) picture->picture.at(x, 0) = Rgb(1000);
   for (int x = 0; x < 4; ++x) a.difference.at(x, 0) = Rgb(400);
-  const double even = passes_over_paths(b, 1, b, 1);
-  EXPECT_LT(passes_over_paths(a, 1, b, 1), 1.4 * even) << "five times by the light that is off";
+  const double even = passes_over_paths(b, 1, b, 1, false);
+  EXPECT_LT(passes_over_paths(a, 1, b, 1, false), 1.4 * even) << "five times by the light that is off";
   for (Rgb& p : b.difference.pixels) p = 2 * p;
-  EXPECT_GT(passes_over_paths(b, 1, a, 1), 1.5 * even);
+  EXPECT_GT(passes_over_paths(b, 1, a, 1, false), 1.5 * even);
 }
 
 // What few paths have found is bright where it was found: its own brightness must not hide the noise.
@@ -40,7 +40,8 @@ TEST(PathsBeside, RareBrightPixelsAreNoise) {
   for (int y = 0; y < kSide; y += 8)
     for (int x = 0; x < kSide; x += 8) rare.picture.at(x, y) = Rgb(32.5f), rare.difference.at(x, y) = Rgb(64);
   const NoisyPicture spread = even_noise(1, 1);  // as much in the mean
-  EXPECT_NEAR(passes_over_paths(rare, 1, spread, 1) / passes_over_paths(spread, 1, spread, 1), 1, 0.1);
+  EXPECT_NEAR(passes_over_paths(rare, 1, spread, 1, false) / passes_over_paths(spread, 1, spread, 1, false),
+              1, 0.1);
 }
 
 }  // namespace

@@ -136,5 +136,53 @@ TEST(Camera, RefusesNonsense) {
   refused([](auto& s) { s.near_clip = 10, s.far_clip = 5; });
 }
 
+// project() undoes ray(), and its density is that of the pixels' corners: how much area across the ray a
+// small square on the film takes at the point.
+TEST(Camera, ProjectionUndoesRays) {
+  auto perspective = sensor(300, 200, 70);
+  perspective.to_world =
+      Transform::look_at({1, 2, 5}, {0, 0.5, 0}, {0, 1, 0}) * Transform::scale(2, 0.5, 1.5);
+  perspective.principal_point_offset = {0.1f, -0.2f};
+  auto lens = perspective;
+  lens.kind = scenedesc::SensorKind::thinlens, lens.aperture_radius = 0.2f, lens.focus_distance = 3;
+  auto flat = perspective;
+  flat.kind = scenedesc::SensorKind::orthographic;
+  for (const auto& s : {perspective, lens, flat}) {
+    const Camera camera(s);
+    for (const Vec2f film : {Vec2f{150, 100}, Vec2f{10, 20}, Vec2f{290.5f, 133}})
+      for (const Vec2f u : {Vec2f{0.2f, 0.7f}, Vec2f{0.9f, 0.4f}})
+        for (const float t : {1.5f, 7.0f}) {
+          const geometry::Ray ray = camera.ray(film, u);
+          const auto seen = camera.project(ray.origin + ray.direction * t, u);
+          ASSERT_TRUE(seen);
+          EXPECT_NEAR(seen->film.x, film.x, 1e-2);
+          EXPECT_NEAR(seen->film.y, film.y, 1e-2);
+          EXPECT_NEAR(length(seen->to_eye + ray.direction), 0, 1e-5);
+          EXPECT_NEAR(seen->distance, t, 1e-4 * t);
+          const auto across = [&](Vec2f at) {  // where its ray crosses the plane through the point
+            const geometry::Ray r = camera.ray(at, u);
+            const Vec3f point = ray.origin + ray.direction * t;
+            return r.origin +
+                   r.direction * (dot(point - r.origin, ray.direction) / dot(r.direction, ray.direction));
+          };
+          const Vec3f x = across(film + Vec2f{1, 0}) - across(film - Vec2f{1, 0});
+          const Vec3f y = across(film + Vec2f{0, 1}) - across(film - Vec2f{0, 1});
+          const float area = length(cross(x, y)) / 4;
+          EXPECT_NEAR(seen->density * area, 1, 3e-3);
+          EXPECT_NEAR(camera.density(ray, t) / seen->density, 1, 1e-3);
+        }
+  }
+}
+
+TEST(Camera, WhatIsNotBetweenTheClippingPlanesIsNotSeen) {
+  auto s = sensor(100, 100, 60);
+  s.near_clip = 1, s.far_clip = 4;
+  const Camera camera(s);
+  EXPECT_TRUE(camera.project({0.3f, 0.2f, 2}, {}));
+  EXPECT_FALSE(camera.project({0.3f, 0.2f, 0.9f}, {}));
+  EXPECT_FALSE(camera.project({0.3f, 0.2f, 4.1f}, {}));
+  EXPECT_FALSE(camera.project({0.3f, 0.2f, -2}, {}));
+}
+
 }  // namespace
 }  // namespace lumirank::world

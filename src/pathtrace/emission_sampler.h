@@ -1,0 +1,51 @@
+// Starts of light paths, from every kind of emitter.
+//
+// Densities are per area across the path and per solid angle. That is the same at both ends of whatever
+// smooth surfaces bend on the way (the étendue is kept), so a path's density from the light can be compared
+// with that from the eye without following it again.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/distribution.h"
+#include "base/sample_stream.h"
+#include "world/light_sampler.h"
+#include "world/world.h"
+
+namespace lumirank::pathtrace {
+
+class EmissionSampler {
+ public:
+  explicit EmissionSampler(const world::World& world);
+
+  bool empty() const { return !(choice_.total() > 0); }
+
+  struct Start {
+    geometry::Ray ray;
+    Rgb flux;  // W over the density
+    int emitter = -1;
+    std::uint32_t triangle = 0;  // of an area emitter
+    bool delta = false;          // eye paths meet it by light sampling alone
+  };
+  std::optional<Start> sample(SampleStream& random) const;
+
+  // Of starts at an area emitter's triangle, or far away, that go against `direction`, with which eye paths
+  // arrive there. 0 for emitters that these cannot meet.
+  float density(int emitter, std::uint32_t triangle, Vec3f direction) const;
+  // Of emitters that light sampling alone can find: starts per area across the light, where it arrives from
+  // `direction` after `distance`.
+  float delta_density(int emitter, Vec3f direction, float distance) const;
+  // Radiance from a direction in which an eye path leaves the scene, each emitter's over 1 + ratio·density.
+  Rgb background_left(Vec3f direction, float ratio) const;
+
+ private:
+  const world::World& world_;
+  std::vector<int> emitters_;         // those that shine
+  std::vector<float> probabilities_;  // of all emitters
+  std::vector<int> suns_;             // with a disc
+  Distribution1D choice_;
+  float disc_ = 0;  // area over which the starts of far emitters are spread
+};
+
+}  // namespace lumirank::pathtrace

@@ -1,0 +1,69 @@
+// Light tracing: paths that begin on emitters, and show the eye what they light (Arvo 1986; Dutré, Lafortune
+// and Willems 1993). They find at once what eye paths meet by chance: light that leaves its emitter through
+// glass, by a mirror, from under a shade. Both carry, together, all paths whose vertex next to the eye is
+// seen directly and is not specular; but direct light from emitters that light sampling finds from there,
+// which it does best.
+//
+// A path counts in every way in which it is found, by weights that sum to one: the balance heuristic (Veach
+// 1997, section 9.2), with densities as if what scatters between the vertex next to the emitter and the one
+// next to the eye did so alike both ways. Then only these two matter, and no vertex between. The weights
+// depend on the path alone, so the mean is right whatever really scatters there.
+#pragma once
+
+#include <vector>
+
+#include "pathtrace/emission_sampler.h"
+#include "pathtrace/path_tracer.h"
+#include "world/camera.h"
+
+namespace lumirank::pathtrace {
+
+// Light paths for one eye path, at the vertex next to the eye, over the density of their starts and the share
+// of those eye paths that find the emitter by their BSDF. `eye`: eye paths per area across their direction;
+// `pdf`: of wi, the eye path's direction there.
+float light_path_ratio(double light_paths, float eye, const world::SurfaceHit& hit,
+                       const scatter::Closure& closure, Vec3f wo, Vec3f wi, float pdf);
+
+class LightTracer {
+ public:
+  // Where on the film light is looked for.
+  struct Window {
+    Vec2f min, max;
+    bool holds(Vec2f film) const {
+      return film.x >= min.x && film.y >= min.y && film.x <= max.x && film.y <= max.y;
+    }
+  };
+  // `light_paths` of them for one eye path in each pixel. Must outlive it: the world, the camera, the starts.
+  LightTracer(const world::World& world, const world::Camera& camera, const EmissionSampler& starts,
+              const Window& window, const PathSettings& settings, double light_paths)
+      : world_(world),
+        camera_(camera),
+        starts_(starts),
+        window_(window),
+        settings_(settings),
+        light_paths_(light_paths) {}
+
+  // What a path adds to a picture whose pixels are means of eye paths.
+  struct Splat {
+    Vec2f film;
+    Rgb value;
+    bool direct;
+    float ratio;  // density of light paths over that of eye paths
+  };
+  void trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const;
+
+ private:
+  struct Flight;
+  bool leave_first(const EmissionSampler::Start& start, const world::SurfaceHit& hit,
+                   const scatter::BsdfSample& next, Flight& flight) const;
+  void show(const Flight& flight, const world::SurfaceHit& hit, Vec2f lens, std::vector<Splat>& splats) const;
+
+  const world::World& world_;
+  const world::Camera& camera_;
+  const EmissionSampler& starts_;
+  Window window_;
+  PathSettings settings_;
+  double light_paths_;
+};
+
+}  // namespace lumirank::pathtrace

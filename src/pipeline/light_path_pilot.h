@@ -1,0 +1,23 @@
+// Pilot of light paths (pathtrace/light_tracer.h): how many of them, beside each eye path, leave the least
+// noise for the time. Light paths tell by themselves how rarely eye paths find what they carry, which no
+// affordable number of eye paths tells.
+#pragma once
+
+#include "base/sinks.h"
+#include "pathtrace/path_tracer.h"
+#include "world/view.h"
+#include "world/world.h"
+
+namespace lumirank::pipeline {
+
+struct LightPathPilot {
+  double light_paths = 0;  // for each eye path; 0: none are worth their time
+  double variance = 1;     // with them, over that of as many eye paths alone
+  double seconds = 1;      // the same
+};
+
+// The same for every size and window of the film. None if it was cancelled.
+LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
+                                 pathtrace::Paths paths, const Sinks& sinks);
+
+}  // namespace lumirank::pipeline

@@ -1,0 +1,181 @@
+// Light paths beside eye paths: the same picture in the mean, whatever carries a path's light, with less
+// noise where eye paths find it by chance.
+#include "pathtrace/light_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+
+#include "pathtrace/reference.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+
+namespace lumirank::pathtrace {
+namespace {
+
+using test::SceneMaker;
+
+constexpr int kWidth = 12, kHeight = 8, kPictures = 100;
+
+Transform ball(Vec3f center, double radius) {
+  return Transform::translate(static_cast<double>(center.x), static_cast<double>(center.y),
+                              static_cast<double>(center.z)) *
+         Transform::scale(radius, radius, radius);
+}
+
+// A room with a box on its floor, seen from within.
+SceneMaker room() {
+  SceneMaker scene;
+  scene.box_inside(1, scene.diffuse({0.7f, 0.6f, 0.5f}));
+  scene.shape(scenedesc::CubeDesc{},
+              Transform::translate(-0.4, -0.75, 0.3) * Transform::scale(0.25, 0.25, 0.25),
+              scene.diffuse({0.3f, 0.6f, 0.4f}));
+  scene.desc.sensors.push_back(
+      test::sensor({0.1f, 0.2f, -0.95f}, {0, -0.2f, 1}, {0, 1, 0}, 80, kWidth, kHeight));
+  return scene;
+}
+
+void add_ball_lamp(SceneMaker& scene, Vec3f center, double radius, float radiance) {
+  auto& lamp = scene.shape(scenedesc::SphereDesc{}, ball(center, radius), scene.diffuse(Rgb(0)));
+  scenedesc::AreaEmitterDesc emitter;
+  emitter.radiance.value = Rgb(radiance, 0.8f * radiance, 0.6f * radiance);
+  lamp.emitter = emitter;
+}
+
+SceneMaker bulb_in_glass() {
+  SceneMaker scene = room();
+  add_ball_lamp(scene, {0.3f, 0.4f, 0.2f}, 0.18, 20);
+  scene.shape(scenedesc::SphereDesc{}, ball({0.3f, 0.4f, 0.2f}, 0.25), scene.glass(1.5f));
+  return scene;
+}
+
+// Under a shade that is open above, the ceiling lights the room.
+SceneMaker shaded_lamp() {
+  SceneMaker scene = room();
+  scene.lamp({0.2f, 0.5f, 0.3f}, {0.1f, 0, 0}, {0, 0, -0.1f}, Rgb(30), scene.diffuse(Rgb(0)));
+  return scene;
+}
+
+SceneMaker spot_on_a_mirror() {
+  SceneMaker scene = room();
+  scene.rectangle({0, -0.9f, 0.2f}, {0.5f, 0, 0}, {0, 0, 0.5f}, scene.mirror(Rgb(0.9f)));
+  scenedesc::SpotLightDesc spot;
+  spot.to_world = Transform::look_at({0, 0.8, 0.2}, {0.2, -1, 0.3}, {1, 0, 0});
+  spot.intensity = Rgb(2);
+  spot.cutoff_angle = 40, spot.beam_width = 20;
+  scene.light(spot);
+  return scene;
+}
+
+// Rough metal before the lamp, and rough metal before the eye; a sky comes in where a wall is missing.
+SceneMaker gloss() {
+  SceneMaker scene;
+  const int white = scene.diffuse(Rgb(0.6f));
+  scenedesc::ConductorDesc metal;
+  metal.alpha_u = metal.alpha_v = {0.2f};
+  const int rough = scene.bsdf(metal);
+  scene.rectangle({0, -1, 0}, {1, 0, 0}, {0, 0, -1}, rough);
+  scene.rectangle({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, white);
+  scene.rectangle({0, 0, 1}, {1, 0, 0}, {0, -1, 0}, white);
+  scene.rectangle({-1, 0, 0}, {0, 0, -1}, {0, 1, 0}, rough);
+  scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(0.5f)});
+  add_ball_lamp(scene, {0.5f, 0.2f, 0.3f}, 0.1, 20);
+  scene.desc.sensors.push_back(
+      test::sensor({0.3f, 0.3f, -2.5f}, {0, -0.2f, 1}, {0, 1, 0}, 45, kWidth, kHeight));
+  return scene;
+}
+
+struct PixelMeans {
+  std::vector<test::RunningMean> of = std::vector<test::RunningMean>(kWidth * kHeight);
+  double variance() const {
+    double sum = 0;
+    for (const auto& m : of) sum += m.standard_error() * m.standard_error();
+    return sum;
+  }
+};
+
+PixelMeans means(const SceneMaker& maker, Paths paths, double light_paths, int pictures) {
+  SceneMaker scene = maker;
+  const world::World world = scene.build();
+  world::View view = world::make_view(scene.desc, {});
+  PixelMeans sums;
+  for (int k = 0; k < pictures; ++k) {
+    ReferenceOptions options;
+    options.seed = hash_ids(7, Stage::test, static_cast<std::uint64_t>(k), light_paths > 0 ? 1 : 0);
+    options.paths = paths, options.light_paths = light_paths;
+    options.emission = false;  // seen directly it is alike in both
+    PathFilm film(world, view, options);
+    EXPECT_TRUE(film.add(8, {}));
+    for (std::size_t p = 0; p < sums.of.size(); ++p)
+      sums.of[p].add(static_cast<double>(luminance(film.result().image.pixels[p])));
+  }
+  return sums;
+}
+
+// All pixels agree, and together the whole: a false alarm once in a thousand runs.
+void expect_same(const PixelMeans& alone, const PixelMeans& both, double teeth = 0.05) {
+  const double z = test::normal_quantile(1e-3, alone.of.size());
+  double a = 0, b = 0;
+  for (std::size_t p = 0; p < alone.of.size(); ++p) {
+    const auto &x = alone.of[p], &y = both.of[p];
+    a += x.mean(), b += y.mean();
+    EXPECT_NEAR(x.mean(), y.mean(), z * std::hypot(x.standard_error(), y.standard_error())) << "pixel " << p;
+  }
+  const double error = test::normal_quantile(1e-3) * std::sqrt(alone.variance() + both.variance());
+  EXPECT_NEAR(a, b, error);
+  EXPECT_LT(error, teeth * a) << "an error of that share would be seen";
+}
+
+TEST(LightTracer, ABulbInGlassIsTheSameWithAThirdOfTheVariance) {
+  const auto alone = means(bulb_in_glass(), Paths::all, 0, kPictures),
+             both = means(bulb_in_glass(), Paths::all, 1, kPictures);
+  expect_same(alone, both);
+  EXPECT_LT(both.variance(), alone.variance() / 3);
+}
+
+TEST(LightTracer, TheRestOfABulbInGlassIsTheSame) {
+  const auto alone = means(bulb_in_glass(), Paths::rest, 0, kPictures),
+             both = means(bulb_in_glass(), Paths::rest, 1, kPictures);
+  expect_same(alone, both, 0.1);
+  EXPECT_LT(both.variance(), alone.variance() / 3);
+}
+
+TEST(LightTracer, ALampThatLightsTheCeilingIsTheSame) {
+  const auto alone = means(shaded_lamp(), Paths::all, 0, kPictures),
+             both = means(shaded_lamp(), Paths::all, 1, kPictures);
+  expect_same(alone, both);
+  EXPECT_LT(both.variance(), alone.variance());
+}
+
+TEST(LightTracer, ASpotOnAMirrorIsTheSame) {
+  expect_same(means(spot_on_a_mirror(), Paths::all, 0, kPictures),
+              means(spot_on_a_mirror(), Paths::all, 2, kPictures));
+}
+
+TEST(LightTracer, RoughMetalAndASkyAreTheSame) {
+  expect_same(means(gloss(), Paths::all, 0, kPictures), means(gloss(), Paths::all, 0.5, kPictures));
+}
+
+// Le of a lamp is the flux of its starts, over their density: both say how light is spread over places and
+// directions.
+TEST(EmissionSampler, DensitiesBelongToTheFlux) {
+  SceneMaker scene = gloss();
+  const world::World world = scene.build();
+  const EmissionSampler starts(world);
+  int near = 0, far = 0;
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    SampleStream random(1, Stage::test, 0, k);
+    const auto start = starts.sample(random);
+    ASSERT_TRUE(start);
+    const float density = starts.density(start->emitter, start->triangle, -start->ray.direction);
+    const bool sky = start->emitter == world.environment();
+    EXPECT_NEAR((start->flux * density).r, sky ? 0.5f : 20.0f, 1e-3f * (sky ? 0.5f : 20.0f));
+    ++(sky ? far : near);
+  }
+  EXPECT_GT(near, 5);
+  EXPECT_GT(far, 5);
+}
+
+}  // namespace
+}  // namespace lumirank::pathtrace

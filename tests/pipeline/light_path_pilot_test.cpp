@@ -1,0 +1,57 @@
+#include "pipeline/light_path_pilot.h"
+
+#include <gtest/gtest.h>
+
+#include "lumirank/lumirank.h"
+#include "support/scenes.h"
+
+namespace lumirank::pipeline {
+namespace {
+
+// A floor, and a lamp in a ball of glass above it or a sky.
+test::SceneMaker floor_under(bool bulb) {
+  test::SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, scene.diffuse(Rgb(0.6f)));
+  const auto ball = [](double radius) {
+    return Transform::translate(0, 1, 0) * Transform::scale(radius, radius, radius);
+  };
+  if (bulb) {
+    scenedesc::AreaEmitterDesc emitter;
+    emitter.radiance.value = Rgb(50);
+    scene.shape(scenedesc::SphereDesc{}, ball(0.05), scene.diffuse(Rgb(0))).emitter = emitter;
+    scene.shape(scenedesc::SphereDesc{}, ball(0.2), scene.glass(1.5f));
+  } else {
+    scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
+  }
+  scene.desc.sensors.push_back(test::sensor({0, 2, -3}, {0, 0.5f, 0}, {0, 1, 0}, 60, 64, 48));
+  return scene;
+}
+
+LightPathPilot pilot(bool bulb, int width, int crop) {
+  test::SceneMaker scene = floor_under(bulb);
+  scene.desc.sensors[0].film.width = width, scene.desc.sensors[0].film.height = 3 * width / 4;
+  const world::World world = scene.build();
+  world::ViewChoice choice;
+  choice.crop[2] = choice.crop[3] = crop;
+  return pilot_light_paths(world, world::make_view(scene.desc, choice), 1, pathtrace::Paths::all, {});
+}
+
+TEST(LightPathPilot, ABulbInGlassIsWorthLightPathsAndASkyIsNot) {
+  const LightPathPilot bulb = pilot(true, 64, 0), sky = pilot(false, 64, 0);
+  EXPECT_GE(bulb.light_paths, 1);
+  EXPECT_LT(bulb.variance, 0.1);
+  EXPECT_GT(bulb.seconds, 1);
+  EXPECT_EQ(sky.light_paths, 0);
+  EXPECT_EQ(sky.variance, 1);
+}
+
+TEST(LightPathPilot, IsOfTheWholeFilmAtOneSize) {
+  const LightPathPilot whole = pilot(true, 64, 0);
+  for (const LightPathPilot& other : {pilot(true, 64, 8), pilot(true, 640, 0)}) {
+    EXPECT_EQ(other.light_paths, whole.light_paths);
+    EXPECT_EQ(other.variance, whole.variance);
+  }
+}
+
+}  // namespace
+}  // namespace lumirank::pipeline
