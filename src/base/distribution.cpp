@@ -7,12 +7,27 @@ namespace lumirank {
 
 Distribution1D::Distribution1D(std::span<const float> weights) : cdf_(weights.size() + 1, 0.0) {
   for (std::size_t i = 0; i < weights.size(); ++i) cdf_[i + 1] = cdf_[i] + static_cast<double>(weights[i]);
+  if (weights.size() < kGuidedFrom) return;
+  guide_.resize(weights.size() + 1);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < guide_.size(); ++k) {
+    const double target = total() * static_cast<double>(k) / static_cast<double>(weights.size());
+    while (i + 1 < weights.size() && cdf_[i + 1] <= target) ++i;
+    guide_[k] = static_cast<std::uint32_t>(i);
+  }
 }
 
 Distribution1D::Sample Distribution1D::sample(float u) const {
   const double target = static_cast<double>(u) * total();
   // The last bin whose left edge is not above the target; bins of zero width are stepped over.
-  auto it = std::upper_bound(cdf_.begin() + 1, cdf_.end() - 1, target);
+  auto first = cdf_.begin() + 1, last = cdf_.end() - 1;
+  if (!guide_.empty()) {
+    // One entry more at either end: the product may round across one.
+    const auto k = static_cast<std::size_t>(static_cast<double>(u) * static_cast<double>(size()));
+    first += guide_[std::min(k > 0 ? k - 1 : 0, size())];
+    last = cdf_.begin() + 1 + guide_[std::min(k + 2, size())];
+  }
+  const auto it = std::upper_bound(first, last, target);
   std::size_t i = static_cast<std::size_t>(it - cdf_.begin()) - 1;
   while (i > 0 && cdf_[i + 1] == cdf_[i]) --i;
   const double width = cdf_[i + 1] - cdf_[i];

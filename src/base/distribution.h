@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,10 @@ class Distribution1D {
   std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
 
  private:
+  static constexpr std::size_t kGuidedFrom = 32;
   std::vector<double> cdf_;  // size + 1 entries, not normalized
+  // The bin at every 1/size of the sum, between which a search begins; empty for few bins.
+  std::vector<std::uint32_t> guide_;
 };
 
 }  // namespace lumirank

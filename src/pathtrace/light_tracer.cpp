@@ -41,14 +41,16 @@ struct LightTracer::Flight {
   bool after_specular = false;
 };
 
-void LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const {
+int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const {
   const auto start = starts_.sample(random);
-  if (!start) return;
+  if (!start) return 0;
   Flight flight{start->ray, start->flux, max_component(start->flux), key};
+  int rays = 0;
   constexpr int kMaxSteps = 4096;
   for (int step = 0; step < kMaxSteps; ++step) {
     const auto hit = world_.intersect(flight.ray);
-    if (!hit) return;
+    ++rays;
+    if (!hit) break;
     const Vec3f incoming = -flight.ray.direction;
     const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
     const bool first = flight.segments == 1;
@@ -57,24 +59,25 @@ void LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Spla
     if (!first && wanted && closure.has_non_delta()) show(flight, *hit, random.next_2d(), splats);
     const auto next =
         scatter::sample(closure, incoming, random.next_float(), random.next_2d(), Lobes::all, true);
-    if (!next) return;
+    if (!next) break;
     flight.flux *= next->weight;
     if (!next->delta) flight.flux *= scatter::shading_correction(closure, incoming, next->wi);
     if (!next->delta || next->kind != scatter::LobeKind::delta_pass) {
       // One more segment follows, and the one to the eye.
-      if (settings_.max_depth >= 0 && flight.segments + 2 > settings_.max_depth) return;
-      if (first && !leave_first(*start, *hit, *next, flight)) return;
+      if (settings_.max_depth >= 0 && flight.segments + 2 > settings_.max_depth) break;
+      if (first && !leave_first(*start, *hit, *next, flight)) break;
       ++flight.segments;
       flight.after_specular = next->delta;
       if (!next->delta) ++flight.non_delta_vertices;
     }
     float survival = std::min(1.0f, max_component(flight.flux) / flight.level);
     if (flight.segments > kDeepLightPath) survival = std::min(survival, kDeepLightSurvival);
-    if (!(survival > 0) || (survival < 1 && random.next_float() >= survival)) return;
+    if (!(survival > 0) || (survival < 1 && random.next_float() >= survival)) break;
     flight.flux *= 1 / survival;
-    if (!is_finite(flight.flux)) return;
+    if (!is_finite(flight.flux)) break;
     flight.ray = {world::World::offset_origin(hit->point.position, hit->point.ng, next->wi), next->wi};
   }
+  return rays;
 }
 
 // False: eye paths carry all that the path could show.
@@ -104,27 +107,29 @@ bool LightTracer::leave_first(const EmissionSampler::Start& start, const world::
   return flight.density > 0;
 }
 
-void LightTracer::show(const Flight& flight, const world::SurfaceHit& hit, Vec2f lens,
+// Whether a ray went to the eye.
+bool LightTracer::show(const Flight& flight, const world::SurfaceHit& hit, Vec2f lens,
                        std::vector<Splat>& splats) const {
   const auto seen = camera_.project(hit.point.position, lens);
-  if (!seen || !window_.holds(seen->film)) return;
+  if (!seen || !window_.holds(seen->film)) return false;
   const Vec3f wo = seen->to_eye, wi = -flight.ray.direction;
   Closure closure = world_.materials().closure(hit.material, hit.point, wo);
   scatter::face_viewer(closure, wo);  // as eye paths do
   const float across = crossing(hit, closure, wi);
-  if (!(across > 0)) return;
+  if (!(across > 0)) return false;
   // Flux is measured through the surface, but eval() has the cosine of the shading normal.
   Rgb value = scatter::eval(closure, wo, wi) * flight.flux *
               (crossing(hit, closure, wo) * seen->density / (across * static_cast<float>(light_paths_)));
-  if (is_black(value)) return;
+  if (is_black(value)) return false;
   const float pdf = scatter::pdf(closure, wo, wi, Lobes::all);
   const float ratio =
       flight.density * light_path_ratio(light_paths_, seen->density, hit, closure, wo, wi, pdf);
   value *= ratio / (1 + ratio);
   value *= world::visible_fraction(world_, hit.point.position, hit.point.ng, wo, seen->distance,
                                    mix64(flight.key + static_cast<std::uint64_t>(flight.segments)));
-  if (is_black(value) || !is_finite(value)) return;
+  if (is_black(value) || !is_finite(value)) return true;
   splats.push_back({seen->film, value, flight.non_delta_vertices == 0, ratio});
+  return true;
 }
 
 }  // namespace lumirank::pathtrace

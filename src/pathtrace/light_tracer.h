@@ -50,13 +50,14 @@ class LightTracer {
     bool direct;
     float ratio;  // density of light paths over that of eye paths
   };
-  void trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const;
+  // Returns how many rays that took.
+  int trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const;
 
  private:
   struct Flight;
   bool leave_first(const EmissionSampler::Start& start, const world::SurfaceHit& hit,
                    const scatter::BsdfSample& next, Flight& flight) const;
-  void show(const Flight& flight, const world::SurfaceHit& hit, Vec2f lens, std::vector<Splat>& splats) const;
+  bool show(const Flight& flight, const world::SurfaceHit& hit, Vec2f lens, std::vector<Splat>& splats) const;
 
   const world::World& world_;
   const world::Camera& camera_;

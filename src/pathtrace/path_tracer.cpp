@@ -50,6 +50,7 @@ Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t
             .counts = settings_.paths != Paths::rest,
             .from_eye = starts_ != nullptr};
   finish(walk);
+  walk.sum.segments = walk.segments;
   return walk.sum;
 }
 
@@ -174,7 +175,7 @@ void PathTracer::keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hi
 // Russian roulette; false ends the path.
 bool PathTracer::survives(Walk& walk) const {
   const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
-  if (walk.segments <= 5) return true;
+  if (walk.segments <= 3) return true;
   if (walk.random.next_float() >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;

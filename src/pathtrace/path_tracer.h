@@ -22,6 +22,7 @@ enum class Paths { all, columns, rest };
 // Light by the number of non-specular vertices between eye and emitter: none, one, more.
 struct Radiance {
   Rgb emission, direct, indirect;
+  int segments = 0;  // of the path, and so what it took
   Rgb total() const { return emission + direct + indirect; }
 };
 

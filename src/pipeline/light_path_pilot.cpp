@@ -19,10 +19,11 @@ constexpr std::size_t kLightPaths = 1 << 14, kLightPathsOfPart = 512;
 constexpr int kBlock = 4;
 constexpr double kUsualPart = 0.1;
 constexpr double kNumbers[] = {0.5, 1, 2};
-// What a light path takes, in eye paths: 0.1 to 0.7 on twenty scenes.
-constexpr double kLightPathTime = 0.4;
-// Below that they are not worth the trouble.
-constexpr double kWorth = 0.9;
+// Of the noise alone; above that they are not worth the trouble.
+constexpr double kWorth = 0.95;
+// Eye paths per pixel of the picture that is thought of. What a single find adds to it beyond what is usual
+// there is a speck, which a denoiser takes away, with the light that it stood for.
+constexpr double kPicture = 16;
 
 using pathtrace::LightTracer;
 
@@ -48,53 +49,75 @@ class Pilot {
     if (!(usual_ > 0)) return pilot;
     pathtrace::PathTracer eye(world_, settings_);
     eye.share_with_light_paths(starts_, camera_, pixels());
-    const double by_eye = variance_of(eye);
-    const std::vector<Found> found = trace_light();
+    Noise other = noise_of(eye);
+    std::size_t rays = 0;
+    std::vector<Found> found;
+    for (const LightTracer::Splat& splat : trace_light(settings_, rays)) found.push_back(found_by(splat));
     if (sinks_.cancelled()) return pilot;
+    const double light_path_time =
+        static_cast<double>(rays) / kLightPaths / (static_cast<double>(other.rays) / (kEyePaths * pixels()));
     // Of what eye paths share with as many light paths as there are pixels.
     double shared = 0;
-    for (const Found& f : found) shared += f.weight * f.ratio / ((1 + f.ratio) * (1 + f.ratio));
-    const double other = std::max(0.0, by_eye - shared);
-    const auto variance = [&](double number) {
-      double sum = other;
-      for (const Found& f : found) sum += f.weight * f.ratio / (1 + number * f.ratio);
-      return sum;
+    for (const Found& f : found)
+      shared += f.number * f.light * f.light * f.ratio / ((1 + f.ratio) * (1 + f.ratio));
+    other.squares = std::max(0.0, other.squares - shared);
+    const auto noise = [&](double number) {
+      const double paths = kPicture / (1 + light_path_time * number);
+      Noise sum = other;
+      for (const Found& f : found) {
+        const double find = f.light * f.ratio / (1 + number * f.ratio);
+        if (find < paths)
+          sum.squares += f.number * f.light * find;
+        else
+          sum.lost += 2 * f.number * f.light;
+      }
+      return std::sqrt(sum.squares / pixels() / paths) + sum.lost / pixels();
     };
-    const double alone = variance(0);
-    if (!(alone > 0)) return pilot;
-    double least = kWorth;
+    const double alone = noise(0);
+    double least = kWorth * alone;
     for (const double number : kNumbers) {
-      const double of_alone = variance(number) / alone, seconds = 1 + kLightPathTime * number;
-      if (of_alone * seconds < least) {
-        least = of_alone * seconds;
-        pilot = {number, of_alone, seconds};
+      const double with = noise(number), seconds = 1 + light_path_time * number;
+      if (with < least) {
+        least = with;
+        pilot = {number, with * with / (alone * alone * seconds), seconds};
       }
     }
     return pilot;
   }
 
  private:
-  // What a light path brought, squared and over what is usual there, and light_path_ratio() in full.
+  // What a light path brought, over what is usual there; how many like it one for each pixel would bring;
+  // and their density over that of eye paths.
   struct Found {
-    double weight, ratio;
+    double light, number, ratio;
+  };
+  // Over what is usual, summed over pixels: variance of one path, and light of what is taken for specks.
+  struct Noise {
+    double squares = 0, lost = 0;
+    std::size_t rays = 0;  // that it took
   };
 
   double pixels() const { return static_cast<double>(width_) * height_; }
   std::size_t block(int x, int y) const {
     return static_cast<std::size_t>((y / kBlock) * across_ + x / kBlock);
   }
-  double relative_square(double value, int x, int y) const {
-    const double usual = brightness_[block(x, y)] + kUsualPart * usual_;
-    return value * value / (usual * usual);
+  double relative(double value, int x, int y) const {
+    return value / (brightness_[block(x, y)] + kUsualPart * usual_);
   }
-  double trace_eye(const pathtrace::PathTracer& tracer, int x, int y, int k) const {
+  struct EyePath {
+    double light;
+    std::size_t rays;
+  };
+  EyePath trace_eye(const pathtrace::PathTracer& tracer, int x, int y, int k) const {
     const auto p =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
     Rng random(seed_, Stage::reference, ~p, static_cast<std::uint64_t>(k));
     const Vec2f jitter = random.next_2d();
     const Vec2f film{static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y};
     const auto radiance = tracer.trace(camera_.ray(film, random.next_2d()), p, static_cast<std::uint64_t>(k));
-    return static_cast<double>(luminance(radiance.direct + radiance.indirect));
+    // Besides its segments a path has a ray to a light at each vertex.
+    return {static_cast<double>(luminance(radiance.direct + radiance.indirect)),
+            2 * static_cast<std::size_t>(radiance.segments)};
   }
 
   // Rows of blocks, each by itself.
@@ -109,61 +132,84 @@ class Pilot {
     });
   }
 
+  // Of all light, whichever paths are asked for; by both, since eye paths may hardly find any.
   void find_brightness() {
     pathtrace::PathSettings all = settings_;
     all.paths = pathtrace::Paths::all;
-    const pathtrace::PathTracer tracer(world_, all);
+    pathtrace::PathTracer tracer(world_, all);
+    tracer.share_with_light_paths(starts_, camera_, pixels());
     std::vector<int> count(brightness_.size());
     for_rows([&](std::size_t, int y) {
-      for (int x = 0; x < width_; ++x)
-        for (int k = 0; k < kEyePaths; ++k, ++count[block(x, y)])
-          brightness_[block(x, y)] += trace_eye(tracer, x, y, k);
+      for (int x = 0; x < width_; ++x) {
+        for (int k = 0; k < kEyePaths; ++k)
+          brightness_[block(x, y)] += trace_eye(tracer, x, y, k).light / kEyePaths;
+        ++count[block(x, y)];
+      }
     });
+    std::size_t rays = 0;
+    for (const LightTracer::Splat& splat : trace_light(all, rays))
+      brightness_[block_of(splat)] += static_cast<double>(luminance(splat.value)) * pixels() / kLightPaths;
     for (std::size_t b = 0; b < brightness_.size(); ++b) {
-      usual_ += brightness_[b] / (kEyePaths * pixels());
+      usual_ += brightness_[b] / pixels();
       brightness_[b] /= std::max(1, count[b]);
     }
   }
 
-  // Of one path in each pixel, over what is usual there.
-  double variance_of(const pathtrace::PathTracer& tracer) const {
-    std::vector<double> sums(static_cast<std::size_t>(height_));
+  Noise noise_of(const pathtrace::PathTracer& tracer) const {
+    std::vector<Noise> rows(static_cast<std::size_t>(height_));
     for_rows([&](std::size_t row, int y) {
-      for (int x = 0; x < width_; ++x)
-        sums[row] += relative_square(trace_eye(tracer, x, y, 0) - trace_eye(tracer, x, y, 1), x, y) / 2;
+      for (int x = 0; x < width_; ++x) {
+        const EyePath a = trace_eye(tracer, x, y, 0), b = trace_eye(tracer, x, y, 1);
+        const double apart = std::abs(relative(a.light - b.light, x, y));
+        rows[row].rays += a.rays + b.rays;
+        if (apart < kPicture)
+          rows[row].squares += apart * apart / 2;
+        else
+          rows[row].lost += apart;
+      }
     });
-    double sum = 0;
-    for (const double s : sums) sum += s;
+    Noise sum;
+    for (const Noise& n : rows) sum.squares += n.squares, sum.lost += n.lost, sum.rays += n.rays;
     return sum;
   }
 
-  std::vector<Found> trace_light() const {
+  std::vector<LightTracer::Splat> trace_light(const pathtrace::PathSettings& settings,
+                                              std::size_t& rays) const {
     const LightTracer tracer(world_, camera_, starts_,
-                             {{0, 0}, {static_cast<float>(width_), static_cast<float>(height_)}}, settings_,
+                             {{0, 0}, {static_cast<float>(width_), static_cast<float>(height_)}}, settings,
                              pixels());
-    std::vector<std::vector<Found>> parts(kLightPaths / kLightPathsOfPart);
+    std::vector<std::vector<LightTracer::Splat>> parts(kLightPaths / kLightPathsOfPart);
+    std::vector<std::size_t> rays_of(parts.size());
     parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t part = begin; part < end && !sinks_.cancelled(); ++part) {
-        std::vector<LightTracer::Splat> splats;
         for (std::size_t k = 0; k < kLightPathsOfPart; ++k) {
           const std::uint64_t number = part * kLightPathsOfPart + k;
-          tracer.trace(SampleStream(seed_, Stage::light_paths, 0, 2 * number),
-                       hash_ids(seed_, Stage::opacity, ~0ull, number), splats);
+          rays_of[part] += static_cast<std::size_t>(
+              tracer.trace(SampleStream(seed_, Stage::light_paths, 0, 2 * number),
+                           hash_ids(seed_, Stage::opacity, ~0ull, number), parts[part]));
         }
-        for (const LightTracer::Splat& s : splats) parts[part].push_back(found(s));
       }
     });
-    std::vector<Found> all;
+    std::vector<LightTracer::Splat> all;
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    for (const std::size_t r : rays_of) rays += r;
     return all;
   }
 
-  Found found(const LightTracer::Splat& splat) const {
-    const int x = std::clamp(static_cast<int>(splat.film.x), 0, width_ - 1);
-    const int y = std::clamp(static_cast<int>(splat.film.y), 0, height_ - 1);
+  Vec2i pixel_of(const LightTracer::Splat& splat) const {
+    return {std::clamp(static_cast<int>(splat.film.x), 0, width_ - 1),
+            std::clamp(static_cast<int>(splat.film.y), 0, height_ - 1)};
+  }
+  std::size_t block_of(const LightTracer::Splat& splat) const {
+    const Vec2i at = pixel_of(splat);
+    return block(at.x, at.y);
+  }
+  Found found_by(const LightTracer::Splat& splat) const {
+    const Vec2i at = pixel_of(splat);
     const double ratio = static_cast<double>(splat.ratio);
-    const double value = static_cast<double>(luminance(splat.value)) * (1 + ratio) / ratio;
-    return {relative_square(value, x, y) * pixels() / kLightPaths, ratio};
+    // Its share goes away: what it would bring without the eye paths.
+    const double light = static_cast<double>(luminance(splat.value)) * (1 + ratio) / ratio;
+    return {relative(light, at.x, at.y), pixels() / kLightPaths, ratio};
   }
 
   const world::World& world_;

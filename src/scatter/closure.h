@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "base/frame.h"
 #include "base/rgb.h"
@@ -154,7 +155,18 @@ struct Closure {
   Frame frame;        // shading frame; frame.n on the outside (towards wo if two-sided)
   Vec3f ng{0, 0, 1};  // geometric normal, in the hemisphere of frame.n; zero on a fiber
   int count = 0;
-  Lobe lobes[kMaxLobes];
+  // Those beyond `count` are not made: a closure is built and copied at every vertex of every path.
+  union {
+    Lobe lobes[kMaxLobes];
+  };
+
+  Closure() {}  // NOLINT: the lobes are left alone
+  Closure(const Closure& o) : frame(o.frame), ng(o.ng), count(o.count) { copy_lobes(o); }
+  Closure& operator=(const Closure& o) {
+    frame = o.frame, ng = o.ng, count = o.count;
+    copy_lobes(o);
+    return *this;
+  }
 
   void add(const Lobe& lobe);  // ignored if its color is black; throws InternalError when full
   bool empty() const { return count == 0; }
@@ -174,7 +186,11 @@ struct Closure {
   // Least roughness alpha of a glossy lobe (Phong's exponent n → √(2/(n+2))); 1 if all are diffuse, 0 if all
   // are delta lobes.
   float roughness() const;
+
+ private:
+  void copy_lobes(const Closure& o) { std::copy_n(o.lobes, o.count, lobes); }
 };
+static_assert(std::is_trivially_copyable_v<Lobe>);
 
 // The non-delta lobes with roughness below `limit` (sharp) or the other non-delta ones (broad).
 Closure sharp_part(const Closure& closure, float limit);

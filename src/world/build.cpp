@@ -56,6 +56,16 @@ std::size_t bytes_of(const emitters::Emitter& emitter) {
   return 0;
 }
 
+bool keeps_angles(const Transform& t) {
+  constexpr double kRounding = 1e-6;
+  const Vec3d x = t.axis(0), y = t.axis(1), z = t.axis(2);
+  const auto product = [](Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+  const double size = product(x, x), slack = kRounding * size;
+  return std::abs(product(y, y) - size) <= slack && std::abs(product(z, z) - size) <= slack &&
+         std::abs(product(x, y)) <= slack && std::abs(product(y, z)) <= slack &&
+         std::abs(product(z, x)) <= slack;
+}
+
 Carrier carrier(const sd::ShapeDesc& shape) {
   return std::holds_alternative<sd::CurvesDesc>(shape.kind) ? Carrier::fibers : Carrier::surface;
 }
@@ -195,7 +205,8 @@ class World::Builder {
     if (with_media_ && geometry_.placed[i].shape->media.divides &&
         placement.blocking == geometry::Blocking::cutout)
       placement.blocking = geometry::Blocking::attenuating;
-    w_.placements.push_back({placement.to_world.is_identity(), w_.materials.is_hair(material_of_[i]),
+    w_.placements.push_back({placement.to_world.is_identity(), keeps_angles(placement.to_world),
+                             w_.materials.is_hair(material_of_[i]),
                              geometry_.flip[i], placement.to_world,
                              placement.to_world.inverse().value_or(Transform{}),
                              with_media_ ? geometry_.placed[i].shape->media : sd::MediumInterfaceDesc{}});

@@ -14,6 +14,7 @@ namespace lumirank::world {
 struct World::Impl {
   struct PlacementData {
     bool identity = true;
+    bool keeps_angles = true;  // moves, turns, mirrors and scales all directions alike
     bool hair = false;  // fibers of hair: points lie on the axis and have no geometric normal
     bool flip = false;  // the outside is against the order of the corners in the mesh's own frame
     Transform to_world, inverse;

@@ -18,17 +18,16 @@ Corners corners(const geometry::TriangleMesh& mesh, std::size_t triangle) {
 
 // In double precision, so that the point lies in the triangle's plane to within one rounding even where the
 // triangle is large.
-Vec3f point_on(Vec3f p0, Vec3f p1, Vec3f p2, Vec2f b) {
-  Vec3f p;
+Vec3d point_on(const geometry::TriangleMesh& mesh, const Corners& c, Vec2f b) {
+  const Vec3f p0 = mesh.positions[c.i[0]], p1 = mesh.positions[c.i[1]], p2 = mesh.positions[c.i[2]];
   const double b1 = b.x, b2 = b.y;
-  for (int k = 0; k < 3; ++k) {
-    const double base = p0[k];
-    p[k] = static_cast<float>(base + b1 * (p1[k] - base) + b2 * (p2[k] - base));
-  }
-  return p;
+  const auto mix = [&](double x0, double x1, double x2) { return x0 + b1 * (x1 - x0) + b2 * (x2 - x0); };
+  return {mix(p0.x, p1.x, p2.x), mix(p0.y, p1.y, p2.y), mix(p0.z, p1.z, p2.z)};
 }
 
 Vec3f unit_or_zero(Vec3f v) {
+  const float squared = length_squared(v);
+  if (squared > 1e-30f && squared < 1e30f) return v / std::sqrt(squared);
   // Scaled first: the square of a tiny or huge vector leaves the range of float.
   const float max_abs = std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
   if (!(max_abs > 0) || !std::isfinite(max_abs)) return {};
@@ -103,12 +102,8 @@ SurfaceHit World::Impl::surface(const geometry::Hit& hit, Vec3f ray_direction) c
   const float b0 = 1 - b.x - b.y;
   scatter::SurfacePoint& point = out.point;
 
-  Vec3f p[3];
-  for (int k = 0; k < 3; ++k) {
-    p[k] = mesh.positions[c.i[k]];
-    if (!data.identity) p[k] = data.to_world.point(p[k]);
-  }
-  point.position = point_on(p[0], p[1], p[2], b);
+  const Vec3d local = point_on(mesh, c, b);
+  point.position = static_cast<Vec3f>(data.identity ? local : data.to_world.place(local));
 
   const auto to_world_normal = [&](Vec3f n) {
     if (!data.identity) n = unit_or_zero(Transform::normal(data.inverse, n));
@@ -118,20 +113,26 @@ SurfaceHit World::Impl::surface(const geometry::Hit& hit, Vec3f ray_direction) c
   if (point.ng == Vec3f{}) point.ng = {0, 0, 1};
   Vec3f n = point.ng;
   if (!mesh.normals.empty()) {
-    // Each to the world and to unit length before they are mixed, as if the mesh had been moved for good.
+    // Each to the world and to unit length before they are mixed, as if the mesh had been moved for good; but
+    // what keeps angles may move their mix.
+    const bool mixed_first = data.identity || data.keeps_angles;
     const auto at = [&](int k) {
-      const Vec3f local = mesh.normals[c.i[k]];
-      return data.identity ? local : to_world_normal(local);
+      const Vec3f normal = mesh.normals[c.i[k]];
+      return mixed_first ? normal : to_world_normal(normal);
     };
-    Vec3f smooth = unit_or_zero(at(0) * b0 + at(1) * b.x + at(2) * b.y);
-    if (data.identity && data.flip) smooth = -smooth;
+    Vec3f smooth = at(0) * b0 + at(1) * b.x + at(2) * b.y;
+    if (mixed_first && !data.identity) smooth = Transform::normal(data.inverse, smooth);
+    smooth = unit_or_zero(smooth);
+    if (mixed_first && data.flip) smooth = -smooth;
     if (!(smooth == Vec3f{})) n = dot(smooth, point.ng) < 0 ? -smooth : smooth;
   }
 
   point.uv = interpolate_uv(mesh, hit.triangle, b);
   if (!mesh.uvs.empty()) {
     const Vec2f d1 = mesh.uvs[c.i[1]] - mesh.uvs[c.i[0]], d2 = mesh.uvs[c.i[2]] - mesh.uvs[c.i[0]];
-    const Vec3f e1 = p[1] - p[0], e2 = p[2] - p[0];
+    Vec3f e1 = mesh.positions[c.i[1]] - mesh.positions[c.i[0]];
+    Vec3f e2 = mesh.positions[c.i[2]] - mesh.positions[c.i[0]];
+    if (!data.identity) e1 = data.to_world.vector(e1), e2 = data.to_world.vector(e2);
     const float determinant = d1.x * d2.y - d1.y * d2.x;
     if (determinant != 0) {
       const Vec3f dpdu = (e1 * d2.y - e2 * d1.y) / determinant, dpdv = (e2 * d1.x - e1 * d2.x) / determinant;
