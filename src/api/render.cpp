@@ -86,7 +86,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     if (in_media) pipeline::check_media(*task.info, settings);
     if (!shot.why.empty()) task.why = shot.why;
     // A repetition names the method of passes, and has the choice among its own.
-    task.may_be_paths = shot.may_be_paths || settings.choices.contains("trial_paths");
+    task.may_be_paths = shot.may_be_paths || settings.choices.contains("trial_paths") ||
+                        settings.choices.contains(pipeline::kChoiceOfPaths);
     const bool passes = pipeline::runs_in_passes(*task.info, settings) && !in_media;
     if (passes) pipeline::check_passes(settings);
     pipeline::check_layers(*task.info, settings);

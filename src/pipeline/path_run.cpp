@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "pathtrace/reference.h"
+#include "pipeline/light_path_pilot.h"
 #include "pipeline/picture_denoising.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
@@ -34,12 +35,16 @@ class PathRun {
         throttle_(preview),
         choices_(asked.choices.empty() ? methods::TimedChoices{} : methods::TimedChoices(asked.choices)),
         denoising_(asked, task_.view, choices_, sinks),
-        view_(denoising_.filtered(task_.view)) {}
+        view_(denoising_.filtered(task_.view)),
+        options_(reference_options(asked.view.only, asked.seed, ReferencePaths::all)) {
+    options_.light_paths =
+        pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, sinks).light_paths;
+  }
 
   RenderResult run() {
     sinks_.say(std::string("method: ") + kByPaths + " (" + task_.why + ")");
     plan();
-    film_.emplace(*task_.world, view_, reference_options(asked_.view.only, asked_.seed, ReferencePaths::all));
+    film_.emplace(*task_.world, view_, options_);
     bool whole = add(1) && trace_features();
     while (whole && paths() < wanted_) {
       const int more = next();
@@ -65,7 +70,8 @@ class PathRun {
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
     wanted_ = by_hand > 0 ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPaths : kUsualPaths;
     if (!timed()) return;
-    if (const auto earlier = choices_.earlier("paths", kMaxPaths)) wanted_ = static_cast<int>(*earlier);
+    if (const auto earlier = choices_.earlier(kChoiceOfPaths, kMaxPaths))
+      wanted_ = static_cast<int>(*earlier);
     const int divisor = chosen_divisor();
     choices_.record("film_divisor", divisor);
     if (divisor > 1) view_ = smaller(view_, divisor);
@@ -77,8 +83,7 @@ class PathRun {
       return static_cast<int>(*earlier);
     const Timer timer;
     const View small = smaller(view_, is_whole_film(view_) ? kPathTrialDivisor : 1);
-    pathtrace::PathFilm trial(*task_.world, small,
-                              reference_options(asked_.view.only, asked_.seed, ReferencePaths::all));
+    pathtrace::PathFilm trial(*task_.world, small, options_);
     if (!trial.add(1, sinks_)) throw Cancelled();
     double few = kFewPaths * timer.seconds() * pixels(view_) / pixels(small);
     seconds_["pilot"] = timer.seconds();
@@ -86,9 +91,14 @@ class PathRun {
     int divisor = 1;
     while (is_whole_film(task_.view) && divisor < kMaxPathDivisor && few > left()) divisor *= 2, few /= 4;
     if (divisor == 1 && few <= left()) return divisor;
-    char text[200];
-    std::snprintf(text, sizeof text, "the budget of %.3g s is short for this view%s; about %.2g s would do",
-                  asked_.time, divisor > 1 ? ": rendered smaller, and enlarged" : "", enough);
+    char text[200], budget[100];
+    if (asked_.time < task_.build_seconds)
+      std::snprintf(budget, sizeof budget, "building the scene took %.2g s, and the budget of %.3g s is over",
+                    task_.build_seconds, asked_.time);
+    else
+      std::snprintf(budget, sizeof budget, "the budget of %.3g s is short for this view", asked_.time);
+    std::snprintf(text, sizeof text, "%s%s; about %.2g s would do", budget,
+                  divisor > 1 ? ": rendered smaller, and enlarged" : "", enough);
     shortage_ = text;
     sinks_.warn(shortage_);
     return divisor;
@@ -132,7 +142,7 @@ class PathRun {
   }
 
   void picture() {
-    if (timed() && !result_.interrupted) choices_.record("paths", paths());
+    if (timed() && !result_.interrupted) choices_.record(kChoiceOfPaths, paths());
     if (result_.interrupted) choices_ = {};
     const image::Image& traced = film_->result().image;
     result_.picture = sized_for(traced, task_.view);
@@ -152,6 +162,7 @@ class PathRun {
     denoising_.note(seconds_.contains("denoise"), report.notes);
     if (!shortage_.empty()) report.notes["budget.short"] = shortage_;
     report.numbers["spp"] = paths();
+    report.numbers["paths.light_paths"] = options_.light_paths;
     if (paths() > 1) {
       report.numbers["error.noise"] = report.numbers["error.estimate"] = film_->result().error;
       report.notes["error.of"] = "the noise of all paths, before a denoiser";
@@ -174,6 +185,7 @@ class PathRun {
   methods::TimedChoices choices_;
   PictureDenoising denoising_;
   View view_;
+  pathtrace::ReferenceOptions options_;
   std::optional<pathtrace::PathFilm> film_;
   int wanted_ = kUsualPaths;  // paths per pixel
   std::string shortage_;

@@ -7,6 +7,8 @@
 namespace lumirank::pipeline {
 
 inline constexpr const char* kByPaths = "path-tracing";
+// Among the choices of a timed run: paths per pixel, if it had nothing else.
+inline constexpr const char* kChoiceOfPaths = "paths";
 
 // Whether "auto" may come to paths: unless settings ask for what only a matrix has.
 bool may_be_paths(const RenderSettings& settings);

@@ -116,5 +116,31 @@ TEST(PathRender, AnErrorAskedForEndsIt) {
   EXPECT_LT(result.report.numbers.at("spp"), 5000);
 }
 
+// A floor that sees its only lamp through a ball of glass: columns carry none of the light that is seen.
+std::string lamp_in_glass(int size) {
+  const std::string at = "<point name=\"center\" x=\"0\" y=\"0\" z=\"1\"/><float name=\"radius\" value=\"";
+  return point_camera("0,-2,3", "0,0,0", size, 50) +
+         "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"4\"/></transform></shape>"
+         "<shape type=\"sphere\">" +
+         at +
+         "0.2\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"20\"/></emitter></shape>"
+         "<shape type=\"sphere\">" +
+         at + "0.5\"/><bsdf type=\"dielectric\"/></shape>";
+}
+
+TEST(PathRender, WhereColumnsCarryLittlePathsGoAlone) {
+  const Scene scene = load_text(lamp_in_glass(24));
+  RenderSettings settings;
+  settings.denoise = Denoise::off;
+  settings.time = 1;
+  const RenderResult timed = render(scene, settings);
+  EXPECT_EQ(timed.report.method, "path-tracing");
+  EXPECT_EQ(timed.report.notes.at("method.why"), "columns cannot carry much of its light");
+  EXPECT_GT(timed.report.numbers.at("paths.light_paths"), 0);
+  const RenderResult again = render(scene, render_settings_from_report(timed.report.json()));
+  EXPECT_EQ(again.report.method, "path-tracing");
+  EXPECT_EQ(timed.picture.planes[0].rgb, again.picture.planes[0].rgb);
+}
+
 }  // namespace
 }  // namespace lumirank
