@@ -39,7 +39,7 @@ void expect_equal_means(const char* only) {
   ReferenceSettings how;
   how.paths = ReferencePaths::columns;
   how.spp = 512;
-  constexpr int kSeeds = 48;
+  constexpr int kSeeds = 32;
   test::ChannelMeans lights, paths;
   for (int k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + static_cast<std::uint64_t>(k);
