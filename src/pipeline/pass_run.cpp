@@ -354,7 +354,7 @@ class PassRun {
   }
   // There is no time to find out whether paths have less noise, and they are likely to.
   bool too_few_fit() const {
-    const double path = rest_->plan().pilot.path_seconds * static_cast<double>(view_.width) *
+    const double path = rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
                         static_cast<double>(view_.height);
     const double pass = expected_.total() * (1 + rest_share()), passes = kPassesBeforePaths + kWorthATrial;
     return may_be_paths_alone() && rest_->plan().piloted && passes * pass > left() &&

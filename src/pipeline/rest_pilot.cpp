@@ -83,6 +83,7 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
   RestPilot pilot;
   // The first paths warm the caches; others, which are longer, bound what they take.
   pilot.path_seconds = std::min(of_rest, of_all);
+  pilot.whole_path_seconds = of_all;
   // Where only the rest was met, all of the light is rest.
   const double base = std::max(light, found.rest);
   if (base > 0)

@@ -12,9 +12,10 @@ namespace lumirank::pipeline {
 
 struct RestPilot {
   double share = 0;  // of the light that surfaces send to the eye (emission seen directly left out)
-  double without_brightest = 0;  // the same without the brightest of the paths: one path decides nothing
-  double deviation = 0;          // of one path per pixel, over that light: Σ standard deviation / Σ light
-  double path_seconds = 0;       // of one such path, all threads at work
+  double without_brightest = 0;   // the same without the brightest of the paths: one path decides nothing
+  double deviation = 0;           // of one path per pixel, over that light: Σ standard deviation / Σ light
+  double path_seconds = 0;        // of one such path, all threads at work
+  double whole_path_seconds = 0;  // of one that carries all light
   bool matters() const { return without_brightest > kMinShare; }
   // pathtrace::Paths per pixel whose noise is as large as the error allowed for it, within reason.
   int paths() const;
