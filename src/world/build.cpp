@@ -206,8 +206,7 @@ class World::Builder {
         placement.blocking == geometry::Blocking::cutout)
       placement.blocking = geometry::Blocking::attenuating;
     w_.placements.push_back({placement.to_world.is_identity(), keeps_angles(placement.to_world),
-                             w_.materials.is_hair(material_of_[i]),
-                             geometry_.flip[i], placement.to_world,
+                             w_.materials.is_hair(material_of_[i]), geometry_.flip[i], placement.to_world,
                              placement.to_world.inverse().value_or(Transform{}),
                              with_media_ ? geometry_.placed[i].shape->media : sd::MediumInterfaceDesc{}});
     const Placed& placed = geometry_.placed[i];

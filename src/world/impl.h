@@ -15,8 +15,8 @@ struct World::Impl {
   struct PlacementData {
     bool identity = true;
     bool keeps_angles = true;  // moves, turns, mirrors and scales all directions alike
-    bool hair = false;  // fibers of hair: points lie on the axis and have no geometric normal
-    bool flip = false;  // the outside is against the order of the corners in the mesh's own frame
+    bool hair = false;         // fibers of hair: points lie on the axis and have no geometric normal
+    bool flip = false;         // the outside is against the order of the corners in the mesh's own frame
     Transform to_world, inverse;
     scenedesc::MediumInterfaceDesc media;
   };
