@@ -85,8 +85,9 @@ TEST(TimedRender, ABudgetThatIsOverBeforeItBeganGivesAPictureAndSaysSo) {
   s.time = 1e-4;  // the pilots alone take longer
   const RenderResult result = render(room(), s, sinks);
   EXPECT_FALSE(result.interrupted);
-  EXPECT_EQ(report_of(result)["method"], "path-tracing") << "cheaper than one pass";
-  EXPECT_GE(report_of(result)["spp"], 1);
+  // One pass, or one path for each pixel if that is cheaper: the clock decides.
+  const auto report = report_of(result);
+  EXPECT_EQ(report.value("passes", report.value("spp", 0)), 1) << report;
   EXPECT_NE(said.find("building the scene took"), std::string::npos) << said;
   EXPECT_NE(said.find("would do"), std::string::npos) << said;
   double sum = 0;
