@@ -10,6 +10,9 @@ using scatter::Closure;
 using scatter::LobeKind;
 using scatter::Lobes;
 
+// Before roulette begins.
+constexpr int kSafeSegments = 3, kSafeSegmentsOfDeparted = 5;
+
 // The state of a path between two vertices.
 struct PathTracer::Walk {
   SampleStream random;
@@ -172,10 +175,11 @@ void PathTracer::keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hi
   closure.count = kept;
 }
 
-// Russian roulette; false ends the path.
+// Russian roulette; false ends the path. Paths that depart from a receiver are a small part of what it takes,
+// and their noise is all the picture's.
 bool PathTracer::survives(Walk& walk) const {
   const float survival = std::min(0.95f, max_component(walk.throughput) * walk.eta_scale);
-  if (walk.segments <= 3) return true;
+  if (walk.segments <= (walk.departed ? kSafeSegmentsOfDeparted : kSafeSegments)) return true;
   if (walk.random.next_float() >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;
