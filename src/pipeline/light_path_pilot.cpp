@@ -50,12 +50,12 @@ class Pilot {
     pathtrace::PathTracer eye(world_, settings_);
     eye.share_with_light_paths(starts_, camera_, pixels());
     Noise other = noise_of(eye);
-    std::size_t rays = 0;
+    if (settings_.paths != pathtrace::Paths::all) light_ = trace_light(settings_);
     std::vector<Found> found;
-    for (const LightTracer::Splat& splat : trace_light(settings_, rays)) found.push_back(found_by(splat));
+    for (const LightTracer::Splat& splat : light_.splats) found.push_back(found_by(splat));
     if (sinks_.cancelled()) return pilot;
-    const double light_path_time =
-        static_cast<double>(rays) / kLightPaths / (static_cast<double>(other.rays) / (kEyePaths * pixels()));
+    const double light_path_time = static_cast<double>(light_.rays) / kLightPaths /
+                                   (static_cast<double>(other.rays) / (kEyePaths * pixels()));
     // Of what eye paths share with as many light paths as there are pixels.
     double shared = 0;
     for (const Found& f : found)
@@ -90,6 +90,10 @@ class Pilot {
   // and their density over that of eye paths.
   struct Found {
     double light, number, ratio;
+  };
+  struct Light {
+    std::vector<LightTracer::Splat> splats;
+    std::size_t rays = 0;  // that they took
   };
   // Over what is usual, summed over pixels: variance of one path, and light of what is taken for specks.
   struct Noise {
@@ -146,8 +150,8 @@ class Pilot {
         ++count[block(x, y)];
       }
     });
-    std::size_t rays = 0;
-    for (const LightTracer::Splat& splat : trace_light(all, rays))
+    light_ = trace_light(all);
+    for (const LightTracer::Splat& splat : light_.splats)
       brightness_[block_of(splat)] += static_cast<double>(luminance(splat.value)) * pixels() / kLightPaths;
     for (std::size_t b = 0; b < brightness_.size(); ++b) {
       usual_ += brightness_[b] / pixels();
@@ -173,8 +177,7 @@ class Pilot {
     return sum;
   }
 
-  std::vector<LightTracer::Splat> trace_light(const pathtrace::PathSettings& settings,
-                                              std::size_t& rays) const {
+  Light trace_light(const pathtrace::PathSettings& settings) const {
     const LightTracer tracer(world_, camera_, starts_,
                              {{0, 0}, {static_cast<float>(width_), static_cast<float>(height_)}}, settings,
                              pixels());
@@ -190,9 +193,9 @@ class Pilot {
         }
       }
     });
-    std::vector<LightTracer::Splat> all;
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-    for (const std::size_t r : rays_of) rays += r;
+    Light all;
+    for (const auto& part : parts) all.splats.insert(all.splats.end(), part.begin(), part.end());
+    for (const std::size_t r : rays_of) all.rays += r;
     return all;
   }
 
@@ -221,6 +224,7 @@ class Pilot {
   int width_, height_, across_;
   std::vector<double> brightness_;  // by blocks
   double usual_ = 0;
+  Light light_;  // of the paths asked for, in the end
 };
 
 }  // namespace
