@@ -9,14 +9,12 @@ extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace lumirank::linalg {
 
-namespace {
 void one_thread_per_call() {
   static std::once_flag once;
   std::call_once(once, [] {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
   });
 }
-}  // namespace
 
 void gemm(const Gemm& shape, const float* a, std::size_t lda, const float* b, std::size_t ldb, float* c,
           std::size_t ldc) {

@@ -6,6 +6,9 @@
 
 namespace lumirank::linalg {
 
+// Called by everything that calls BLAS or LAPACK, before it does.
+void one_thread_per_call();
+
 // C (m×n) = beta·C + op(A)·op(B), all row-major, floats. A is m×k (or k×m if a_transposed), B is k×n (or
 // n×k).
 struct Gemm {

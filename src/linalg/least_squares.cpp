@@ -4,7 +4,7 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 
 namespace lumirank::linalg {
 

@@ -5,13 +5,15 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/random.h"
 #include "linalg/blas.h"
 #include "linalg/fixed_sums.h"
+#include "linalg/lapack.h"
 
 namespace lumirank::linalg {
 
@@ -19,7 +21,6 @@ namespace {
 
 constexpr std::size_t kVectorBlock = 16;
 constexpr std::size_t kMax = 24;
-using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMax, kMax>;
 using Vector = Eigen::Map<Eigen::VectorXf>;
 
 Vector vector(float* v, std::size_t n) { return {v, static_cast<Eigen::Index>(n)}; }
@@ -62,7 +63,8 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
   if (!(energy > 0)) return found;
   orthonormalize(space.x, s, m);
 
-  Small gram = Small::Zero(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(s));
+  std::array<double, kMax * kMax>
+      gram{};  // s × s, symmetric; its eigenvectors afterwards, one after the other
   float* const gathered = space.gathered.data();
   float* const y = space.y.data();
   std::fill_n(gathered, s * m, 0.0f);
@@ -73,13 +75,12 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t a = 0; a < s; ++a)
         for (std::size_t b = 0; b < s; ++b)
-          gram(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) +=
-              static_cast<double>(y[j * s + a] * y[j * s + b]);
+          gram[a * s + b] += static_cast<double>(y[j * s + a] * y[j * s + b]);
   }
-  const Eigen::SelfAdjointEigenSolver<Small> eigen(gram);  // ascending
-  const auto& squares = eigen.eigenvalues();
+  std::array<double, kMax> squares{};  // ascending
+  symmetric_eigen(gram, s, squares);
   double inside = 0;
-  for (Eigen::Index a = 0; a < squares.size(); ++a) inside += std::max(squares[a], 0.0);
+  for (std::size_t a = 0; a < s; ++a) inside += std::max(squares[a], 0.0);
   const double min_side = static_cast<double>(std::min(rows, columns)),
                max_side = static_cast<double>(std::max(rows, columns));
   const double outside = std::max(energy - inside, 1e-10 * energy);
@@ -87,7 +88,7 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
   const double edge =
       outside / directions * (1 + std::sqrt(min_side / max_side)) * (1 + std::sqrt(min_side / max_side));
   for (std::size_t a = 0; a < s; ++a) {
-    const double square = std::max(squares[squares.size() - 1 - static_cast<Eigen::Index>(a)], 0.0);
+    const double square = std::max(squares[s - 1 - a], 0.0);
     space.values[a] = std::sqrt(square);
     if (a == 0 || square > edge) found.rank = a + 1;
   }
@@ -97,9 +98,7 @@ RangeFound find_range(std::span<const float> d, std::size_t rows, std::size_t co
     Vector xa = vector(x + a * m, m);
     xa.setZero();
     for (std::size_t b = 0; b < s; ++b)
-      xa += static_cast<float>(eigen.eigenvectors()(static_cast<Eigen::Index>(b),
-                                                    squares.size() - 1 - static_cast<Eigen::Index>(a))) *
-            vector(gathered + b * m, m);
+      xa += static_cast<float>(gram[(s - 1 - a) * s + b]) * vector(gathered + b * m, m);
   }
   orthonormalize(space.x, found.rank, m);
   return found;

@@ -1,38 +1,20 @@
 #include "linalg/svd.h"
 
-// g++ 12 takes the undefined lanes inside its own AVX-512 intrinsics for uninitialized variables.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
-#include <Eigen/Dense>
 #include <algorithm>
 
 #include "base/error.h"
 #include "base/random.h"
+#include "linalg/lapack.h"
 
 namespace lumirank::linalg {
 
 namespace {
 
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Dense = Eigen::MatrixXd;
-
-Dense in_double(std::span<const float> matrix, std::size_t rows, std::size_t columns) {
+ColumnMajor in_double(std::span<const float> matrix, std::size_t rows, std::size_t columns) {
   if (matrix.size() != rows * columns) throw InternalError("svd: wrong number of entries");
-  return Eigen::Map<const RowMajor>(matrix.data(), static_cast<Eigen::Index>(rows),
-                                    static_cast<Eigen::Index>(columns))
-      .cast<double>();
-}
-
-Dense orthonormal(const Dense& a) {
-  const Eigen::HouseholderQR<Dense> qr(a);
-  return qr.householderQ() * Dense::Identity(a.rows(), a.cols());
-}
-
-std::vector<float> row_major(const Dense& a) {
-  std::vector<float> out(static_cast<std::size_t>(a.size()));
-  Eigen::Map<RowMajor>(out.data(), a.rows(), a.cols()) = a.cast<float>();
+  ColumnMajor out(rows, columns);
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) out(i, j) = static_cast<double>(matrix[i * columns + j]);
   return out;
 }
 
@@ -40,9 +22,7 @@ std::vector<float> row_major(const Dense& a) {
 
 std::vector<double> singular_values(std::span<const float> matrix, std::size_t rows, std::size_t columns) {
   if (rows == 0 || columns == 0) return {};
-  const Eigen::BDCSVD<Dense> svd(in_double(matrix, rows, columns));
-  const auto& s = svd.singularValues();
-  return {s.data(), s.data() + s.size()};
+  return svd(in_double(matrix, rows, columns), false).values;
 }
 
 TruncatedSvd randomized_svd(std::span<const float> matrix, std::size_t rows, std::size_t columns,
@@ -50,22 +30,26 @@ TruncatedSvd randomized_svd(std::span<const float> matrix, std::size_t rows, std
   TruncatedSvd result;
   const std::size_t smaller = std::min(rows, columns);
   if (smaller == 0) return result;
-  const Dense a = in_double(matrix, rows, columns);
-  const auto rank = static_cast<Eigen::Index>(std::min(settings.rank, smaller));
-  const auto width = static_cast<Eigen::Index>(std::min(settings.rank + settings.oversampling, smaller));
+  const ColumnMajor a = in_double(matrix, rows, columns);
+  const std::size_t rank = std::min(settings.rank, smaller),
+                    width = std::min(settings.rank + settings.oversampling, smaller);
   Rng rng(settings.seed, Stage::projection, 0x535644);
-  const Dense gaussian = Dense::NullaryExpr(a.cols(), width, [&] { return rng.next_gaussian(); });
-  Dense q = orthonormal(a * gaussian);
+  ColumnMajor gaussian(columns, width);
+  for (double& g : gaussian.values) g = rng.next_gaussian();
+  ColumnMajor q = orthonormal_basis(product(a, false, gaussian, false));
   for (std::size_t step = 0; step < settings.power_steps; ++step) {
-    const Dense z = orthonormal(a.transpose() * q);
-    q = orthonormal(a * z);
+    const ColumnMajor z = orthonormal_basis(product(a, true, q, false));
+    q = orthonormal_basis(product(a, false, z, false));
   }
-  const Dense small = q.transpose() * a;  // width × columns
-  const Eigen::BDCSVD<Dense> svd(small, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const auto& s = svd.singularValues();
-  result.values.assign(s.data(), s.data() + rank);
-  result.u = row_major(q * svd.matrixU().leftCols(rank));
-  result.v = row_major(svd.matrixV().leftCols(rank));
+  const Svd inside = svd(product(q, true, a, false), true);  // width × columns
+  const ColumnMajor u = product(q, false, inside.u, false);
+  result.values.assign(inside.values.begin(), inside.values.begin() + static_cast<std::ptrdiff_t>(rank));
+  result.u.resize(rows * rank);
+  result.v.resize(columns * rank);
+  for (std::size_t k = 0; k < rank; ++k) {
+    for (std::size_t i = 0; i < rows; ++i) result.u[i * rank + k] = static_cast<float>(u(i, k));
+    for (std::size_t j = 0; j < columns; ++j) result.v[j * rank + k] = static_cast<float>(inside.vt(k, j));
+  }
   return result;
 }
 
