@@ -142,7 +142,7 @@ TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
   const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/interior.xml");
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
-  settings.view.width = 96, settings.view.height = 64;
+  settings.view.width = 48, settings.view.height = 32;
   settings.lights.count = 4000;
   for (const char* method : {"brute-force", "instant-radiosity", "power-sampling", "row-column-sampling"}) {
     settings.method.name = method;

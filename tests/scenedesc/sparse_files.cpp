@@ -73,6 +73,12 @@ nanovdb::GridHandle<> packed(const openvdb::GridBase::Ptr& grid) {
   return converter(*openvdb::gridPtrCast<openvdb::FloatGrid>(grid));
 }
 
+template <typename Tree>
+nanovdb::GridHandle<> as_it_is(const openvdb::GridBase::Ptr& grid) {
+  return nanovdb::openToNanoVDB<nanovdb::HostBuffer, Tree>(*openvdb::gridPtrCast<openvdb::Grid<Tree>>(grid));
+}
+
+// Of each kind by itself: what takes a grid of any kind compiles for a minute.
 nanovdb::GridHandle<> made_nano(const Grid& grid) {
   const openvdb::GridBase::Ptr from = made(grid);
   switch (grid.kind) {
@@ -84,8 +90,16 @@ nanovdb::GridHandle<> made_nano(const Grid& grid) {
       return packed<nanovdb::Fp16>(from);
     case Kind::fpn:
       return packed<nanovdb::FpN>(from);
+    case Kind::f64:
+      return as_it_is<openvdb::DoubleTree>(from);
+    case Kind::color:
+      return as_it_is<openvdb::Vec3STree>(from);
+    case Kind::color64:
+      return as_it_is<openvdb::Vec3DTree>(from);
+    case Kind::whole:
+      return as_it_is<openvdb::Int32Tree>(from);
     default:
-      return nanovdb::openToNanoVDB(from);
+      return as_it_is<openvdb::FloatTree>(from);
   }
 }
 
