@@ -148,8 +148,9 @@ void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint
   coat.eta = m.eta;
   out.push(coat, at, weight);
   const Rgb base = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
-  out.push(m.lossless ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
-                      : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear),
+  out.push(m.lossless
+               ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
+               : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear, m.as_mitsuba_3),
            at, weight);
 }
 

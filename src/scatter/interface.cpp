@@ -14,8 +14,11 @@ InterfaceCoefficients interface_coefficients(NormalDistribution distribution, fl
 }
 
 Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
-                             bool nonlinear) {
+                             bool nonlinear, bool as_mitsuba_3) {
   const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
+  const float returned = as_mitsuba_3 && alpha > 0
+                             ? (63 * k.internal_reflectance + fresnel_dielectric(1, 1 / eta)) / 64
+                             : k.internal_reflectance;
   Lobe lobe;
   lobe.kind = LobeKind::interfaced_diffuse;
   lobe.distribution = distribution;
@@ -24,7 +27,7 @@ Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distributi
   lobe.eta = eta;
   lobe.conductor_eta = {k.c[0], k.c[1], k.c[2]};
   lobe.conductor_k = {k.c[3], k.c[4], k.c[5]};
-  const Rgb trapped = nonlinear ? color * k.internal_reflectance : Rgb(k.internal_reflectance);
+  const Rgb trapped = nonlinear ? color * returned : Rgb(returned);
   lobe.color = color / ((Rgb(1) - trapped) * (eta * eta));
   return lobe;
 }

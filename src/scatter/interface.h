@@ -36,8 +36,10 @@ InterfaceCoefficients interface_coefficients(NormalDistribution distribution, fl
 
 // Plastic's base: color/π·T(wi)·T(wo)/(eta²·(1 - r)), r the internal reflectance, times the color if
 // nonlinear. All that does not depend on directions is folded into the lobe's color.
+// Of a rough interface, `as_mitsuba_3` takes r as Mitsuba 3 does: the mean of 2 R(μ) μ over 64 cosines from 0
+// to 1 with both ends, which is 63/64 of the trapezoidal rule's integral and R(1)/64.
 Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
-                             bool nonlinear);
+                             bool nonlinear, bool as_mitsuba_3 = false);
 // A base that gets all that the layer does not reflect: color/π·L(wi)·L(wo)/(2∫L(μ)μ dμ), L = 1 - R. With the
 // layer's reflection it sends back all light if it is white (Kelemen and Szirmay-Kalos 2001).
 Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha);

@@ -173,6 +173,25 @@ TEST(Interface, TableFollowsTheIntegral) {
   }
 }
 
+// What Mitsuba 3.9 gives for roughplastic (Beckmann, index polypropylene, 0.7) over its own smooth plastic,
+// light and eye in planes at right angles, where the coating's reflection is nothing.
+TEST(Interface, AsMitsuba3IsAsDarkAsThere) {
+  const float eta = 1.49f / 1.000277f;
+  const Lobe smooth = interfaced_diffuse_lobe(Rgb(0.7f), eta, NormalDistribution::beckmann, 0, false, true);
+  const auto value = [](const Lobe& lobe, float in, float out) {
+    return lobe.color.r * interface_transmittance(lobe, in) * interface_transmittance(lobe, out);
+  };
+  struct Case {
+    float alpha, of_high, of_low;
+  };
+  for (const auto& [alpha, of_high, of_low] : {Case{0.03f, 0.9766f, 0.9765f}, Case{0.1f, 0.9613f, 0.9605f}}) {
+    const Lobe rough =
+        interfaced_diffuse_lobe(Rgb(0.7f), eta, NormalDistribution::beckmann, alpha, false, true);
+    EXPECT_NEAR(value(rough, 0.9f, 0.6f) / value(smooth, 0.9f, 0.6f), of_high, 0.006f) << alpha;
+    EXPECT_NEAR(value(rough, 0.5f, 0.8f) / value(smooth, 0.5f, 0.8f), of_low, 0.006f) << alpha;
+  }
+}
+
 // A nearly smooth interface is a smooth one.
 TEST(Interface, RoughTendsToSmooth) {
   for (const auto kind : {NormalDistribution::beckmann, NormalDistribution::ggx}) {

@@ -147,7 +147,13 @@ Both read_both() {
 }
 
 TEST(MitsubaDialects, GiveTheSameScene) {
-  const Both both = read_both();
+  Both both = read_both();
+  // The one model in which the programs themselves differ.
+  for (BsdfDesc& bsdf : both.v3.bsdfs)
+    if (auto* const plastic = std::get_if<PlasticDesc>(&bsdf.kind); plastic && plastic->alpha.value > 0) {
+      EXPECT_TRUE(plastic->as_mitsuba_3);
+      plastic->as_mitsuba_3 = false;
+    }
   EXPECT_EQ(body(both.v3), body(both.v06));
   EXPECT_EQ(both.v3.format, "mitsuba 3.0");
   EXPECT_EQ(both.v06.format, "mitsuba 0.6");

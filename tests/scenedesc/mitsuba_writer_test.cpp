@@ -102,7 +102,9 @@ SceneDesc everything_it_has(const test::TemporaryFolder& folder) {
   bsdf(DielectricDesc{1.3f, {Rgb(1)}, {Rgb(0.5f)}, Distribution::beckmann, {0, board}, {0, board}});
   bsdf(ThinDielectricDesc{});
   bsdf(PlasticDesc{});
-  bsdf(PlasticDesc{1.7f, {Rgb(0), colors}, {Rgb(1)}, true, Distribution::ggx, {0.2f}});
+  PlasticDesc rough{1.7f, {Rgb(0), colors}, {Rgb(1)}, true, Distribution::ggx, {0.2f}};
+  rough.as_mitsuba_3 = true;  // as what is written is read
+  bsdf(rough);
   PrincipledDesc p;
   p.metallic.value = 0.3f, p.clearcoat.texture = board;
   bsdf(p);

@@ -141,6 +141,7 @@ BsdfKind plastic(Reader& reader, Plugin& p) {
                        p.title() + " cannot be anisotropic", "give one \"alpha\"");
     const Roughness r = roughness(reader, p, 0.1f);
     out.distribution = r.distribution, out.alpha = r.alpha_u;
+    out.as_mitsuba_3 = !reader.dialect().camel_case();
   }
   return out;
 }

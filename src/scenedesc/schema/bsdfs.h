@@ -104,6 +104,8 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
   // otherwise what single scattering by a rough interface lets through: much less, if it is rough. glTF;
   // overrides nonlinear.
   bool lossless = false;
+  // Under a rough coating, what comes back inside is averaged as Mitsuba 3 does (scatter/interface.h).
+  bool as_mitsuba_3 = false;
 
   static constexpr BsdfInfo kInfo{"plastic"};
   static constexpr auto fields() {
@@ -113,7 +115,8 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
                       Field{"nonlinear", &PlasticDesc::nonlinear, Role::flag},
                       Field{"distribution", &PlasticDesc::distribution, Role::roughness},
                       Field{"alpha", &PlasticDesc::alpha, Role::roughness},
-                      Field{"lossless", &PlasticDesc::lossless, Role::own}};
+                      Field{"lossless", &PlasticDesc::lossless, Role::own},
+                      Field{"as_mitsuba_3", &PlasticDesc::as_mitsuba_3, Role::own}};
   }
 };
 struct PhongDesc {  // the modified (energy-conserving) Phong model
