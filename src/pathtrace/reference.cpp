@@ -168,6 +168,18 @@ struct PathFilm::Impl {
     }
   }
 
+  ImageParts wanted() const { return {options.emission, options.direct, options.indirect}; }
+  ImageParts sent() const { return {false, options.direct, options.indirect}; }
+
+  image::Image difference(ImageParts parts) const {
+    const PathFilmHalf *a[] = {&halves[0]}, *b[] = {&halves[1]};
+    image::Image difference = mean_image(view, a, parts);
+    const image::Image other = mean_image(view, b, parts);
+    for (std::size_t p = 0; p < other.pixels.size(); ++p)
+      difference.pixels[p] = difference.pixels[p] - other.pixels[p];
+    return difference;
+  }
+
   // Those that belong to sample s of all pixels. The order of sums is fixed.
   void add_light_paths(int s, const Sinks& sinks) {
     const std::size_t parts = (light_paths + kLightPathsAtOnce - 1) / kLightPathsAtOnce;
@@ -216,20 +228,18 @@ int PathFilm::paths() const { return impl_->result.spp; }
 
 const ReferenceResult& PathFilm::result() const { return impl_->result; }
 
-image::Image PathFilm::halves_difference() const {
-  const Impl& m = *impl_;
-  const ImageParts wanted{m.options.emission, m.options.direct, m.options.indirect};
-  const PathFilmHalf *a[] = {&m.halves[0]}, *b[] = {&m.halves[1]};
-  image::Image difference = mean_image(m.view, a, wanted);
-  const image::Image other = mean_image(m.view, b, wanted);
-  for (std::size_t p = 0; p < other.pixels.size(); ++p)
-    difference.pixels[p] = difference.pixels[p] - other.pixels[p];
-  return difference;
+image::Image PathFilm::halves_difference() const { return impl_->difference(impl_->wanted()); }
+
+image::Image PathFilm::sent() const {
+  const PathFilmHalf* const both[] = {&impl_->halves[0], &impl_->halves[1]};
+  return mean_image(impl_->view, both, impl_->sent());
 }
+
+image::Image PathFilm::sent_difference() const { return impl_->difference(impl_->sent()); }
 
 bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(double)>& progress) {
   Impl& m = *impl_;
-  const ImageParts wanted{m.options.emission, m.options.direct, m.options.indirect};
+  const ImageParts wanted = m.wanted();
   const int begin_path = m.result.spp, end_path = begin_path + paths;
   std::atomic<std::size_t> finished{0};
   parallel_for(m.pixels, 256, [&](std::size_t begin, std::size_t end) {

@@ -56,6 +56,9 @@ class PathFilm {
   const ReferenceResult& result() const;
   // The image of one half of the paths less that of the other: twice the noise of the image. Needs two paths.
   image::Image halves_difference() const;
+  // Both without the emission that is seen straight, by mirrors or through glass.
+  image::Image sent() const;
+  image::Image sent_difference() const;
 
  private:
   struct Impl;

@@ -1,6 +1,7 @@
 #include "pipeline/pass_picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lumirank::pipeline {
 namespace {
@@ -46,13 +47,28 @@ NoisyPicture PassPicture::with_noise(const RestTracing& rest) const {
   return passes;
 }
 
-image::Image PassPicture::with_mirrored(image::Image sent) const {
-  if (!denoising_.traced() || !parts_.emission) return sent;
+// Without outliers of what is usual in `sent`; empty where nothing was traced.
+image::Image PassPicture::mirrored(const image::Image& sent) const {
+  if (!denoising_.traced() || !parts_.emission) return {};
   double sum = 0;
   for (const Rgb& p : sent.pixels) sum += static_cast<double>(luminance(p));
   const double usual = sum / static_cast<double>(sent.pixels.size());
-  add_image(without_fireflies(denoising_.features().mirrored, static_cast<float>(usual)), sent);
+  return without_fireflies(denoising_.features().mirrored, static_cast<float>(usual));
+}
+
+image::Image PassPicture::with_mirrored(image::Image sent) const {
+  const image::Image shown = mirrored(sent);
+  if (!shown.pixels.empty()) add_image(shown, sent);
   return sent;
+}
+
+image::Image PassPicture::with_mirrored_as_noise(image::Image difference) const {
+  if (!denoising_.traced() || !parts_.emission) return difference;
+  const image::Image shown = denoising_.features().mirrored;
+  for (std::size_t p = 0; p < shown.pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c)
+      difference.pixels[p][c] = std::abs(difference.pixels[p][c]) + 2 * shown.pixels[p][c];
+  return difference;
 }
 
 image::Image PassPicture::with_emission(image::Image sent) const {

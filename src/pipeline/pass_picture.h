@@ -29,9 +29,6 @@ class PassPicture {
   bool add(int number, int wanted, const image::Image& sent, const FilmInput& film, double left,
            const Sinks& sinks);
 
-  // Features of one sample more, for who adds paths.
-  bool trace_another(int number, const Sinks& sinks) { return denoising_.trace_another(number, sinks); }
-
   // Relative L1 of the mean's noise (PictureMean).
   double noise() const { return mean_.noise(); }
   // What surfaces send by passes and `rest`; and its noise, with two passes at least.
@@ -40,8 +37,12 @@ class PassPicture {
   // With what mirrors and glass show of lamps; with what is seen of them straight.
   image::Image with_mirrored(image::Image sent) const;
   image::Image with_emission(image::Image sent) const;
+  // A difference of halves (twice the noise) that has with_mirrored()'s part for noise, since that of few
+  // film samples is not known.
+  image::Image with_mirrored_as_noise(image::Image difference) const;
 
  private:
+  image::Image mirrored(const image::Image& sent) const;
   image::Image emission_of_pass(int wanted, const FilmInput& film) const;
 
   const RenderSettings& settings_;

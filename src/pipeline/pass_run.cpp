@@ -373,7 +373,7 @@ class PassRun {
     if (!paths_) return true;
     const auto by_paths = choices_.earlier("by_paths", 1), more = choices_.earlier("more_paths", kMaxBeside);
     passes_over_paths_ = passes_over_paths(picture_->with_noise(*rest_), passes_seconds_,
-                                           {paths_->sent(), paths_->difference()}, paths_->seconds(),
+                                           {paths_->sent(), paths_->sent_difference()}, paths_->seconds(),
                                            paths_->light_paths() > 0);
     by_paths_ = by_paths ? *by_paths == 1 : passes_over_paths_ > 1;
     choices_.record("by_paths", by_paths_ ? 1 : 0);
@@ -416,38 +416,38 @@ class PassRun {
           std::min(wanted, std::max<std::int64_t>(1, static_cast<std::int64_t>(kPathsAtOnce / each)));
       if (!paths_->add(static_cast<int>(more), sinks_)) return false;
       done += more;
-      if (!features_of_paths()) return false;
       report_progress(0);
-      if (previews_ && throttle_.due())
-        throttle_.show(sized_for(picture_->with_emission(sent()), task_.view));
+      if (previews_ && throttle_.due()) throttle_.show(sized_for(paths_->picture(), task_.view));
     }
-  }
-
-  // What mirrors show of lamps is theirs alone. As many as the paths say, in whatever portions these came.
-  bool features_of_paths() {
-    constexpr int kPathsForOne = 8, kFirstNumber = 1 << 10;
-    if (!picture_->denoising().traced()) return true;
-    for (; features_of_paths_ < paths_->paths() / kPathsForOne; ++features_of_paths_)
-      if (!picture_->trace_another(kFirstNumber + features_of_paths_, sinks_)) return false;
-    return true;
   }
 
   // ------------------------------------------------------------ the picture
 
-  image::Image sent() const {
-    return picture_->with_mirrored(by_paths_ ? paths_->sent() : picture_->sent(*rest_));
+  image::Image sent() const { return picture_->with_mirrored(picture_->sent(*rest_)); }
+
+  // Twice the noise of what is denoised; empty where it is not known.
+  image::Image difference() const {
+    if (!by_paths_ && passes_ < 2) return {};
+    if (by_paths_) return paths_->difference();
+    image::Image difference = picture_->with_noise(*rest_).difference;
+    if (rest_->paths() == 1) rest_->add_to(difference);  // one path cannot tell its noise: it counts as such
+    return picture_->with_mirrored_as_noise(std::move(difference));
   }
 
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
-    const image::Image all = sent();
-    result_.picture = sized_for(picture_->with_emission(all), task_.view);
+    const image::Image all = by_paths_ ? paths_->picture() : sent();
+    const auto finished = [&](const image::Image& image) {
+      return sized_for(by_paths_ ? image : picture_->with_emission(image), task_.view);
+    };
+    result_.picture = finished(all);
     if (!result_.interrupted) {
       const Timer timer;
-      if (const auto denoised = picture_->denoising().denoised(all)) {
+      if (const auto denoised = picture_->denoising().denoised(all, difference())) {
         std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-        result_.picture = sized_for(picture_->with_emission(*denoised), task_.view);
+        result_.picture = finished(denoised->picture);
+        estimate_.trace.numbers["denoise.kept"] = denoised->kept;
         result_.picture.planes.push_back({"undenoised", std::move(before)});
         seconds_["denoise"] = timer.seconds();
       }
@@ -520,7 +520,6 @@ class PassRun {
   int wanted_ = 1, passes_ = 0, next_eighths_ = PassPlan::kWhole;
   int eighths_ = PassPlan::kWhole;  // size of the pass
   std::optional<PathsBeside> paths_;
-  int features_of_paths_ = 0;
   double passes_seconds_ = 0, passes_over_paths_ = 0;
   bool paths_alone_ = false;
   bool by_paths_ = false;  // after the first passes

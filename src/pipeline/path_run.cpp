@@ -148,9 +148,11 @@ class PathRun {
     result_.picture = sized_for(traced, task_.view);
     if (result_.interrupted) return;
     const Timer timer;
-    if (const auto denoised = denoising_.denoised(traced)) {
+    const image::Image difference = paths() > 1 ? film_->halves_difference() : image::Image{};
+    if (const auto denoised = denoising_.denoised(traced, difference)) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-      result_.picture = sized_for(*denoised, task_.view);
+      result_.picture = sized_for(denoised->picture, task_.view);
+      denoiser_kept_ = denoised->kept;
       result_.picture.planes.push_back({"undenoised", std::move(before)});
       seconds_["denoise"] = timer.seconds();
     }
@@ -160,6 +162,7 @@ class PathRun {
     Report& report = result_.report = begin_report(kByPaths, asked_);
     report.notes["method.why"] = task_.why;
     denoising_.note(seconds_.contains("denoise"), report.notes);
+    if (seconds_.contains("denoise")) report.numbers["denoise.kept"] = denoiser_kept_;
     if (!shortage_.empty()) report.notes["budget.short"] = shortage_;
     report.numbers["spp"] = paths();
     report.numbers["paths.light_paths"] = options_.light_paths;
@@ -187,6 +190,7 @@ class PathRun {
   View view_;
   pathtrace::ReferenceOptions options_;
   std::optional<pathtrace::PathFilm> film_;
+  double denoiser_kept_ = 0;  // Shrunk::kept
   int wanted_ = kUsualPaths;  // paths per pixel
   std::string shortage_;
   std::map<std::string, double> seconds_;

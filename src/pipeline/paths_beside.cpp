@@ -14,11 +14,10 @@ constexpr double kOfUsual = 0.1;
 // From which noise on the denoised pictures of fifteen scenes are worse by passes (docs/decisions.md).
 constexpr double kPassesLookWorse = 1.7, kWorseThanWithLightPaths = 2;
 
-pathtrace::ReferenceOptions all_but_emission(const world::World& world, const View& view,
-                                             const RenderSettings& settings, const Sinks& sinks) {
+pathtrace::ReferenceOptions all_light(const world::World& world, const View& view,
+                                      const RenderSettings& settings, const Sinks& sinks) {
   pathtrace::ReferenceOptions options =
       reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
-  options.emission = false;
   options.light_paths = pilot_light_paths(world, view, settings.seed, options.paths, sinks).light_paths;
   return options;
 }
@@ -54,7 +53,7 @@ double relative_size(const image::Image& difference, const image::Image& picture
 
 PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
                          const Sinks& sinks)
-    : options_(all_but_emission(world, view, settings, sinks)), film_(world, view, options_) {}
+    : options_(all_light(world, view, settings, sinks)), film_(world, view, options_) {}
 
 bool PathsBeside::add(int paths, const Sinks& sinks) {
   const Timer timer;

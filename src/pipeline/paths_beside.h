@@ -22,9 +22,13 @@ class PathsBeside {
   double light_paths() const { return options_.light_paths; }  // beside each of them
   double seconds() const { return seconds_; }
   double error() const { return film_.result().error; }  // relative L1, as halves state it
-  // What surfaces send; twice its noise.
-  image::Image sent() const { return film_.result().image; }
+  // The picture, and twice its noise. Where a surface ends before a bright sky, what both send to a pixel is
+  // by the same samples, and much of their noise cancels.
+  image::Image picture() const { return film_.result().image; }
   image::Image difference() const { return film_.halves_difference(); }
+  // Of what surfaces send, as passes have it.
+  image::Image sent() const { return film_.sent(); }
+  image::Image sent_difference() const { return film_.sent_difference(); }
 
  private:
   pathtrace::ReferenceOptions options_;

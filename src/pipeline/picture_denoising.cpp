@@ -105,12 +105,15 @@ int PictureDenoising::samples_for(const char* choice, double one, double left, S
   return samples;
 }
 
-std::optional<image::Image> PictureDenoising::denoised(const image::Image& picture) const {
+std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& picture,
+                                                          const image::Image& difference) const {
   if (!features_ || std::min(picture.width, picture.height) < kSmallestDenoised ||
       std::all_of(picture.pixels.begin(), picture.pixels.end(), [](Rgb c) { return is_black(c); }))
     return {};
   const PixelFeatures features = this->features();
-  return denoiser_->denoise(picture, &features.albedo, &features.normal, features_are_);
+  image::Image clean = denoiser_->denoise(picture, &features.albedo, &features.normal, features_are_);
+  if (difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
+  return denoise::shrink(picture, clean, difference);
 }
 
 }  // namespace lumirank::pipeline

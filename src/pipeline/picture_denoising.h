@@ -8,6 +8,7 @@
 #include <string>
 
 #include "denoise/denoiser.h"
+#include "denoise/shrinkage.h"
 #include "image/image.h"
 #include "lumirank/settings.h"
 #include "methods/common/timed_choices.h"
@@ -44,8 +45,9 @@ class PictureDenoising {
   PixelFeatures features() const { return features_->means(); }
   bool traced() const { return features_.has_value(); }
 
-  // Without its noise; nothing if there is no denoiser, or nothing that it could do.
-  std::optional<image::Image> denoised(const image::Image& picture) const;
+  // Without its noise; nothing if there is no denoiser, or nothing that it could do. `difference` is twice
+  // the picture's noise: what is no noise stays (denoise/shrinkage.h). Empty where that is not known.
+  std::optional<denoise::Shrunk> denoised(const image::Image& picture, const image::Image& difference) const;
 
  private:
   void try_denoiser(const View& view);

@@ -1,0 +1,41 @@
+#include <gtest/gtest.h>
+
+#include "pathtrace/reference.h"
+#include "support/scenes.h"
+
+namespace lumirank::pathtrace {
+namespace {
+
+using image::Image;
+
+double sum_of(const Image& image) {
+  double sum = 0;
+  for (const Rgb& c : image.pixels) sum += static_cast<double>(c.r + c.g + c.b);
+  return sum;
+}
+
+// A lamp is seen: the paths that end there are the same that surfaces' light comes by.
+TEST(PathFilm, WhatSurfacesSendIsAllButEmission) {
+  test::SceneMaker scene;
+  scene.box_inside(1, scene.diffuse({0.7f, 0.6f, 0.5f}));
+  scene.lamp({0, 0.2f, 0.9f}, {0, 0.3f, 0}, {0.3f, 0, 0}, Rgb(4), scene.diffuse(Rgb(0.2f)));
+  scene.desc.sensors.push_back(test::sensor({0, 0, -0.9f}, {0, 0, 1}, {0, 1, 0}, 80, 12, 8));
+  const world::World world = scene.build();
+  const world::View view = world::make_view(scene.desc, {});
+  ReferenceOptions options;
+  options.light_paths = 1;
+  PathFilm all(world, view, options);
+  options.emission = false;
+  PathFilm surfaces(world, view, options);
+  ASSERT_TRUE(all.add(6, {}) && surfaces.add(6, {}));
+  const Image sent = all.sent(), difference = all.sent_difference(), other = surfaces.halves_difference();
+  EXPECT_GT(sum_of(all.result().image), 1.2 * sum_of(sent)) << "the lamp is seen";
+  for (std::size_t p = 0; p < sent.pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(sent.pixels[p][c], surfaces.result().image.pixels[p][c]);
+      EXPECT_EQ(difference.pixels[p][c], other.pixels[p][c]);
+    }
+}
+
+}  // namespace
+}  // namespace lumirank::pathtrace
