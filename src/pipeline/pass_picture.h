@@ -29,6 +29,9 @@ class PassPicture {
   bool add(int number, int wanted, const image::Image& sent, const FilmInput& film, double left,
            const Sinks& sinks);
 
+  // Features of one sample more, for who adds paths.
+  bool trace_another(int number, const Sinks& sinks) { return denoising_.trace_another(number, sinks); }
+
   // Relative L1 of the mean's noise (PictureMean).
   double noise() const { return mean_.noise(); }
   // What surfaces send by passes and `rest`; and its noise, with two passes at least.

@@ -380,10 +380,20 @@ class PassRun {
     sinks_.say(
         "noise of passes over that of paths in the same time: " + pass_number("%.2g", passes_over_paths_) +
         (by_paths_ ? ", so paths go on" : ", so passes go on"));
+    if (by_paths_) choose_emission();
     const int before = paths_->paths();
     const bool whole = !by_paths_ || go_on_by_paths(more);
     choices_.record("more_paths", paths_->paths() - before);
     return whole;
+  }
+
+  // Theirs, or film samples apart, which go on with them then.
+  void choose_emission() {
+    const double each = paths_->seconds() / paths_->paths();
+    own_emission_ = !parts_.emission ||
+                    own_emission_over_apart(*paths_, paths_->paths() + std::max(0.0, left()) / each) < 1;
+    if (const auto earlier = choices_.earlier("own_emission", 1)) own_emission_ = *earlier == 1;
+    choices_.record("own_emission", own_emission_ ? 1 : 0);
   }
 
   bool try_paths() {
@@ -416,19 +426,38 @@ class PassRun {
           std::min(wanted, std::max<std::int64_t>(1, static_cast<std::int64_t>(kPathsAtOnce / each)));
       if (!paths_->add(static_cast<int>(more), sinks_)) return false;
       done += more;
+      if (!own_emission_ && !features_of_paths()) return false;
       report_progress(0);
-      if (previews_ && throttle_.due()) throttle_.show(sized_for(paths_->picture(), task_.view));
+      if (previews_ && throttle_.due()) throttle_.show(finished(to_denoise()));
     }
+  }
+
+  // As many as the paths say, in whatever portions these came.
+  bool features_of_paths() {
+    constexpr int kPathsForOne = 8, kFirstNumber = 1 << 10;
+    if (!picture_->denoising().traced()) return true;
+    for (; features_of_paths_ < paths_->paths() / kPathsForOne; ++features_of_paths_)
+      if (!picture_->trace_another(kFirstNumber + features_of_paths_, sinks_)) return false;
+    return true;
   }
 
   // ------------------------------------------------------------ the picture
 
-  image::Image sent() const { return picture_->with_mirrored(picture_->sent(*rest_)); }
+  image::Image sent() const {
+    return picture_->with_mirrored(by_paths_ ? paths_->sent() : picture_->sent(*rest_));
+  }
+  bool has_own_emission() const { return by_paths_ && own_emission_; }
+  // What has noise; and a picture of that kind with all that it lacks.
+  image::Image to_denoise() const { return has_own_emission() ? paths_->picture() : sent(); }
+  Picture finished(const image::Image& image) const {
+    return sized_for(has_own_emission() ? image : picture_->with_emission(image), task_.view);
+  }
 
   // Twice the noise of what is denoised; empty where it is not known.
   image::Image difference() const {
     if (!by_paths_ && passes_ < 2) return {};
-    if (by_paths_) return paths_->difference();
+    if (has_own_emission()) return paths_->difference();
+    if (by_paths_) return picture_->with_mirrored_as_noise(paths_->sent_difference());
     image::Image difference = picture_->with_noise(*rest_).difference;
     if (rest_->paths() == 1) rest_->add_to(difference);  // one path cannot tell its noise: it counts as such
     return picture_->with_mirrored_as_noise(std::move(difference));
@@ -437,10 +466,7 @@ class PassRun {
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
-    const image::Image all = by_paths_ ? paths_->picture() : sent();
-    const auto finished = [&](const image::Image& image) {
-      return sized_for(by_paths_ ? image : picture_->with_emission(image), task_.view);
-    };
+    const image::Image all = to_denoise();
     result_.picture = finished(all);
     if (!result_.interrupted) {
       const Timer timer;
@@ -522,7 +548,9 @@ class PassRun {
   std::optional<PathsBeside> paths_;
   double passes_seconds_ = 0, passes_over_paths_ = 0;
   bool paths_alone_ = false;
-  bool by_paths_ = false;  // after the first passes
+  bool by_paths_ = false;      // after the first passes
+  bool own_emission_ = false;  // of paths that go on
+  int features_of_paths_ = 0;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
   // Of the last pass: what reports tell of sizes.

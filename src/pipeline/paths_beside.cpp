@@ -62,6 +62,32 @@ bool PathsBeside::add(int paths, const Sinks& sinks) {
   return whole;
 }
 
+double own_emission_over_apart(const PathsBeside& now, double paths) {
+  return own_emission_over_apart(now.picture(), now.difference(), now.sent_difference(), now.paths(), paths);
+}
+
+double own_emission_over_apart(const image::Image& picture, const image::Image& all, const image::Image& sent,
+                               double paths_now, double paths) {
+  // Film samples of an edge, of one that glares, and for each path (pixel_features.h, pass_run.cpp).
+  constexpr double kAtEdges = 16, kGlaring = 48, kForPath = 1.0 / 8;
+  double usual = 0, own = 0, apart = 0;
+  for (const Rgb& p : picture.pixels) usual += brightness(p);
+  usual *= kOfUsual / static_cast<double>(std::max<std::size_t>(1, picture.pixels.size()));
+  const double fewer = std::sqrt(paths_now / std::max(paths, 1.0));  // noise that is left by then
+  for (std::size_t p = 0; p < picture.pixels.size(); ++p) {
+    const double light = brightness(picture.pixels[p]) + usual;
+    if (!(light > 0)) continue;
+    const auto size = [&](Rgb d) {
+      return brightness({std::abs(d.r), std::abs(d.g), std::abs(d.b)}) / light;
+    };
+    const double of_emission = size(all.pixels[p] - sent.pixels[p]);
+    const double samples = kAtEdges + kForPath * paths + (of_emission > 1 ? kGlaring : 0);
+    own += fewer * size(all.pixels[p]);
+    apart += std::hypot(fewer * size(sent.pixels[p]), std::sqrt(paths_now / samples) * of_emission);
+  }
+  return apart > 0 ? own / apart : 1;
+}
+
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
                          double seconds_of_paths, bool light_paths) {
   image::Image picture = passes.picture;

@@ -48,4 +48,14 @@ struct NoisyPicture {
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
                          double seconds_of_paths, bool light_paths);
 
+// Noise of a picture with the emission that its own paths see over that with emission by film samples apart,
+// both once there are `paths` for each pixel, as eyes see it. By its own paths, what a surface and the sky
+// behind it send to a pixel is more when the other is less; a lamp's edge is no better for that, and film
+// samples are many there.
+double own_emission_over_apart(const PathsBeside& now, double paths);
+// The same for pictures; `all`, `sent`: differences with and without emission, of which `paths_now` are the
+// paths.
+double own_emission_over_apart(const image::Image& picture, const image::Image& all, const image::Image& sent,
+                               double paths_now, double paths);
+
 }  // namespace lumirank::pipeline

@@ -60,19 +60,22 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
   s.denoise = Denoise::off;
   s.time = 0.8;
   s.traced.rest = RestOfPaths::skip;
-  s.choices = {{"film_divisor", {1}}, {"eighths_of_pass", {8, 8}}, {"passes", {2}},
-               {"trial_paths", {2}},  {"by_paths", {1}},           {"more_paths", {126}}};
-  const RenderResult result = render(scene, s);
-  EXPECT_EQ(said(result)["method"], "path-tracing");
-  EXPECT_EQ(said(result)["paths"], 128);
-  EXPECT_EQ(said(result)["choices"]["by_paths"][0], 1);
   RenderSettings truth;
   truth.view = s.view;
   truth.seed = 5;
-  EXPECT_NEAR(mean_of(result.picture), mean_of(reference(scene, truth, {.spp = 256}).picture),
-              0.03 * mean_of(result.picture));
-  const RenderSettings again = render_settings_from_report(result.report.json());
-  EXPECT_EQ(result.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb);
+  const double expected = mean_of(reference(scene, truth, {.spp = 256}).picture);
+  for (const std::int64_t own_emission : {0, 1}) {
+    s.choices = {{"film_divisor", {1}}, {"eighths_of_pass", {8, 8}}, {"passes", {2}},
+                 {"trial_paths", {2}},  {"by_paths", {1}},           {"own_emission", {own_emission}},
+                 {"more_paths", {126}}};
+    const RenderResult result = render(scene, s);
+    EXPECT_EQ(said(result)["method"], "path-tracing");
+    EXPECT_EQ(said(result)["paths"], 128);
+    EXPECT_EQ(said(result)["choices"]["by_paths"][0], 1);
+    EXPECT_NEAR(mean_of(result.picture), expected, 0.03 * expected) << own_emission;
+    const RenderSettings again = render_settings_from_report(result.report.json());
+    EXPECT_EQ(result.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb) << own_emission;
+  }
 }
 
 TEST(Passes, OtherMethodsHaveThemToo) {

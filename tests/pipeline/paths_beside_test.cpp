@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lumirank::pipeline {
 namespace {
 
@@ -42,6 +44,29 @@ TEST(PathsBeside, RareBrightPixelsAreNoise) {
   const NoisyPicture spread = even_noise(1, 1);  // as much in the mean
   EXPECT_NEAR(passes_over_paths(rare, 1, spread, 1, false) / passes_over_paths(spread, 1, spread, 1, false),
               1, 0.1);
+}
+
+// A pixel that a leaf and the sky behind it share: what one sends more, the other sends less.
+TEST(PathsBeside, EmissionIsTheirOwnWhereNoiseCancels) {
+  const image::Image picture(8, 8, Rgb(1));
+  image::Image sent(8, 8), all(8, 8);
+  for (int x = 0; x < 8; ++x) sent.at(x, 3) = Rgb(x % 2 ? 0.5f : -0.5f), all.at(x, 3) = sent.at(x, 3) * 0.2f;
+  EXPECT_LT(own_emission_over_apart(picture, all, sent, 16, 64), 0.3);
+}
+
+// At a lamp's edge all noise is its own, and film samples there are more than paths; once these are more,
+// they have less.
+TEST(PathsBeside, EmissionOfLampsIsByFilmSamples) {
+  image::Image picture(8, 8, Rgb(0.1f)), sent(8, 8), all(8, 8);
+  for (int x = 0; x < 8; ++x) picture.at(x, 3) = Rgb(10), all.at(x, 3) = Rgb(x % 2 ? 16.0f : -16.0f);
+  EXPECT_NEAR(own_emission_over_apart(picture, all, sent, 8, 32), std::sqrt((16 + 48 + 32 / 8) / 32.0), 1e-3);
+  EXPECT_LT(own_emission_over_apart(picture, all, sent, 8, 1024), 1);
+}
+
+TEST(PathsBeside, WithoutEmissionBothAreAlike) {
+  const image::Image picture(8, 8, Rgb(1)), noise(8, 8, Rgb(0.1f)), black(8, 8);
+  EXPECT_NEAR(own_emission_over_apart(picture, noise, noise, 8, 32), 1, 1e-6);
+  EXPECT_EQ(own_emission_over_apart(black, black, black, 8, 32), 1);
 }
 
 }  // namespace
