@@ -105,8 +105,9 @@ struct PlasticMaterial {
   bool nonlinear = false;
   NormalDistribution distribution;
   FloatInput alpha;
-  bool lossless = false, as_mitsuba_3 = false;  // see PlasticDesc
+  bool lossless = false;  // see PlasticDesc
   bool smooth = true;
+  bool as_mitsuba_3 = false;  // see PlasticDesc
 };
 void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
