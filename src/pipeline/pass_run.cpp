@@ -453,14 +453,12 @@ class PassRun {
     return sized_for(has_own_emission() ? image : picture_->with_emission(image), task_.view);
   }
 
-  // Twice the noise of what is denoised; empty where it is not known.
+  // Twice the noise of what is denoised; empty where it is not known well: halves of few passes may agree on
+  // a speck, which would stay.
   image::Image difference() const {
-    if (!by_paths_ && passes_ < 2) return {};
+    if (!by_paths_) return {};
     if (has_own_emission()) return paths_->difference();
-    if (by_paths_) return picture_->with_mirrored_as_noise(paths_->sent_difference());
-    image::Image difference = picture_->with_noise(*rest_).difference;
-    if (rest_->paths() == 1) rest_->add_to(difference);  // one path cannot tell its noise: it counts as such
-    return picture_->with_mirrored_as_noise(std::move(difference));
+    return picture_->with_mirrored_as_noise(paths_->sent_difference());
   }
 
   RenderResult picture() {
