@@ -456,7 +456,7 @@ class PassRun {
   // Twice the noise of what is denoised; empty where it is not known well: halves of few passes may agree on
   // a speck, which would stay.
   image::Image difference() const {
-    if (!by_paths_) return {};
+    if (!by_paths_ || paths_->paths() < PictureDenoising::kPathsForNoise) return {};
     if (has_own_emission()) return paths_->difference();
     return picture_->with_mirrored_as_noise(paths_->sent_difference());
   }

@@ -148,7 +148,8 @@ class PathRun {
     result_.picture = sized_for(traced, task_.view);
     if (result_.interrupted) return;
     const Timer timer;
-    const image::Image difference = paths() > 1 ? film_->halves_difference() : image::Image{};
+    const image::Image difference =
+        paths() >= PictureDenoising::kPathsForNoise ? film_->halves_difference() : image::Image{};
     if (const auto denoised = denoising_.denoised(traced, difference)) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       result_.picture = sized_for(denoised->picture, task_.view);

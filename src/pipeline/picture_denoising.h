@@ -18,6 +18,9 @@ namespace lumirank::pipeline {
 
 class PictureDenoising {
  public:
+  // Of fewer paths the halves say too little of the noise to give back what is none.
+  static constexpr int kPathsForNoise = 8;
+
   // Looks for the denoiser, unless settings want none; throws InputError if they demand what is not there.
   // Under a budget it is tried out. What follows goes into `choices`. Both must outlive this.
   PictureDenoising(const RenderSettings& settings, const View& view, methods::TimedChoices& choices,
