@@ -21,6 +21,11 @@ struct Image {
   const Rgb& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
+// Of one size: pixel by pixel.
+inline void add_to(Image& sum, const Image& image) {
+  for (std::size_t p = 0; p < image.pixels.size(); ++p) sum.pixels[p] += image.pixels[p];
+}
+
 // A picture with named layers besides its colors: layer "direct" becomes the EXR channels direct.R,
 // direct.G, direct.B.
 struct LayeredImage {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "denoise/enlarging.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -9,17 +12,13 @@ namespace {
 // Film samples of emission without a denoiser: in all passes together, and in each pass of an unknown number.
 constexpr int kEmissionOfAll = 12, kEmissionOfPass = 2;
 
-void add_image(const image::Image& from, image::Image& to) {
-  for (std::size_t p = 0; p < from.pixels.size(); ++p) to.pixels[p] += from.pixels[p];
-}
-
 }  // namespace
 
 bool PassPicture::add(int number, int wanted, const image::Image& sent, const FilmInput& film, double left,
                       const Sinks& sinks) {
   mean_.add(sent);
   if (denoising_.wanted())
-    return number == 0 ? denoising_.trace_first(film.world, film.view, film.recipe, left, sinks)
+    return number == 0 ? denoising_.trace_first(film.world, whole_, film.recipe, left, sinks)
                        : denoising_.trace_another(number, sinks);
   if (parts_.emission) emission_.add(emission_of_pass(wanted, film));
   return true;
@@ -47,24 +46,22 @@ NoisyPicture PassPicture::with_noise(const RestTracing& rest) const {
   return passes;
 }
 
-// Without outliers of what is usual in `sent`; empty where nothing was traced.
+// Empty where nothing was traced.
 image::Image PassPicture::mirrored(const image::Image& sent) const {
   if (!denoising_.traced() || !parts_.emission) return {};
-  double sum = 0;
-  for (const Rgb& p : sent.pixels) sum += static_cast<double>(luminance(p));
-  const double usual = sum / static_cast<double>(sent.pixels.size());
-  return without_fireflies(denoising_.features().mirrored, static_cast<float>(usual));
+  return denoising_.mirrored(sent);
 }
 
 image::Image PassPicture::with_mirrored(image::Image sent) const {
   const image::Image shown = mirrored(sent);
-  if (!shown.pixels.empty()) add_image(shown, sent);
+  if (!shown.pixels.empty()) image::add_to(sent, shown);
   return sent;
 }
 
 image::Image PassPicture::with_mirrored_as_noise(image::Image difference) const {
   if (!denoising_.traced() || !parts_.emission) return difference;
-  const image::Image shown = denoising_.features().mirrored;
+  const image::Image shown =
+      denoise::reduced(denoising_.features().mirrored, difference.width, difference.height);
   for (std::size_t p = 0; p < shown.pixels.size(); ++p)
     for (int c = 0; c < 3; ++c)
       difference.pixels[p][c] = std::abs(difference.pixels[p][c]) + 2 * shown.pixels[p][c];
@@ -73,8 +70,16 @@ image::Image PassPicture::with_mirrored_as_noise(image::Image difference) const 
 
 image::Image PassPicture::with_emission(image::Image sent) const {
   if (parts_.emission)
-    add_image(denoising_.traced() ? denoising_.features().emission : emission_.mean(), sent);
+    image::add_to(sent, denoising_.traced()
+                            ? denoise::reduced(denoising_.features().emission, sent.width, sent.height)
+                            : emission_.mean());
   return sent;
+}
+
+image::Image PassPicture::enlarged_with_emission(image::Image sent) const {
+  image::Image large = denoising_.enlarged(std::move(sent));
+  if (parts_.emission) image::add_to(large, denoising_.features().emission);
+  return large;
 }
 
 }  // namespace lumirank::pipeline

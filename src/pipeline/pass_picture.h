@@ -20,9 +20,11 @@ class PassPicture {
               const Sinks& sinks)
       : settings_(settings),
         parts_(wanted_parts(settings.view.only)),
-        denoising_(settings, view, choices, sinks) {}
+        denoising_(settings, view, choices, sinks),
+        whole_(denoising_.filtered(view)) {}
 
   const PictureDenoising& denoising() const { return denoising_; }
+  void make_smaller(int divisor) { denoising_.make_smaller(divisor); }
 
   // Pass `number` of `wanted`; `sent`: what surfaces send. `film`: as the pass had it, with a recipe whose
   // seeds are for film samples; `left`: seconds of the budget, 0 without one. False if it was cancelled.
@@ -40,6 +42,8 @@ class PassPicture {
   // With what mirrors and glass show of lamps; with what is seen of them straight.
   image::Image with_mirrored(image::Image sent) const;
   image::Image with_emission(image::Image sent) const;
+  // The same of the size that was asked for, where that is larger: without noise.
+  image::Image enlarged_with_emission(image::Image sent) const;
   // A difference of halves (twice the noise) that has with_mirrored()'s part for noise, since that of few
   // film samples is not known.
   image::Image with_mirrored_as_noise(image::Image difference) const;
@@ -51,6 +55,7 @@ class PassPicture {
   const RenderSettings& settings_;
   FilmParts parts_;
   PictureDenoising denoising_;
+  View whole_;
   PictureMean mean_;      // of what surfaces send
   PictureMean emission_;  // without a denoiser
 };

@@ -50,7 +50,10 @@ constexpr int kMaxBeside = 1 << 16;
 // cannot be compared, if a pass takes as long as so many paths for each pixel. Of twenty scenes the paths had
 // less noise in all five where it does. Where not even one pass fits, they are better than a smaller film.
 constexpr double kRestForPaths = 0.2, kPathsOfPass = 5, kPathsOfOnlyPass = 2;
-constexpr int kPathsForError = 16;  // before a target for the error is believed
+// What a pass counts for beside a path for each pixel, where it is asked whether all pixels are worth it.
+constexpr double kPathsWorthAPass = 4;
+constexpr double kPassesOfHalf = 3;  // that are better than paths
+constexpr int kPathsForError = 16;   // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
@@ -217,13 +220,14 @@ class PassRun {
       expected_ = {took.fixed * static_cast<double>(lights_of(view_)) / static_cast<double>(lights_of(small)),
                    took.by_pixel / shrunk};
       features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
-      paths_alone_ = too_few_fit();
+      const bool few = too_few_fit(), half = few && may_be_half(eye_rays / shrunk);
+      paths_alone_ = few && !half;
       if (paths_alone_) return;
-      choose_size();
+      choose_size(half ? 2 : 1);
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
       choices_.record("film_divisor", divisor);
-      if (divisor > 1) view_ = smaller(whole_, static_cast<int>(divisor));
+      make_smaller(static_cast<int>(divisor));
     }
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
     as_asked_ = by_hand > 0;
@@ -237,15 +241,22 @@ class PassRun {
                  (expected_.fixed + kDrawingShare * expected_.by_pixel) * with_rest / PassPlan::kWhole);
   }
 
+  void make_smaller(int divisor) {
+    if (divisor > 1) view_ = smaller(whole_, divisor);
+    picture_->make_smaller(divisor);
+  }
+
   // A film of half the width and height, enlarged, is better than none.
-  void choose_size() {
+  void choose_size(int at_least) {
     const double whole = expected_.total() * (1 + rest_share());  // a pass of the whole film
+    const double passes = std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass);
+    if (passes * expected_.total() > left()) at_least = 2;
     int divisor = 1;
     const bool may = is_whole_film(task_.view);
-    while (may && divisor < kMaxDivisorOfPasses && expected_.total() > left()) {
+    while (may && divisor < kMaxDivisorOfPasses && (divisor < at_least || expected_.total() > left())) {
       divisor *= 2;
-      view_ = smaller(whole_, divisor);
-      expected_.by_pixel /= 4, features_expected_ /= 4;
+      make_smaller(divisor);
+      expected_.by_pixel /= 4;
     }
     choices_.record("film_divisor", divisor);
     const double left_now = left();
@@ -257,7 +268,8 @@ class PassRun {
                           ", and the budget of " + budget + " is over"
                     : "the budget of " + budget + " is short for this view";
     if (divisor > 1)
-      shortage_ += ": rendered with 1/" + std::to_string(divisor) + " of its width and height, and enlarged";
+      shortage_ +=
+          ": light is rendered with 1/" + std::to_string(divisor) + " of its width and height, and enlarged";
     shortage_ += "; about " + pass_number("%.2g s", enough) + " would do";
     sinks_.warn(shortage_);
   }
@@ -360,8 +372,22 @@ class PassRun {
     return may_be_paths_alone() && rest_->plan().piloted && passes * pass > left() &&
            pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path;
   }
+  // Where paths alone would be of a smaller film as well, passes of that one are tried if some fit.
+  bool may_be_half(double one_feature) {
+    const double path = rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
+                        static_cast<double>(view_.height);
+    if (!is_whole_film(task_.view) || left() > paths_worth_a_pixel(view_) * path) return false;
+    picture_->make_smaller(2);
+    const double before = features_expected_;
+    features_expected_ = picture_->denoising().feature_seconds(one_feature, left());
+    if (kPassesOfHalf * (expected_.fixed + expected_.by_pixel / 4) * (1 + rest_share()) < left()) return true;
+    picture_->make_smaller(1);
+    features_expected_ = before;
+    return false;
+  }
   RenderResult by_paths_alone(const char* why) {
     task_.why = why;
+    task_.denoiser_pixel_seconds = picture_->denoising().pixel_seconds();
     return run_by_paths(std::move(task_), asked_, sinks_, preview_);
   }
 
@@ -390,8 +416,9 @@ class PassRun {
   // Theirs, or film samples apart, which go on with them then.
   void choose_emission() {
     const double each = paths_->seconds() / paths_->paths();
-    own_emission_ = !parts_.emission ||
-                    own_emission_over_apart(*paths_, paths_->paths() + std::max(0.0, left()) / each) < 1;
+    own_emission_ = (!parts_.emission ||
+                     own_emission_over_apart(*paths_, paths_->paths() + std::max(0.0, left()) / each) < 1) &&
+                    !is_smaller();
     if (const auto earlier = choices_.earlier("own_emission", 1)) own_emission_ = *earlier == 1;
     choices_.record("own_emission", own_emission_ ? 1 : 0);
   }
@@ -446,6 +473,7 @@ class PassRun {
   image::Image sent() const {
     return picture_->with_mirrored(by_paths_ ? paths_->sent() : picture_->sent(*rest_));
   }
+  bool is_smaller() const { return view_.width < whole_.width || view_.height < whole_.height; }
   bool has_own_emission() const { return by_paths_ && own_emission_; }
   // What has noise; and a picture of that kind with all that it lacks.
   image::Image to_denoise() const { return has_own_emission() ? paths_->picture() : sent(); }
@@ -470,7 +498,8 @@ class PassRun {
       const Timer timer;
       if (const auto denoised = picture_->denoising().denoised(all, difference())) {
         std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-        result_.picture = finished(denoised->picture);
+        result_.picture = is_smaller() ? to_picture(picture_->enlarged_with_emission(denoised->picture))
+                                       : finished(denoised->picture);
         estimate_.trace.numbers["denoise.kept"] = denoised->kept;
         result_.picture.planes.push_back({"undenoised", std::move(before)});
         seconds_["denoise"] = timer.seconds();

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "pathtrace/reference.h"
+#include "pipeline/develop.h"
 #include "pipeline/light_path_pilot.h"
 #include "pipeline/picture_denoising.h"
 #include "pipeline/preview_throttle.h"
@@ -17,8 +18,6 @@ namespace lumirank::pipeline {
 namespace {
 
 constexpr int kUsualPaths = 64, kMaxPaths = 1 << 20;
-// Fewer are no picture, even for a denoiser.
-constexpr int kFewPaths = 2;
 // Before a target for the error is believed.
 constexpr int kPathsBeforeError = 16;
 // A part of the film of this many times fewer pixels a side tells what a path takes.
@@ -34,7 +33,7 @@ class PathRun {
         sinks_(sinks),
         throttle_(preview),
         choices_(asked.choices.empty() ? methods::TimedChoices{} : methods::TimedChoices(asked.choices)),
-        denoising_(asked, task_.view, choices_, sinks),
+        denoising_(asked, task_.view, choices_, sinks, task_.denoiser_pixel_seconds),
         view_(denoising_.filtered(task_.view)),
         options_(reference_options(asked.view.only, asked.seed, ReferencePaths::all)) {
     options_.light_paths =
@@ -75,6 +74,7 @@ class PathRun {
     const int divisor = chosen_divisor();
     choices_.record("film_divisor", divisor);
     if (divisor > 1) view_ = smaller(view_, divisor);
+    denoising_.make_smaller(divisor);
   }
 
   // A film of half the width and height, enlarged, is better than none.
@@ -85,12 +85,21 @@ class PathRun {
     const View small = smaller(view_, is_whole_film(view_) ? kPathTrialDivisor : 1);
     pathtrace::PathFilm trial(*task_.world, small, options_);
     if (!trial.add(1, sinks_)) throw Cancelled();
-    double few = kFewPaths * timer.seconds() * pixels(view_) / pixels(small);
+    double path = timer.seconds() * pixels(view_) / pixels(small);  // for each pixel
     seconds_["pilot"] = timer.seconds();
-    const double enough = task_.build_seconds + denoising_.seconds() + few;
+    const double worth = paths_worth_a_pixel(view_);
+    const double features = denoising_.seconds_of_feature(*task_.world, small, feature_recipe(), sinks_) *
+                            pixels(view_) / pixels(small);
+    const double enough = task_.build_seconds + denoising_.seconds() +
+                          denoising_.feature_seconds(features, asked_.time) + worth * path;
+    const auto fit = [&] { return (left() - denoising_.feature_seconds(features, left())) / path; };
     int divisor = 1;
-    while (is_whole_film(task_.view) && divisor < kMaxPathDivisor && few > left()) divisor *= 2, few /= 4;
-    if (divisor == 1 && few <= left()) return divisor;
+    if (is_whole_film(task_.view) && fit() < worth) {
+      // A quarter is better than nothing alone.
+      do divisor *= 2, path /= 4, denoising_.make_smaller(divisor);
+      while (divisor < kMaxPathDivisor && fit() < 1);
+    }
+    if (divisor == 1 && fit() >= 1) return divisor;
     char text[200], budget[100];
     if (asked_.time < task_.build_seconds)
       std::snprintf(budget, sizeof budget, "building the scene took %.2g s, and the budget of %.3g s is over",
@@ -98,7 +107,7 @@ class PathRun {
     else
       std::snprintf(budget, sizeof budget, "the budget of %.3g s is short for this view", asked_.time);
     std::snprintf(text, sizeof text, "%s%s; about %.2g s would do", budget,
-                  divisor > 1 ? ": rendered smaller, and enlarged" : "", enough);
+                  divisor > 1 ? ": light is rendered smaller, and enlarged" : "", enough);
     shortage_ = text;
     sinks_.warn(shortage_);
     return divisor;
@@ -117,13 +126,17 @@ class PathRun {
     return whole;
   }
 
+  Recipe feature_recipe() const {
+    Recipe recipe = make_recipe(asked_, task_.view);
+    recipe.seed = hash_ids(asked_.seed, Stage::film_samples);
+    return recipe;
+  }
+
   bool trace_features() {
     if (!denoising_.wanted()) return true;
     const Timer timer;
-    Recipe recipe = make_recipe(asked_, view_);
-    recipe.seed = hash_ids(asked_.seed, Stage::film_samples);
-    const bool whole =
-        denoising_.trace_first(*task_.world, view_, recipe, timed() ? std::max(0.0, left()) : 0, sinks_);
+    const bool whole = denoising_.trace_first(*task_.world, denoising_.filtered(task_.view), feature_recipe(),
+                                              timed() ? std::max(0.0, left()) : 0, sinks_);
     seconds_["features"] = timer.seconds();
     return whole;
   }
@@ -144,15 +157,21 @@ class PathRun {
   void picture() {
     if (timed() && !result_.interrupted) choices_.record(kChoiceOfPaths, paths());
     if (result_.interrupted) choices_ = {};
-    const image::Image& traced = film_->result().image;
-    result_.picture = sized_for(traced, task_.view);
+    result_.picture = sized_for(film_->result().image, task_.view);
     if (result_.interrupted) return;
+    // What is seen straight comes by features of the larger film.
+    const bool apart = view_.width < task_.view.width && options_.emission && denoising_.traced();
+    image::Image traced = apart ? film_->sent() : film_->result().image;
+    if (apart) image::add_to(traced, denoising_.mirrored(traced));
     const Timer timer;
-    const image::Image difference =
-        paths() >= PictureDenoising::kPathsForNoise ? film_->halves_difference() : image::Image{};
+    const image::Image difference = paths() < PictureDenoising::kPathsForNoise ? image::Image{}
+                                    : apart                                    ? film_->sent_difference()
+                                                                               : film_->halves_difference();
     if (const auto denoised = denoising_.denoised(traced, difference)) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
-      result_.picture = sized_for(denoised->picture, task_.view);
+      image::Image whole = denoising_.enlarged(denoised->picture);
+      if (apart) image::add_to(whole, denoising_.features().emission);
+      result_.picture = to_picture(whole);
       denoiser_kept_ = denoised->kept;
       result_.picture.planes.push_back({"undenoised", std::move(before)});
       seconds_["denoise"] = timer.seconds();

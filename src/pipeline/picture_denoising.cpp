@@ -4,18 +4,23 @@
 
 #include "base/error.h"
 #include "base/timer.h"
+#include "denoise/enlarging.h"
 
 namespace lumirank::pipeline {
 namespace {
 
 // The film whose denoising tells what the picture's will take; and what a larger one may take more.
-constexpr int kDenoiserTrial = 192;
+constexpr int kDenoiserTrial = 128, kDenoiserWarmUp = 64;
 constexpr double kDenoiserMargin = 1.15;
+// What enlarging to a film takes, over denoising it with noisy features.
+constexpr double kEnlargingOverDenoising = 0.12;
 // Features that are called clean are worth more, and take this many times longer: where that is at most such
 // a part of the budget.
 constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
 // Of fewer pixels a side it knows too little.
 constexpr int kSmallestDenoised = 16;
+// Film samples of each pixel; and of a larger film's than is rendered.
+constexpr int kEverywhere = 4, kEverywhereOfLarger = 2;
 // Film samples at edges, beside those of all pixels; under a budget as many as this part of what is left
 // pays, but no fewer than leave fur dotted.
 constexpr int kEdgeSamples = 12, kMinEdgeSamples = 5;
@@ -26,8 +31,8 @@ constexpr int kGlaringSamples = 48;
 }  // namespace
 
 PictureDenoising::PictureDenoising(const RenderSettings& settings, const View& view,
-                                   methods::TimedChoices& choices, const Sinks& sinks)
-    : settings_(settings), choices_(choices) {
+                                   methods::TimedChoices& choices, const Sinks& sinks, double pixel_seconds)
+    : settings_(settings), choices_(choices), pixel_seconds_(pixel_seconds) {
   if (settings.denoise == Denoise::off) return;
   const denoise::Found& found = denoise::Denoiser::find();
   denoiser_ = found.denoiser;
@@ -47,12 +52,17 @@ void PictureDenoising::note(bool was_used, std::map<std::string, std::string>& n
 }
 
 void PictureDenoising::try_denoiser(const View& view) {
-  const image::Image trial(kDenoiserTrial, kDenoiserTrial, Rgb(0.5f));
-  denoiser_->denoise(trial, &trial, &trial);  // the first time everything takes longer
-  const Timer timer;
-  denoiser_->denoise(trial, &trial, &trial);
-  seconds_ = kDenoiserMargin * timer.seconds() * static_cast<double>(view.width) *
-             static_cast<double>(view.height) / (kDenoiserTrial * kDenoiserTrial);
+  if (pixel_seconds_ == 0) {
+    const auto seconds = [&](int size) {
+      const image::Image trial(size, size, Rgb(0.5f));
+      const Timer timer;
+      denoiser_->denoise(trial, &trial, &trial);
+      return timer.seconds();
+    };
+    seconds(kDenoiserWarmUp);  // the first time everything takes longer
+    pixel_seconds_ = kDenoiserMargin * seconds(kDenoiserTrial) / (kDenoiserTrial * kDenoiserTrial);
+  }
+  seconds_ = pixel_seconds_ * static_cast<double>(view.width) * static_cast<double>(view.height);
   bool clean = kCleanOverNoisy * seconds_ <= kTimeOfClean * settings_.time;
   if (const auto earlier = choices_.earlier("clean_features", 1)) clean = *earlier == 1;
   choices_.record("clean_features", clean ? 1 : 0);
@@ -62,9 +72,23 @@ void PictureDenoising::try_denoiser(const View& view) {
     features_are_ = denoise::Features::noisy;
 }
 
+double PictureDenoising::seconds() const {
+  return divisor_ == 1 ? seconds_ : seconds_ * (1.0 / (divisor_ * divisor_) + kEnlargingOverDenoising);
+}
+
+int PictureDenoising::samples_everywhere() const { return divisor_ == 1 ? kEverywhere : kEverywhereOfLarger; }
+
+double PictureDenoising::seconds_of_feature(const world::World& world, const View& view, const Recipe& recipe,
+                                            const Sinks& sinks) const {
+  if (!denoiser_) return 0;
+  const Timer timer;
+  PixelFeatureTracing(world, view, recipe).trace_all(1, sinks);
+  return timer.seconds();
+}
+
 double PictureDenoising::feature_seconds(double one_sample, double left) const {
   if (!denoiser_) return 0;
-  return PixelFeatureTracing::kEverywhere * one_sample + kTimeOfEdges * std::max(0.0, left);
+  return samples_everywhere() * one_sample + kTimeOfEdges * std::max(0.0, left);
 }
 
 View PictureDenoising::filtered(View view) const {
@@ -76,8 +100,8 @@ bool PictureDenoising::trace_first(const world::World& world, const View& view, 
                                    double left, const Sinks& sinks) {
   const Timer timer;
   features_.emplace(world, view, recipe);
-  if (!features_->trace_all(sinks)) return false;
-  const double one = timer.seconds() / PixelFeatureTracing::kEverywhere;  // in each pixel
+  if (!features_->trace_all(samples_everywhere(), sinks)) return false;
+  const double one = timer.seconds() / samples_everywhere();  // in each pixel
   if (!features_->trace_differing(edge_samples(one, left), sinks)) return false;
   const int glaring = samples_for("glaring_samples", one * features_->glaring(), left, {0, kGlaringSamples});
   return settings_.view.film_samples || features_->trace_glaring(glaring, sinks);
@@ -88,8 +112,7 @@ bool PictureDenoising::trace_another(int number, const Sinks& sinks) {
 }
 
 int PictureDenoising::edge_samples(double one_everywhere, double left) const {
-  if (settings_.view.film_samples)
-    return std::max(0, *settings_.view.film_samples - PixelFeatureTracing::kEverywhere);
+  if (settings_.view.film_samples) return std::max(0, *settings_.view.film_samples - kEverywhere);
   return samples_for("edge_samples", one_everywhere * features_->differing(), left,
                      {kMinEdgeSamples, kEdgeSamples});
 }
@@ -111,9 +134,25 @@ std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& pi
       std::all_of(picture.pixels.begin(), picture.pixels.end(), [](Rgb c) { return is_black(c); }))
     return {};
   const PixelFeatures features = this->features();
-  image::Image clean = denoiser_->denoise(picture, &features.albedo, &features.normal, features_are_);
+  const image::Image albedo = denoise::reduced(features.albedo, picture.width, picture.height),
+                     normal = denoise::reduced(features.normal, picture.width, picture.height);
+  image::Image clean = denoiser_->denoise(picture, &albedo, &normal, features_are_);
   if (difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
   return denoise::shrink(picture, clean, difference);
+}
+
+image::Image PictureDenoising::mirrored(const image::Image& sent) const {
+  double sum = 0;
+  for (const Rgb& p : sent.pixels) sum += static_cast<double>(luminance(p));
+  const double usual = sum / static_cast<double>(sent.pixels.size());
+  return without_fireflies(denoise::reduced(features().mirrored, sent.width, sent.height),
+                           static_cast<float>(usual));
+}
+
+image::Image PictureDenoising::enlarged(image::Image sent) const {
+  const PixelFeatures features = this->features();
+  if (sent.width == features.albedo.width && sent.height == features.albedo.height) return sent;
+  return denoise::enlarged(sent, features.albedo, features.normal);
 }
 
 }  // namespace lumirank::pipeline

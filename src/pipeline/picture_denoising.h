@@ -22,15 +22,23 @@ class PictureDenoising {
   static constexpr int kPathsForNoise = 8;
 
   // Looks for the denoiser, unless settings want none; throws InputError if they demand what is not there.
-  // Under a budget it is tried out. What follows goes into `choices`. Both must outlive this.
+  // Under a budget it is tried out, unless `pixel_seconds` is what it took another time. What follows goes
+  // into `choices`. Both must outlive this.
   PictureDenoising(const RenderSettings& settings, const View& view, methods::TimedChoices& choices,
-                   const Sinks& sinks);
+                   const Sinks& sinks, double pixel_seconds = 0);
 
-  bool wanted() const { return denoiser_ != nullptr; }  // and there
+  bool wanted() const { return denoiser_ != nullptr; }     // and there
+  double pixel_seconds() const { return pixel_seconds_; }  // 0: not known
   // For a report: by what the picture was denoised, and why not where it would have been.
   void note(bool was_used, std::map<std::string, std::string>& notes) const;
-  // What denoising the whole film is expected to take; 0 without a budget.
-  double seconds() const { return seconds_; }
+  // The picture is rendered with so many times fewer pixels a side, and enlarged by features of all pixels.
+  void make_smaller(int divisor) { divisor_ = divisor; }
+  // What denoising the film is expected to take; 0 without a budget.
+  double seconds() const;
+  // Of the features' film samples: one for each pixel of a part or a smaller copy of the view, as measured. 0
+  // where none are wanted.
+  double seconds_of_feature(const world::World& world, const View& view, const Recipe& recipe,
+                            const Sinks& sinks) const;
   // What features are expected to take after the first pass, `left` seconds before the end of a budget, where
   // one film sample in each pixel takes so long.
   double feature_seconds(double one_sample, double left) const;
@@ -39,21 +47,28 @@ class PictureDenoising {
   View filtered(View view) const;
 
   // Most features follow the first pass, when it is known what a pass takes; but what mirrors show of lamps
-  // takes as many as there are passes. `recipe`: with a seed for film samples; `left`: seconds of the budget,
-  // 0 without one. False if it was cancelled.
+  // takes as many as there are passes. `view`: the whole one, also where the picture is smaller; `recipe`:
+  // with a seed for film samples; `left`: seconds of the budget, 0 without one. False if it was cancelled.
   bool trace_first(const world::World& world, const View& view, const Recipe& recipe, double left,
                    const Sinks& sinks);
   bool trace_another(int number, const Sinks& sinks);
   // Of all pixels; needs trace_first().
   PixelFeatures features() const { return features_->means(); }
+  // What mirrors and glass show of lamps, of the size of `sent`, what surfaces send: without outliers of what
+  // is usual in there. Needs trace_first().
+  image::Image mirrored(const image::Image& sent) const;
   bool traced() const { return features_.has_value(); }
 
   // Without its noise; nothing if there is no denoiser, or nothing that it could do. `difference` is twice
   // the picture's noise: what is no noise stays (denoise/shrinkage.h). Empty where that is not known.
   std::optional<denoise::Shrunk> denoised(const image::Image& picture, const image::Image& difference) const;
+  // Made as large as the features, if it has fewer pixels: without emission that is seen straight, and
+  // denoised. Needs trace_first().
+  image::Image enlarged(image::Image sent) const;
 
  private:
   void try_denoiser(const View& view);
+  int samples_everywhere() const;
   bool timed() const { return settings_.time > 0; }
   int edge_samples(double one_everywhere, double left) const;
   struct SampleRange {
@@ -65,7 +80,8 @@ class PictureDenoising {
   methods::TimedChoices& choices_;
   std::shared_ptr<const denoise::Denoiser> denoiser_;
   std::string trouble_;
-  double seconds_ = 0;
+  double pixel_seconds_ = 0, seconds_ = 0;  // of a pixel, of the whole film
+  int divisor_ = 1;
   denoise::Features features_are_ = denoise::Features::clean;
   std::optional<PixelFeatureTracing> features_;
 };

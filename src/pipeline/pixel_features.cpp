@@ -106,8 +106,8 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
   return !sinks.cancelled();
 }
 
-bool PixelFeatureTracing::trace_all(const Sinks& sinks) {
-  if (!trace(kEverywhere, hash_ids(recipe_.seed, Stage::film_samples, 1), Edge::none, sinks)) return false;
+bool PixelFeatureTracing::trace_all(int samples, const Sinks& sinks) {
+  if (!trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 1), Edge::none, sinks)) return false;
   mark_edges();
   return true;
 }

@@ -27,9 +27,8 @@ class PixelFeatureTracing {
   // Must outlive it: the world. Random numbers are by the recipe's seed.
   PixelFeatureTracing(const world::World& world, const View& view, const Recipe& recipe);
 
-  static constexpr int kEverywhere = 4;  // film samples of each pixel
-  // The first of them. False if it was cancelled.
-  bool trace_all(const Sinks& sinks);
+  // The first film samples, so many of each pixel. False if it was cancelled.
+  bool trace_all(int samples, const Sinks& sinks);
   // The part of the pixels that differ from a neighbor, or within themselves; and of those that differ in
   // emission by more than a screen shows: a hundredth of a sunny window is seen on a bar across it.
   double differing() const { return part_from(Edge::some); }

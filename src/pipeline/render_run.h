@@ -23,6 +23,7 @@ struct RenderTask {
   double lumens_per_unit = 1;
   Timer timer;  // since the scene was loaded
   double build_seconds = 0;
+  double denoiser_pixel_seconds = 0;  // where it was tried out
 };
 
 RenderResult run_render(RenderTask task, const RenderSettings& settings, const Sinks& sinks,

@@ -25,6 +25,12 @@ View smaller(const View& view, int divisor) {
   return less;
 }
 
+double paths_worth_a_pixel(const View& view) {
+  constexpr double kPixelsOfPath = 60000, kMin = 1, kMax = 8;
+  const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
+  return std::clamp(pixels / kPixelsOfPath, kMin, kMax);
+}
+
 Picture enlarged(const Picture& picture, int width, int height) {
   Picture larger;
   larger.width = width, larger.height = height;

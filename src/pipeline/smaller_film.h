@@ -15,6 +15,11 @@ bool is_whole_film(const View& view);
 // The same view on a film of a divisor-th of the width and height, at least one pixel. Needs the whole film.
 View smaller(const View& view, int divisor);
 
+// A film of half the width and height, enlarged by features of all pixels, is the better picture where fewer
+// paths than this fit for each pixel: four times as many are left there, and the larger a picture is, the
+// less of it is as small as a pixel.
+double paths_worth_a_pixel(const View& view);
+
 // The picture at another size, linearly interpolated between centers of pixels.
 Picture enlarged(const Picture& picture, int width, int height);
 // The image as a picture of the size that the view asks for.

@@ -29,7 +29,7 @@ PixelFeatures traced(const sd::SceneDesc& desc, double* differing = nullptr) {
   const View view = view_of(desc);
   RenderSettings settings;
   PixelFeatureTracing tracing(world, view, make_recipe(settings, view));
-  EXPECT_TRUE(tracing.trace_all({}));
+  EXPECT_TRUE(tracing.trace_all(4, {}));
   if (differing) *differing = tracing.differing();
   EXPECT_TRUE(tracing.trace_differing(252, {}));
   return tracing.means();
@@ -77,7 +77,7 @@ TEST(PixelFeatures, EdgesOfWhatGlaresAreKnownFromOthers) {
     const world::World world = build(desc);
     const View view = view_of(desc);
     PixelFeatureTracing tracing(world, view, make_recipe({}, view));
-    EXPECT_TRUE(tracing.trace_all({}));
+    EXPECT_TRUE(tracing.trace_all(4, {}));
     EXPECT_GT(tracing.differing(), 0);
     EXPECT_TRUE(tracing.trace_glaring(252, {}));
     for (int y = 0; y < kSize; ++y)
