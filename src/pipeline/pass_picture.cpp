@@ -14,9 +14,9 @@ constexpr int kEmissionOfAll = 12, kEmissionOfPass = 2;
 
 }  // namespace
 
-bool PassPicture::add(int number, int wanted, const image::Image& sent, const FilmInput& film, double left,
-                      const Sinks& sinks) {
-  mean_.add(sent);
+bool PassPicture::add(int number, int wanted, const image::Image& sent, double weight, const FilmInput& film,
+                      double left, const Sinks& sinks) {
+  mean_.add(sent, weight);
   if (denoising_.wanted())
     return number == 0 ? denoising_.trace_first(film.world, whole_, film.recipe, left, sinks)
                        : denoising_.trace_another(number, sinks);

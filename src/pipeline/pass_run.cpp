@@ -51,7 +51,7 @@ constexpr int kMaxBeside = 1 << 16;
 // less noise in all five where it does. Where not even one pass fits, they are better than a smaller film.
 constexpr double kRestForPaths = 0.2, kPathsOfPass = 5, kPathsOfOnlyPass = 2;
 // What a pass counts for beside a path for each pixel, where it is asked whether all pixels are worth it.
-constexpr double kPathsWorthAPass = 4;
+constexpr double kPathsWorthAPass = 2.5;
 constexpr double kPassesOfHalf = 3;  // that are better than paths
 constexpr int kPathsForError = 16;   // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
@@ -319,8 +319,11 @@ class PassRun {
     Recipe of_film = recipe_of(static_cast<std::uint64_t>(number));
     of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
     const Timer timer;
-    if (!picture_->add(number, wanted_, image, {*task_.world, view_, of_film, *prepared_->rows, traced_},
-                       timed() ? left() : 0, sinks_))
+    // A pass has as many samples as its size.
+    const double weight = static_cast<double>(eighths_) / PassPlan::kWhole;
+    if (!picture_->add(number, wanted_, image, weight,
+                       {*task_.world, view_, of_film, *prepared_->rows, traced_}, timed() ? left() : 0,
+                       sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     report_progress(number + 1);

@@ -6,22 +6,21 @@
 
 namespace lumirank::pipeline {
 
-void PictureMean::add(const image::Image& picture) {
+void PictureMean::add(const image::Image& picture, double weight) {
   const std::size_t half = count() % 2;
   image::Image& sum = sum_[half];
-  if (count_[half]++ == 0) {
-    sum = picture;
-    return;
-  }
+  weight_[half] += weight;
+  if (count_[half]++ == 0) sum = image::Image(picture.width, picture.height);
   if (sum.width != picture.width || sum.height != picture.height)
     throw InternalError("pipeline::PictureMean: pictures of different sizes");
-  for (std::size_t p = 0; p < sum.pixels.size(); ++p) sum.pixels[p] += picture.pixels[p];
+  for (std::size_t p = 0; p < sum.pixels.size(); ++p)
+    sum.pixels[p] += picture.pixels[p] * static_cast<float>(weight);
 }
 
 image::Image PictureMean::mean() const {
   if (count() == 0) return {};
   image::Image mean = sum_[0];
-  const float part = 1 / static_cast<float>(count());
+  const auto part = static_cast<float>(1 / (weight_[0] + weight_[1]));
   for (std::size_t p = 0; p < mean.pixels.size(); ++p) {
     if (count_[1] > 0) mean.pixels[p] += sum_[1].pixels[p];
     mean.pixels[p] = part * mean.pixels[p];
@@ -31,10 +30,10 @@ image::Image PictureMean::mean() const {
 
 image::Image PictureMean::difference() const {
   if (count_[1] == 0) return {};
-  const double n0 = static_cast<double>(count_[0]), n1 = static_cast<double>(count_[1]);
-  // Var(A − B) = σ² (1/n0 + 1/n1) where the mean has σ² / (n0 + n1).
-  const double scale = 2 * std::sqrt(n0 * n1) / (n0 + n1);
-  const auto of_a = static_cast<float>(scale / n0), of_b = static_cast<float>(scale / n1);
+  const double a = weight_[0], b = weight_[1];
+  // Var(A − B) = σ² (1/a + 1/b) where the mean has σ² / (a + b).
+  const double scale = 2 * std::sqrt(a * b) / (a + b);
+  const auto of_a = static_cast<float>(scale / a), of_b = static_cast<float>(scale / b);
   image::Image difference = sum_[0];
   for (std::size_t p = 0; p < difference.pixels.size(); ++p)
     difference.pixels[p] = of_a * difference.pixels[p] - of_b * sum_[1].pixels[p];

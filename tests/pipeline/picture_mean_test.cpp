@@ -41,6 +41,29 @@ TEST(PictureMean, StatesTheNoiseOfTheMean) {
   }
 }
 
+// Pictures of few samples count for less, and the noise is stated for that.
+TEST(PictureMean, WeighsByVariance) {
+  PictureMean mean, equal;
+  const double weights[] = {1, 0.25, 1.5, 0.25};
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    Rng rng(2, Stage::test, k);
+    image::Image picture(200, 100);
+    const auto deviation = static_cast<float>(0.2 / std::sqrt(weights[k]));
+    for (Rgb& p : picture.pixels)
+      for (int c = 0; c < 3; ++c) p[c] = 1 + deviation * static_cast<float>(rng.next_gaussian());
+    mean.add(picture, weights[k]), equal.add(picture);
+  }
+  const auto off = [](const PictureMean& m) {
+    double sum = 0;
+    for (const Rgb& p : m.mean().pixels)
+      for (int c = 0; c < 3; ++c) sum += std::abs(static_cast<double>(p[c]) - 1) / 60000;
+    return sum;
+  };
+  EXPECT_NEAR(off(mean), 0.2 * std::sqrt(2 / 3.14159265 / 3), 0.02 * off(mean));
+  EXPECT_NEAR(mean.noise(), off(mean), 0.03 * off(mean));
+  EXPECT_GT(off(equal), 1.3 * off(mean));
+}
+
 TEST(PictureMean, NothingIsKnownOfOnePicture) {
   PictureMean mean;
   mean.add(image::Image(2, 2, Rgb(1)));
