@@ -80,7 +80,8 @@ TEST(Enlarged, OfTheSameSizeIsThePicture) {
 
 // A texture of three pixels, of which the small picture has one and a half, under light that changes slowly.
 TEST(Enlarged, TexturesComeBack) {
-  const Image albedo = painted(kWidth, kHeight, [](int x, int y) { return Rgb((x / 3 + y / 3) % 2 ? 0.8f : 0.3f); });
+  const Image albedo =
+      painted(kWidth, kHeight, [](int x, int y) { return Rgb((x / 3 + y / 3) % 2 ? 0.8f : 0.3f); });
   Image truth = albedo;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) truth.at(x, y) *= 1 + static_cast<float>(x) / kWidth;
