@@ -8,8 +8,9 @@ namespace {
 
 // Sizes of passes in eighths: a smaller one is not worth its receivers, a larger one not its lights.
 constexpr int kMinOfFirst = 3, kMin = 2, kMax = 12;
-// Passes that there shall be at least: their halves tell the noise.
-constexpr int kWantedPasses = 3;
+// Passes that there shall be: their halves tell the noise. But two that are larger are better than three
+// below this size.
+constexpr int kWantedPasses = 3, kMinOfThree = 4;
 // Of what is left a pass is planned for, since no two take the same time.
 constexpr double kPlanned = 0.98;
 constexpr double kLeastSeconds = 1e-3;
@@ -40,7 +41,7 @@ int PassPlan::next(double left) const {
   const int least = first ? kMinOfFirst : kMin;
   int passes = static_cast<int>(std::clamp(std::round(planned / whole()), 1.0, 65536.0));
   passes = std::max(passes, kWantedPasses - passes_);
-  while (passes > 1 && in_one_of(passes) < least) --passes;
+  while (passes > 1 && in_one_of(passes) < (passes_ + passes < kWantedPasses ? least : kMinOfThree)) --passes;
   const int eighths = in_one_of(passes);
   if (eighths >= least) return eighths;
   return first ? kMinOfFirst : 0;

@@ -39,7 +39,8 @@ TEST(PassPlan, UsesTheWholeBudgetAndNoMore) {
 }
 
 TEST(PassPlan, ThereAreThreePassesWhereTheyFit) {
-  EXPECT_EQ(spend(4, 0.8, 0.15, 1).eighths.size(), 3u);
+  EXPECT_EQ(spend(5.2, 0.8, 0.15, 1).eighths.size(), 3u);
+  EXPECT_EQ(spend(4, 0.8, 0.15, 1).eighths.size(), 2u);  // three of three eighths would
   EXPECT_GE(spend(8, 0.8, 0.15, 1).eighths.size(), 4u);
   // Nothing fits, yet there shall be a picture.
   EXPECT_EQ(spend(0.5, 0.8, 0.15, 1).eighths, std::vector<int>{3});
