@@ -249,7 +249,8 @@ class PassRun {
   // A film of half the width and height, enlarged, is better than none.
   void choose_size(int at_least) {
     const double whole = expected_.total() * (1 + rest_share());  // a pass of the whole film
-    const double passes = std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass);
+    const double passes =
+        picture_->denoising().wanted() ? std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass) : 1;
     if (passes * expected_.total() > left()) at_least = 2;
     int divisor = 1;
     const bool may = is_whole_film(task_.view);
@@ -379,7 +380,9 @@ class PassRun {
   bool may_be_half(double one_feature) {
     const double path = rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
                         static_cast<double>(view_.height);
-    if (!is_whole_film(task_.view) || left() > paths_worth_a_pixel(view_) * path) return false;
+    if (!is_whole_film(task_.view) || !picture_->denoising().wanted() ||
+        left() > paths_worth_a_pixel(view_) * path)
+      return false;
     picture_->make_smaller(2);
     const double before = features_expected_;
     features_expected_ = picture_->denoising().feature_seconds(one_feature, left());

@@ -18,6 +18,8 @@ namespace lumirank::pipeline {
 namespace {
 
 constexpr int kUsualPaths = 64, kMaxPaths = 1 << 20;
+// Fewer are no picture where nothing denoises them, and a smaller film is enlarged without features.
+constexpr double kFewPaths = 2;
 // Before a target for the error is believed.
 constexpr int kPathsBeforeError = 16;
 // A part of the film of this many times fewer pixels a side tells what a path takes.
@@ -87,7 +89,7 @@ class PathRun {
     if (!trial.add(1, sinks_)) throw Cancelled();
     double path = timer.seconds() * pixels(view_) / pixels(small);  // for each pixel
     seconds_["pilot"] = timer.seconds();
-    const double worth = paths_worth_a_pixel(view_);
+    const double worth = denoising_.wanted() ? paths_worth_a_pixel(view_) : kFewPaths;
     const double features = denoising_.seconds_of_feature(*task_.world, small, feature_recipe(), sinks_) *
                             pixels(view_) / pixels(small);
     const double enough = task_.build_seconds + denoising_.seconds() +

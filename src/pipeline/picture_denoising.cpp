@@ -112,7 +112,7 @@ bool PictureDenoising::trace_another(int number, const Sinks& sinks) {
 }
 
 int PictureDenoising::edge_samples(double one_everywhere, double left) const {
-  if (settings_.view.film_samples) return std::max(0, *settings_.view.film_samples - kEverywhere);
+  if (settings_.view.film_samples) return std::max(0, *settings_.view.film_samples - samples_everywhere());
   return samples_for("edge_samples", one_everywhere * features_->differing(), left,
                      {kMinEdgeSamples, kEdgeSamples});
 }
