@@ -24,8 +24,10 @@ struct PathFilmHalf {
     }
   };
   std::vector<Sum> emission, direct, indirect;
+  std::vector<double> squares;  // of the luminance of what surfaces send
   int count = 0;
-  explicit PathFilmHalf(std::size_t pixels) : emission(pixels), direct(pixels), indirect(pixels) {}
+  explicit PathFilmHalf(std::size_t pixels)
+      : emission(pixels), direct(pixels), indirect(pixels), squares(pixels) {}
 };
 
 namespace {
@@ -165,11 +167,19 @@ struct PathFilm::Impl {
       half.emission[p].add(radiance.emission * at.weight);
       half.direct[p].add(radiance.direct * at.weight);
       half.indirect[p].add(radiance.indirect * at.weight);
+      half.squares[p] +=
+          square(sent_luminance(radiance.direct, radiance.indirect) * static_cast<double>(at.weight));
     }
   }
 
   ImageParts wanted() const { return {options.emission, options.direct, options.indirect}; }
   ImageParts sent() const { return {false, options.direct, options.indirect}; }
+  double sent_luminance(Rgb direct, Rgb indirect) const {
+    Rgb sum{0};
+    if (options.direct) sum += direct;
+    if (options.indirect) sum += indirect;
+    return static_cast<double>(luminance(sum));
+  }
 
   image::Image difference(ImageParts parts) const {
     const PathFilmHalf *a[] = {&halves[0]}, *b[] = {&halves[1]};
@@ -208,6 +218,9 @@ struct PathFilm::Impl {
         const std::size_t p =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
         (splat.direct ? sums.direct : sums.indirect)[p].add(splat.value * pixel.weight);
+        sums.squares[p] +=
+            square(sent_luminance(splat.direct ? splat.value : Rgb{}, splat.direct ? Rgb{} : splat.value) *
+                   static_cast<double>(pixel.weight));
       }
   }
 };
@@ -233,6 +246,19 @@ image::Image PathFilm::halves_difference() const { return impl_->difference(impl
 image::Image PathFilm::sent() const {
   const PathFilmHalf* const both[] = {&impl_->halves[0], &impl_->halves[1]};
   return mean_image(impl_->view, both, impl_->sent());
+}
+
+std::vector<float> PathFilm::sent_deviation() const {
+  const Impl& m = *impl_;
+  const image::Image mean = sent();
+  const double count = std::max(1, m.result.spp);
+  std::vector<float> deviation(mean.pixels.size());
+  for (std::size_t p = 0; p < deviation.size(); ++p) {
+    const double squares = (m.halves[0].squares[p] + m.halves[1].squares[p]) / count;
+    const double variance = squares - square(static_cast<double>(luminance(mean.pixels[p])));
+    deviation[p] = static_cast<float>(std::sqrt(std::max(0.0, variance) / count));
+  }
+  return deviation;
 }
 
 image::Image PathFilm::sent_difference() const { return impl_->difference(impl_->sent()); }

@@ -59,6 +59,8 @@ class PathFilm {
   // Both without the emission that is seen straight, by mirrors or through glass.
   image::Image sent() const;
   image::Image sent_difference() const;
+  // Standard deviation of the luminance of sent(), as the paths of each pixel say.
+  std::vector<float> sent_deviation() const;
 
  private:
   struct Impl;

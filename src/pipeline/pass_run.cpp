@@ -461,7 +461,7 @@ class PassRun {
       done += more;
       if (!own_emission_ && !features_of_paths()) return false;
       report_progress(0);
-      if (previews_ && throttle_.due()) throttle_.show(finished(to_denoise()));
+      if (previews_ && throttle_.due()) throttle_.show(finished(with_all_noise()));
     }
   }
 
@@ -482,7 +482,12 @@ class PassRun {
   bool is_smaller() const { return view_.width < whole_.width || view_.height < whole_.height; }
   bool has_own_emission() const { return by_paths_ && own_emission_; }
   // What has noise; and a picture of that kind with all that it lacks.
-  image::Image to_denoise() const { return has_own_emission() ? paths_->picture() : sent(); }
+  image::Image with_all_noise() const { return has_own_emission() ? paths_->picture() : sent(); }
+  image::Image to_denoise() const {
+    if (!by_paths_) return with_all_noise();
+    image::Image clean = pipeline::without_specks(paths_->film(), has_own_emission());
+    return has_own_emission() ? clean : picture_->with_mirrored(std::move(clean));
+  }
   Picture finished(const image::Image& image) const {
     return sized_for(has_own_emission() ? image : picture_->with_emission(image), task_.view);
   }
@@ -498,11 +503,11 @@ class PassRun {
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
-    const image::Image all = to_denoise();
+    const image::Image all = with_all_noise();
     result_.picture = finished(all);
     if (!result_.interrupted) {
       const Timer timer;
-      if (const auto denoised = picture_->denoising().denoised(all, difference())) {
+      if (const auto denoised = picture_->denoising().denoised(to_denoise(), difference())) {
         std::vector<float> before = std::move(result_.picture.planes[0].rgb);
         result_.picture = is_smaller() ? to_picture(picture_->enlarged_with_emission(denoised->picture))
                                        : finished(denoised->picture);

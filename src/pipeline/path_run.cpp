@@ -163,9 +163,9 @@ class PathRun {
     if (result_.interrupted) return;
     // What is seen straight comes by features of the larger film.
     const bool apart = view_.width < task_.view.width && options_.emission && denoising_.traced();
-    image::Image traced = apart ? film_->sent() : film_->result().image;
-    if (apart) image::add_to(traced, denoising_.mirrored(traced));
     const Timer timer;
+    image::Image traced = without_specks(*film_, options_.emission && !apart);
+    if (apart) image::add_to(traced, denoising_.mirrored(traced));
     const image::Image difference = paths() < PictureDenoising::kPathsForNoise ? image::Image{}
                                     : apart                                    ? film_->sent_difference()
                                                                                : film_->halves_difference();

@@ -29,6 +29,7 @@ class PathsBeside {
   // Of what surfaces send, as passes have it.
   image::Image sent() const { return film_.sent(); }
   image::Image sent_difference() const { return film_.sent_difference(); }
+  const pathtrace::PathFilm& film() const { return film_; }
 
  private:
   pathtrace::ReferenceOptions options_;

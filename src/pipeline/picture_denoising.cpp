@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/timer.h"
 #include "denoise/enlarging.h"
+#include "denoise/specks.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -29,6 +30,12 @@ constexpr double kTimeOfEdges = 0.08;
 constexpr int kGlaringSamples = 48;
 
 }  // namespace
+
+image::Image without_specks(const pathtrace::PathFilm& film, bool with_emission) {
+  image::Image sent = denoise::without_specks(film.sent(), film.sent_deviation());
+  if (with_emission) image::add_to(sent, film.result().emission);
+  return sent;
+}
 
 PictureDenoising::PictureDenoising(const RenderSettings& settings, const View& view,
                                    methods::TimedChoices& choices, const Sinks& sinks, double pixel_seconds)

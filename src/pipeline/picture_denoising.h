@@ -12,9 +12,14 @@
 #include "image/image.h"
 #include "lumirank/settings.h"
 #include "methods/common/timed_choices.h"
+#include "pathtrace/reference.h"
 #include "pipeline/pixel_features.h"
 
 namespace lumirank::pipeline {
+
+// What the paths say of the picture, without specks (denoise/specks.h); with the emission that they see, or
+// what surfaces send alone.
+image::Image without_specks(const pathtrace::PathFilm& film, bool with_emission);
 
 class PictureDenoising {
  public:

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pathtrace/reference.h"
 #include "support/scenes.h"
 
@@ -35,6 +37,38 @@ TEST(PathFilm, WhatSurfacesSendIsAllButEmission) {
       EXPECT_EQ(sent.pixels[p][c], surfaces.result().image.pixels[p][c]);
       EXPECT_EQ(difference.pixels[p][c], other.pixels[p][c]);
     }
+}
+
+// What pixels say of their own noise, against what pictures by other paths differ by. Paths of a pixel are
+// spread evenly, so they differ by no more.
+TEST(PathFilm, DeviationIsThatOfOtherPaths) {
+  test::SceneMaker scene;
+  scene.box_inside(1, scene.diffuse({0.7f, 0.6f, 0.5f}));
+  scene.lamp({0, 0.2f, 0.9f}, {0, 0.3f, 0}, {0.3f, 0, 0}, Rgb(4), scene.diffuse(Rgb(0.2f)));
+  scene.desc.sensors.push_back(test::sensor({0, 0, -0.9f}, {0, 0, 1}, {0, 1, 0}, 80, 12, 8));
+  const world::World world = scene.build();
+  const world::View view = world::make_view(scene.desc, {});
+  constexpr int kPictures = 48;
+  double told = 0, sum[96] = {}, squares[96] = {};
+  for (int k = 0; k < kPictures; ++k) {
+    ReferenceOptions options;
+    options.seed = 100 + static_cast<std::uint64_t>(k);
+    options.light_paths = 1;
+    PathFilm film(world, view, options);
+    ASSERT_TRUE(film.add(16, {}));
+    const Image sent = film.sent();
+    const std::vector<float> deviation = film.sent_deviation();
+    ASSERT_EQ(deviation.size(), 96u);
+    for (std::size_t p = 0; p < 96; ++p) {
+      const auto y = static_cast<double>(luminance(sent.pixels[p]));
+      sum[p] += y, squares[p] += y * y;
+      told += std::pow(static_cast<double>(deviation[p]), 2) / kPictures;
+    }
+  }
+  double found = 0;
+  for (int p = 0; p < 96; ++p) found += (squares[p] - sum[p] * sum[p] / kPictures) / (kPictures - 1);
+  EXPECT_GT(told, 0.8 * found);
+  EXPECT_LT(told, 2.5 * found);
 }
 
 }  // namespace
