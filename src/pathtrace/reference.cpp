@@ -24,10 +24,11 @@ struct PathFilmHalf {
     }
   };
   std::vector<Sum> emission, direct, indirect;
-  std::vector<double> squares;  // of the luminance of what surfaces send
+  // Of the luminance of what surfaces send: of paths from the eye; and the squares of all paths.
+  std::vector<double> by_eye, squares;
   int count = 0;
   explicit PathFilmHalf(std::size_t pixels)
-      : emission(pixels), direct(pixels), indirect(pixels), squares(pixels) {}
+      : emission(pixels), direct(pixels), indirect(pixels), by_eye(pixels), squares(pixels) {}
 };
 
 namespace {
@@ -167,8 +168,10 @@ struct PathFilm::Impl {
       half.emission[p].add(radiance.emission * at.weight);
       half.direct[p].add(radiance.direct * at.weight);
       half.indirect[p].add(radiance.indirect * at.weight);
-      half.squares[p] +=
-          square(sent_luminance(radiance.direct, radiance.indirect) * static_cast<double>(at.weight));
+      const double light =
+          sent_luminance(radiance.direct, radiance.indirect) * static_cast<double>(at.weight);
+      half.by_eye[p] += light;
+      half.squares[p] += light * light;
     }
   }
 
@@ -218,9 +221,10 @@ struct PathFilm::Impl {
         const std::size_t p =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
         (splat.direct ? sums.direct : sums.indirect)[p].add(splat.value * pixel.weight);
-        sums.squares[p] +=
-            square(sent_luminance(splat.direct ? splat.value : Rgb{}, splat.direct ? Rgb{} : splat.value) *
-                   static_cast<double>(pixel.weight));
+        const double light =
+            sent_luminance(splat.direct ? splat.value : Rgb{}, splat.direct ? Rgb{} : splat.value) *
+            static_cast<double>(pixel.weight);
+        sums.squares[p] += light * light;
       }
   }
 };
@@ -250,12 +254,12 @@ image::Image PathFilm::sent() const {
 
 std::vector<float> PathFilm::sent_deviation() const {
   const Impl& m = *impl_;
-  const image::Image mean = sent();
   const double count = std::max(1, m.result.spp);
-  std::vector<float> deviation(mean.pixels.size());
-  for (std::size_t p = 0; p < deviation.size(); ++p) {
-    const double squares = (m.halves[0].squares[p] + m.halves[1].squares[p]) / count;
-    const double variance = squares - square(static_cast<double>(luminance(mean.pixels[p])));
+  std::vector<float> deviation(m.pixels);
+  for (std::size_t p = 0; p < m.pixels; ++p) {
+    const double by_eye = (m.halves[0].by_eye[p] + m.halves[1].by_eye[p]) / count;
+    // How many light paths come to a pixel is itself random, so their mean is not taken off.
+    const double variance = (m.halves[0].squares[p] + m.halves[1].squares[p]) / count - by_eye * by_eye;
     deviation[p] = static_cast<float>(std::sqrt(std::max(0.0, variance) / count));
   }
   return deviation;
