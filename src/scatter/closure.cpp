@@ -304,7 +304,9 @@ int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[
   return n;
 }
 
-Rgb albedo(const Closure& closure, Vec3f wo) {
+namespace {
+
+Rgb albedo(const Closure& closure, Vec3f wo, bool roughly) {
   const Incident in = incident(closure, wo);
   Rgb sum(0);
   for (int k = 0; k < closure.count; ++k) {
@@ -313,11 +315,18 @@ Rgb albedo(const Closure& closure, Vec3f wo) {
     if (is_delta(lobe.kind)) {
       if (follow_delta(closure, in, lobe, wo, delta)) sum += delta.coefficient;
     } else if (in.valid) {
-      sum += lobe_albedo(view_from(lobe, in.side > 0), in.wo);
+      LobeView view = view_from(lobe, in.side > 0);
+      view.roughly = roughly;
+      sum += lobe_albedo(view, in.wo);
     }
   }
   return clamp_below(sum, 1);
 }
+
+}  // namespace
+
+Rgb albedo(const Closure& closure, Vec3f wo) { return albedo(closure, wo, false); }
+Rgb rough_albedo(const Closure& closure, Vec3f wo) { return albedo(closure, wo, true); }
 
 float shading_correction(const Closure& closure, Vec3f wo, Vec3f wi) {
   if (closure.is_fiber()) return 1;

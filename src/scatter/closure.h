@@ -248,6 +248,8 @@ int delta_continuations(const Closure& closure, Vec3f wo, DeltaContinuation out[
 // exact for diffuse, plastic's base and delta lobes, otherwise by a table or a rule of 55 fixed draws (to
 // about 0.03). For Russian roulette and AOVs.
 Rgb albedo(const Closure& closure, Vec3f wo);
+// The same within 0.12, in a quarter of the time: for ratios of it, and as a feature.
+Rgb rough_albedo(const Closure& closure, Vec3f wo);
 
 // Factor by which a particle's throughput must be multiplied beside sample(…, adjoint)'s weight where the
 // shading normal is not the geometric one: |wo·ns||wi·ng| / (|wo·ng||wi·ns|) (Veach 1997, section 5.3). wo:

@@ -7,11 +7,11 @@
 namespace lumirank::scatter {
 Rgb quadrature_albedo(LobeView view, Vec3f wo) {
   // A Fibonacci lattice: no two-dimensional rule of so few points is much better.
-  constexpr int count = 55, step = 34;
+  const int count = view.roughly ? 13 : 55, step = view.roughly ? 8 : 34;
   Rgb sum(0);
   for (int k = 0; k < count; ++k) {
-    const Vec2f u{(static_cast<float>(k) + 0.5f) / count,
-                  (static_cast<float>(k * step % count) + 0.5f) / count};
+    const Vec2f u{(static_cast<float>(k) + 0.5f) / static_cast<float>(count),
+                  (static_cast<float>(k * step % count) + 0.5f) / static_cast<float>(count)};
     Vec3f wi;
     if (!lobe_sample(view, wo, u, wi)) continue;
     const float pdf = lobe_pdf(view, wo, wi);

@@ -13,8 +13,9 @@ namespace lumirank::scatter {
 
 struct LobeView {
   const Lobe& lobe;
-  float eta;     // index of the far side over that of wo's side
-  bool outside;  // wo is on the outside, where coats are
+  float eta;             // index of the far side over that of wo's side
+  bool outside;          // wo is on the outside, where coats are
+  bool roughly = false;  // albedos are wanted fast
 };
 
 inline LobeView view_from(const Lobe& lobe, bool outside) {
@@ -26,7 +27,7 @@ Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi);
 float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi);
 bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
 // Albedo at cosine wo.z: exact for diffuse and plastic's base, from a table for isotropic microfacets, else
-// by a fixed rule of 55 draws.
+// by a fixed rule of 55 draws, or of 13.
 Rgb lobe_albedo(LobeView view, Vec3f wo);
 // Cheap estimate of the albedo's mean over channels, to choose among lobes; positive for every lobe not
 // black.

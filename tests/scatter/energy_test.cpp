@@ -33,7 +33,7 @@ TEST_P(EveryBsdfEnergy, AlbedoIsAtMostOne) {
       const Rgb weight = s ? s->weight : Rgb(0);
       for (int k = 0; k < 3; ++k) returned[static_cast<std::size_t>(k)].add(weight[k]);
     }
-    const Rgb stated = albedo(closure, wo);
+    const Rgb stated = albedo(closure, wo), rough = rough_albedo(closure, wo);
     for (int k = 0; k < 3; ++k) {
       const RunningMean& energy = returned[static_cast<std::size_t>(k)];
       const double mean = energy.mean(), noise = kSigmas * energy.standard_error() + 1e-5;
@@ -41,6 +41,7 @@ TEST_P(EveryBsdfEnergy, AlbedoIsAtMostOne) {
         EXPECT_LE(mean, 1 + noise) << c.name << " at cosine " << cos_theta;
       }
       EXPECT_LE(stated[k], 1) << c.name;
+      EXPECT_NEAR(rough[k], stated[k], 0.12f) << c.name << " at cosine " << cos_theta;
       // Lossless delta and Lambertian lobes: no noise at all.
       if (c.lossless) {
         EXPECT_NEAR(mean, 1, 1e-5) << c.name << " at cosine " << cos_theta;

@@ -71,7 +71,7 @@ void EyeChain::add_receiver(const world::SurfaceHit& hit, const Closure& closure
     v.closure = pool->add(closure, v.normal);
   } else {
     const Closure seen = scatter::broad_part(closure, 0);
-    v.albedo = scatter::albedo(seen, v.wo);
+    v.albedo = scatter::rough_albedo(seen, v.wo);
     v.roughness = seen.roughness();
   }
   out.push_back(v);

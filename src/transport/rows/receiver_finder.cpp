@@ -61,7 +61,7 @@ ReceiverFinder::ReceiverFinder(const Receivers& receivers, Vec2i corner)
     for (std::size_t i = begin; i < end; ++i)
       albedo_[i] = receivers.closure[i] == Receivers::kLambertian
                        ? receivers.albedo[i]
-                       : scatter::albedo(receivers.closure_at(i), receivers.wo[i]);
+                       : scatter::rough_albedo(receivers.closure_at(i), receivers.wo[i]);
   });
 }
 
