@@ -64,6 +64,8 @@ struct EnvironmentEmitter {
   Frame to_world;             // s, t, n: the local x, y, z axes in the world
   Distribution1D rows;        // by luminance × sinθ
   std::vector<Distribution1D> columns;
+  std::vector<double> edges;        // cosines of the polar angles between rows, from 1 to -1
+  std::vector<float> solid_angles;  // of a texel, by rows
 
   Rgb eval(Vec3f direction) const;  // radiance that arrives from `direction` (unit, away from the scene)
   struct Sample {

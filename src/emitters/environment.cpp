@@ -89,6 +89,11 @@ EnvironmentEmitter make_environment(int width, int height, std::vector<Rgb> radi
     }
   });
   e.rows = Distribution1D(row_sums);
+  const double step = 3.14159265358979323846 / height;
+  for (int y = 0; y <= height; ++y) e.edges.push_back(std::cos(y * step));
+  for (std::size_t y = 0; y < e.columns.size(); ++y)
+    e.solid_angles.push_back(
+        static_cast<float>((e.edges[y] - e.edges[y + 1]) * 2 * 3.14159265358979323846 / width));
   return e;
 }
 
@@ -117,12 +122,6 @@ Rgb lookup(const EnvironmentEmitter& e, Vec2f position) {
               fy);
 }
 
-// Solid angle of a texel in row y.
-float texel_solid_angle(const EnvironmentEmitter& e, int y) {
-  const double step = 3.14159265358979323846 / e.height;
-  return static_cast<float>(moment0(y * step, (y + 1) * step) * 2 * 3.14159265358979323846 / e.width);
-}
-
 }  // namespace
 
 Rgb EnvironmentEmitter::eval(Vec3f direction) const {
@@ -135,19 +134,19 @@ EnvironmentEmitter::Sample EnvironmentEmitter::sample(Vec2f u) const {
   const auto row = rows.sample(u.y);
   const auto column = columns[row.index].sample(u.x);
   // Uniform in solid angle within the texel: the cosine of the polar angle is linear.
-  const double step = 3.14159265358979323846 / height;
-  const double c0 = std::cos(static_cast<double>(row.index) * step);
-  const double c1 = std::cos(static_cast<double>(row.index + 1) * step);
+  const double c0 = edges[row.index], c1 = edges[row.index + 1];
   const double cosine = std::clamp(c0 + (c1 - c0) * row.remapped, -1.0, 1.0);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double phi =
-      (static_cast<double>(column.index) + column.remapped) / width * 2 * 3.14159265358979323846;
+  const double x = static_cast<double>(column.index) + column.remapped;
+  const double phi = x / width * 2 * 3.14159265358979323846;
   const Vec3f local{static_cast<float>(sine * std::sin(phi)), static_cast<float>(cosine),
                     static_cast<float>(-sine * std::cos(phi))};
   Sample s;
   s.direction = to_world.to_world(local);
-  s.radiance = eval(s.direction);
-  s.pdf = row.pmf * column.pmf / texel_solid_angle(*this, static_cast<int>(row.index));
+  const double y = std::atan2(sine, cosine) / 3.14159265358979323846 * height;
+  s.radiance =
+      width == 1 && height == 1 ? radiance[0] : lookup(*this, {static_cast<float>(x), static_cast<float>(y)});
+  s.pdf = row.pmf * column.pmf / solid_angles[row.index];
   return s;
 }
 
@@ -157,7 +156,7 @@ float EnvironmentEmitter::pdf(Vec3f direction) const {
   const int x = std::clamp(static_cast<int>(p.x), 0, width - 1);
   const int y = std::clamp(static_cast<int>(p.y), 0, height - 1);
   const auto row = static_cast<std::size_t>(y);
-  return rows.pmf(row) * columns[row].pmf(static_cast<std::size_t>(x)) / texel_solid_angle(*this, y);
+  return rows.pmf(row) * columns[row].pmf(static_cast<std::size_t>(x)) / solid_angles[row];
 }
 
 }  // namespace lumirank::emitters

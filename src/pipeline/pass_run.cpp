@@ -452,8 +452,7 @@ class PassRun {
       if (!earlier && paths_->paths() >= kPathsForError && paths_->error() < asked_.method.target_error)
         return true;
       const double each = paths_->seconds() / paths_->paths();
-      const std::int64_t wanted =
-          earlier ? *earlier - done : static_cast<std::int64_t>(std::max(0.0, left()) / each);
+      const std::int64_t wanted = earlier ? *earlier - done : paths_that_fit(left(), each, asked_.time);
       if (wanted < 1) return true;
       const auto more =
           std::min(wanted, std::max<std::int64_t>(1, static_cast<std::int64_t>(kPathsAtOnce / each)));

@@ -9,6 +9,7 @@
 #include "pathtrace/reference.h"
 #include "pipeline/develop.h"
 #include "pipeline/light_path_pilot.h"
+#include "pipeline/paths_beside.h"
 #include "pipeline/picture_denoising.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
@@ -151,8 +152,7 @@ class PathRun {
     const double each = seconds_["paths"] / paths();
     const double at_once = std::clamp(kAtOnce / std::max(each, 1e-9), 1.0, 1.0 * kMaxPaths);
     int more = std::min(wanted_ - paths(), static_cast<int>(at_once));
-    if (timed() && wanted_ == kMaxPaths)
-      more = std::min(more, static_cast<int>(std::max(0.0, left()) / each));
+    if (timed() && wanted_ == kMaxPaths) more = std::min(more, paths_that_fit(left(), each, asked_.time));
     return more;
   }
 

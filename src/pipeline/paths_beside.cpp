@@ -22,6 +22,8 @@ pathtrace::ReferenceOptions all_light(const world::World& world, const View& vie
   return options;
 }
 
+constexpr double kLateOfPath = 0.3, kLateOfBudget = 0.01;
+
 // Over what is usual around a pixel: a pixel's own noise is in its own value, and few paths that found
 // something bright would hide how bright that was.
 constexpr int kAround = 16;
@@ -86,6 +88,11 @@ double own_emission_over_apart(const image::Image& picture, const image::Image& 
     apart += std::hypot(fewer * size(sent.pixels[p]), std::sqrt(paths_now / samples) * of_emission);
   }
   return apart > 0 ? own / apart : 1;
+}
+
+int paths_that_fit(double left, double each, double budget) {
+  const double late = std::min(kLateOfPath * each, kLateOfBudget * budget);
+  return static_cast<int>(std::clamp((left + late) / each, 0.0, 1.0 * (1 << 20)));
 }
 
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,

@@ -37,6 +37,11 @@ class PathsBeside {
   double seconds_ = 0;
 };
 
+// Paths for each pixel that fit into `left` seconds of a budget, where one takes so long. The last of them
+// may end a hundredth of the budget late, by less than a third of itself: no path can be divided, and on the
+// average as much as half of one would be left unused.
+int paths_that_fit(double left, double each, double budget);
+
 // An estimate of a picture, with a difference that is twice its noise.
 struct NoisyPicture {
   image::Image picture, difference;

@@ -69,5 +69,15 @@ TEST(PathsBeside, WithoutEmissionBothAreAlike) {
   EXPECT_EQ(own_emission_over_apart(black, black, black, 8, 32), 1);
 }
 
+TEST(PathsThatFit, MayEndALittleLate) {
+  EXPECT_EQ(paths_that_fit(5, 1, 100), 5);
+  EXPECT_EQ(paths_that_fit(4.75, 1, 100), 5)
+      << "by less than a third of a path, and a hundredth of the budget";
+  EXPECT_EQ(paths_that_fit(4.65, 1, 100), 4);
+  EXPECT_EQ(paths_that_fit(4.85, 1, 10), 4);
+  EXPECT_EQ(paths_that_fit(-3, 1, 10), 0);
+  EXPECT_GT(paths_that_fit(10, 1e-9, 10), 1000000);
+}
+
 }  // namespace
 }  // namespace lumirank::pipeline
