@@ -216,7 +216,7 @@ class Scene:
 
     def __init__(self, comment, camera, fov, film, depth=-1):
         origin, target = camera
-        self.meshes = {}
+        self.meshes, self.inside = {}, {}
         self.lines = [
             f"<!-- {comment} Written by {pathlib.Path(sys.argv[0]).name}. -->",
             '<scene version="3.0.0">',
@@ -239,6 +239,13 @@ class Scene:
         self.meshes[name] = Mesh()
         return self.meshes[name]
 
+    def single(self, name, body, inside=""):
+        """A material that is another one from behind; `inside`: XML of each shape that has it, as a medium."""
+        self.lines.append("\t" + body.replace("<bsdf ", f'<bsdf id="{name}" ', 1))
+        self.meshes[name] = Mesh()
+        self.inside[name] = inside
+        return self.meshes[name]
+
     def spot(self, origin, target, intensity, cutoff, beam):
         self.emitters.append(f'<emitter type="spot"><transform name="to_world"><lookat origin="{text(origin)}" target="{text(target)}" up="0, 0, 1"/></transform>' +
                              rgb("intensity", intensity) + number("cutoff_angle", cutoff) + number("beam_width", beam) + "</emitter>")
@@ -248,7 +255,7 @@ class Scene:
 
     def sun_and_sky(self, towards, scale):
         # In Mitsuba 3 the sky's own frame has +z up.
-        self.emitters.append('<emitter type="sunsky">' + number("turbidity", 3) + number("scale", scale) +
+        self.emitters.append('<emitter type="sunsky">' + number("turbidity", 3) + (number("sun_scale", scale) + number("sky_scale", scale) if scale != 1 else "") +
                              f'<vector name="sun_direction" value="{text(towards)}"/><transform name="to_world"><rotate x="1" angle="-90"/></transform></emitter>')
 
     def lamp(self, center, u, v, radiance):
@@ -266,7 +273,7 @@ class Scene:
                 continue
             mesh.write(folder / f"{name}.ply")
             total += len(mesh.triangles)
-            lines.append(f'\t<shape type="ply"><string name="filename" value="{name}.ply"/><ref id="{name}"/></shape>')
+            lines.append(f'\t<shape type="ply"><string name="filename" value="{name}.ply"/><ref id="{name}"/>{self.inside.get(name, "")}</shape>')
         (folder / "scene.xml").write_text("\n".join(lines + ["</scene>"]) + "\n")
         return total
 
