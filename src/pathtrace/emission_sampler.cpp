@@ -14,9 +14,6 @@ using emitters::PointEmitter;
 using emitters::ProfileEmitter;
 using emitters::SpotEmitter;
 
-// So much of all starts is spread evenly over emitters, the rest by their power.
-constexpr float kEvenShare = 0.1f;
-
 float disc_pdf(const DirectionalEmitter& sun) { return 1 / (2 * kPi * (1 - sun.cos_half_angle)); }
 
 // Per solid angle, for those that shine from a point.
@@ -36,32 +33,26 @@ struct PointPdf {
 }  // namespace
 
 EmissionSampler::EmissionSampler(const world::World& world)
-    : world_(world), probabilities_(world.emitters().size()), disc_(kPi * square(world.bounds().radius())) {
-  std::vector<float> weights;
-  float sum = 0;
-  for (std::size_t e = 0; e < world.emitters().size(); ++e) {
-    const emitters::Emitter& emitter = world.emitters()[e];
-    const float power = mean(emitters::power(emitter, world.bounds().radius()));
-    if (!(power > 0)) continue;
-    const auto* sun = std::get_if<DirectionalEmitter>(&emitter.kind);
-    if (sun && sun->cos_half_angle < 1) suns_.push_back(static_cast<int>(e));
-    emitters_.push_back(static_cast<int>(e)), weights.push_back(power);
-    sum += power;
+    : world_(world),
+      choice_(world),
+      probabilities_(world.emitters().size()),
+      disc_(kPi * square(world.bounds().radius())) {
+  for (std::size_t k = 0; k < choice_.size(); ++k) {
+    const auto e = static_cast<std::size_t>(choice_.emitter(k));
+    probabilities_[e] = static_cast<float>(choice_.probability(k));
+    const auto* sun = std::get_if<DirectionalEmitter>(&world.emitters()[e].kind);
+    if (sun && sun->cos_half_angle < 1) suns_.push_back(choice_.emitter(k));
   }
-  for (float& w : weights) w += kEvenShare * sum / static_cast<float>(weights.size());
-  choice_ = Distribution1D(weights);
-  for (std::size_t k = 0; k < emitters_.size(); ++k)
-    probabilities_[static_cast<std::size_t>(emitters_[k])] = choice_.pmf(k);
 }
 
 std::optional<EmissionSampler::Start> EmissionSampler::sample(SampleStream& random) const {
   const auto choice = random.next_fine();
-  const auto chosen = choice_.sample(static_cast<float>(choice.x));
+  const auto chosen = choice_.draw(choice.x);
   Start start;
-  start.emitter = emitters_[chosen.index];
+  start.emitter = chosen.emitter;
   const Vec2f position = random.next_2d();
   const auto emission = world_.sample_emission(start.emitter, choice.y, position, random.next_2d());
-  start.flux = emission.weight / chosen.pmf;
+  start.flux = emission.weight / static_cast<float>(chosen.probability);
   if (!(max_component(start.flux) > 0)) return std::nullopt;
   start.triangle = emission.triangle;
   start.ray = {emission.origin, emission.direction};

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/distribution.h"
 #include "base/sample_stream.h"
+#include "world/emitter_choice.h"
 #include "world/light_sampler.h"
 #include "world/world.h"
 
@@ -19,7 +19,7 @@ class EmissionSampler {
  public:
   explicit EmissionSampler(const world::World& world);
 
-  bool empty() const { return !(choice_.total() > 0); }
+  bool empty() const { return choice_.empty(); }
 
   struct Start {
     geometry::Ray ray;
@@ -41,11 +41,10 @@ class EmissionSampler {
 
  private:
   const world::World& world_;
-  std::vector<int> emitters_;         // those that shine
+  world::EmitterChoice choice_;
   std::vector<float> probabilities_;  // of all emitters
   std::vector<int> suns_;             // with a disc
-  Distribution1D choice_;
-  float disc_ = 0;  // area over which the starts of far emitters are spread
+  float disc_ = 0;                    // area over which the starts of far emitters are spread
 };
 
 }  // namespace lumirank::pathtrace

@@ -7,36 +7,25 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "matrix/metered_matrix.h"
 #include "methods/common/timed_choices.h"
-#include "pipeline/compensation.h"
 #include "pipeline/develop.h"
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
 #include "pipeline/pass_picture.h"
 #include "pipeline/pass_plan.h"
+#include "pipeline/pass_tracer.h"
 #include "pipeline/path_run.h"
 #include "pipeline/paths_beside.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
 #include "pipeline/rest_tracing.h"
+#include "pipeline/short_budget.h"
 #include "pipeline/smaller_film.h"
 
 namespace lumirank::pipeline {
 namespace {
 
 constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
-// Lights of a pass, for the root of the pixels: a small picture shows as much of a room as a large one, whose
-// receivers pay for better records.
-constexpr double kLightsOfRoot = 40;
-constexpr std::size_t kMinLightsOfPass = 1000, kMaxLightsOfPass = 120000;
-// Samples of traced direct light, and paths of sharp lobes, for each receiver of a pass.
-constexpr int kDirectOfPass = 1, kLocalOfPass = 1;
-// Times the clamping of single pictures: what is near is traced, and what spots remain differ from pass to
-// pass.
-constexpr double kClampOfPass = 16;
-// Light from places around which fewer lights than these lie is traced.
-constexpr float kNearOfPass = 10;
 // Paths of the rest for each pass: without a budget; and within one at least, at most. What of a pass's
 // seconds they will take, before that is known, and how noisy a pass is.
 constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8;
@@ -57,16 +46,8 @@ constexpr int kPathsForError = 16;   // before a target for the error is believe
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
-// What a receiver draws in a whole pass, and what of all that is done for a pixel this is, before it is
-// known.
-constexpr int kSamplesOfPass = 8;
+// What of all that is done for a pixel draws of lights are, before it is known.
 constexpr double kDrawingShare = 0.5;
-
-std::string pass_number(const char* format, double x) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, x);
-  return text;
-}
 
 class PassRun {
  public:
@@ -80,7 +61,8 @@ class PassRun {
         clock_([this] { return task_.timer.seconds(); }),
         view_(task_.view),
         whole_(task_.view),
-        parts_(wanted_parts(asked.view.only)) {
+        parts_(wanted_parts(asked.view.only)),
+        tracer_(task_.world, *task_.info, std::move(task_.method), asked, sinks, seconds_) {
     seconds_["build"] = task_.build_seconds;
     if (!asked.choices.empty()) choices_ = methods::TimedChoices(asked.choices);
   }
@@ -93,7 +75,7 @@ class PassRun {
     if (rest_->plan().piloted) seconds_["rest_pilot"] = rest_->pilot_seconds();
     if (rest_is_most()) return by_paths_alone("columns cannot carry much of its light");
     const Timer survey_timer;
-    survey_ = survey(task_.world, view_, recipe_of(0), sinks_);
+    tracer_.aim(survey(task_.world, view_, tracer_.recipe_of(0, view_), sinks_));
     seconds_["survey"] = survey_timer.seconds();
     plan();
     if (paths_alone_) return by_paths_alone("few passes would fit, and paths are cheap beside them");
@@ -111,96 +93,8 @@ class PassRun {
   bool timed() const { return asked_.time > 0; }
   bool replays() const { return !asked_.choices.empty(); }
 
-  // ------------------------------------------------------------ what a pass is
-
-  Recipe recipe_of(std::uint64_t number) const {
-    RenderSettings of_pass = asked_;
-    // Lights are spots in narrow lobes; few paths have noise there, which other passes and the denoiser take.
-    if (asked_.lights.type == LightType::point && asked_.traced.direct != DirectLight::matrix &&
-        asked_.traced.local_paths == 0 && asked_.traced.compensate == 0)
-      of_pass.traced.local_paths = kLocalOfPass;
-    Recipe recipe = make_recipe(of_pass, view_);
-    // Film samples would take a gathered receiver's light for that of a place they see.
-    recipe.gathered = of_pass.traced.local_paths > asked_.traced.local_paths &&
-                      asked_.view.only == LightPart::all && !asked_.view.film_samples;
-    recipe.seed = hash_ids(asked_.seed, Stage::passes);
-    recipe.pass = number;
-    recipe.light_seed = hash_ids(asked_.seed, Stage::passes, ~number);
-    recipe.spp = 1;
-    recipe.film_samples = asked_.view.film_samples.value_or(0);
-    recipe.first_hits = false;
-    recipe.lights.clamp = kClampOfPass * asked_.lights.clamp;
-    if (recipe.lights.type != LightType::sphere && asked_.traced.compensate == 0)
-      recipe.near_lights = kNearOfPass;
-    return recipe;
-  }
-
   // What takes longer the larger a pass is.
   double seconds_drawing() { return seconds_["method"] + seconds_["lights"]; }
-
-  struct PassSeconds {
-    double fixed = 0, by_pixel = 0;
-    double total() const { return fixed + by_pixel; }
-  };
-
-  std::size_t lights_of(const View& view) const {
-    if (asked_.lights.count) return *asked_.lights.count;
-    const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
-    const double part = static_cast<double>(eighths_) / PassPlan::kWhole;
-    return std::clamp(static_cast<std::size_t>(part * kLightsOfRoot * std::sqrt(pixels)), kMinLightsOfPass,
-                      kMaxLightsOfPass);
-  }
-
-  // One picture, and what its first hits know. False: cancelled.
-  bool trace(std::uint64_t number, const View& view, image::Image& image, PassSeconds& took) {
-    const world::World& world = *task_.world;
-    Recipe recipe = recipe_of(number);
-    Timer timer;
-    const auto lap = [&](const char* stage, double& sum) {
-      seconds_[stage] += timer.seconds(), sum += timer.seconds();
-      timer = {};
-    };
-    TracedLight traced;
-    SharedRows rows = gather_rows(world, trace_rows(world, view, recipe, sinks_), recipe, sinks_);
-    traced.rows = rows;
-    lap("receivers", took.by_pixel);
-    if (const auto direct = start_direct(world, *rows, recipe)) {
-      if (!direct->add(kDirectOfPass, sinks_)) return false;
-      traced.direct = direct->radiance(), traced.direct_samples = direct->samples();
-    }
-    traced.sharp = trace_sharp_lobes(world, *rows, recipe, sinks_);
-    rows = matrix_rows(rows, recipe);
-    lap("traced_direct", took.by_pixel);
-    Columns columns = trace_columns(world, recipe, *survey_, lights_of(view), sinks_);
-    lap("lights", took.fixed);
-    traced.near = trace_near(world, *rows, columns, recipe, sinks_);
-    if (!traced.near.empty()) lap("traced_near", took.by_pixel);
-    prepared_ = join(task_.world, view, recipe, rows, std::move(columns), {}, {});
-    lap("matrix", took.fixed);
-    methods::RunOptions run;
-    run.seed = hash_ids(asked_.method.seed ? asked_.method.seed : asked_.seed, Stage::method, number);
-    run.sinks = sinks_;
-    const matrix::MeteredMatrix metered(*prepared_->matrix);
-    estimate_ = task_.method->run(metered, run);
-    if (estimate_.interrupted) return false;
-    cost_ += metered.total();
-    const double records = estimate_.trace.numbers["seconds.records"];
-    took.fixed += records, took.by_pixel -= records;
-    lap("method", took.by_pixel);
-    const FilmInput film{world, view, recipe, *rows, traced};
-    // What is seen of emitters and the surroundings has no noise, and is not for the denoiser.
-    FilmParts sent = parts_;
-    sent.emission = false;
-    image = develop(film, estimate_.sums, sent);
-    if (asked_.traced.compensate > 0) {
-      RenderSettings of_pass = asked_;
-      of_pass.seed = recipe.light_seed;
-      if (!compensate_clamping(*prepared_, of_pass, image, sinks_)) return false;
-    }
-    lap("film", took.by_pixel);
-    traced_ = std::move(traced);
-    return !sinks_.cancelled();
-  }
 
   // ------------------------------------------------------------ how many
 
@@ -211,13 +105,14 @@ class PassRun {
       image::Image image;
       PassSeconds took;
       const auto before = seconds_;
-      if (!trace(kMaxPasses, small, image, took)) throw Cancelled();
+      if (!tracer_.trace(kMaxPasses, small, image, took)) throw Cancelled();
       const double eye_rays = seconds_["receivers"];
-      seconds_ = before, cost_ = {};
+      seconds_ = before, tracer_.forget_cost();
       seconds_["pilot"] = took.total();
       const double shrunk = static_cast<double>(small.width) * static_cast<double>(small.height) /
                             (static_cast<double>(view_.width) * static_cast<double>(view_.height));
-      expected_ = {took.fixed * static_cast<double>(lights_of(view_)) / static_cast<double>(lights_of(small)),
+      expected_ = {took.fixed * static_cast<double>(tracer_.lights_of(view_)) /
+                       static_cast<double>(tracer_.lights_of(small)),
                    took.by_pixel / shrunk};
       features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
       const bool few = too_few_fit(), half = few && may_be_half(eye_rays / shrunk);
@@ -263,15 +158,8 @@ class PassRun {
     const double left_now = left();
     if (divisor == 1 && expected_.total() <= left_now) return;
     const double enough = task_.build_seconds + picture_->denoising().seconds() + kFewPasses * whole;
-    const std::string budget = pass_number("%.3g s", asked_.time);
-    shortage_ = asked_.time < task_.build_seconds
-                    ? "building the scene took " + pass_number("%.2g s", task_.build_seconds) +
-                          ", and the budget of " + budget + " is over"
-                    : "the budget of " + budget + " is short for this view";
-    if (divisor > 1)
-      shortage_ +=
-          ": light is rendered with 1/" + std::to_string(divisor) + " of its width and height, and enlarged";
-    shortage_ += "; about " + pass_number("%.2g s", enough) + " would do";
+    shortage_ = said({asked_.time, task_.build_seconds, asked_.time < task_.build_seconds, enough},
+                     said_of_smaller(divisor));
     sinks_.warn(shortage_);
   }
 
@@ -287,11 +175,7 @@ class PassRun {
         eighths = static_cast<int>(*earlier);
       choices_.record("eighths_of_pass", eighths);
     }
-    if (eighths == eighths_) return;
-    eighths_ = eighths;
-    auto parameters = asked_.method.parameters;
-    parameters["samples"] = std::to_string(eighths * kSamplesOfPass / PassPlan::kWhole);
-    task_.method = task_.info->make(parameters);
+    tracer_.set_size(eighths);
   }
 
   double end() const { return asked_.time - picture_->denoising().seconds(); }
@@ -313,18 +197,18 @@ class PassRun {
     const double begin = clock_(), drawn_before = seconds_drawing();
     image::Image image;
     PassSeconds took;
-    if (!trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
+    if (!tracer_.trace(static_cast<std::uint64_t>(number), view_, image, took)) return false;
     if (!add_rest(took.total())) return false;
     passes_seconds_ += clock_() - begin;
-    plan_.took(eighths_, clock_() - begin, seconds_drawing() - drawn_before);
-    Recipe of_film = recipe_of(static_cast<std::uint64_t>(number));
+    plan_.took(tracer_.eighths(), clock_() - begin, seconds_drawing() - drawn_before);
+    Recipe of_film = tracer_.recipe_of(static_cast<std::uint64_t>(number), view_);
     of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
     const Timer timer;
     // A pass has as many samples as its size.
-    const double weight = static_cast<double>(eighths_) / PassPlan::kWhole;
+    const double weight = static_cast<double>(tracer_.eighths()) / PassPlan::kWhole;
     if (!picture_->add(number, wanted_, image, weight,
-                       {*task_.world, view_, of_film, *prepared_->rows, traced_}, timed() ? left() : 0,
-                       sinks_))
+                       {*task_.world, view_, of_film, *tracer_.prepared()->rows, tracer_.traced()},
+                       timed() ? left() : 0, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     report_progress(number + 1);
@@ -366,7 +250,7 @@ class PassRun {
   bool may_be_paths_alone() const { return timed() && task_.may_be_paths; }
   bool rest_is_most() const {
     if (replays()) return asked_.choices.contains(kChoiceOfPaths);
-    return may_be_paths_alone() && rest_->plan().piloted && rest_->plan().pilot.share > kRestForPaths;
+    return task_.may_be_paths && rest_->plan().piloted && rest_->plan().pilot.share > kRestForPaths;
   }
   // There is no time to find out whether paths have less noise, and they are likely to.
   bool too_few_fit() const {
@@ -409,9 +293,10 @@ class PassRun {
                                            paths_->light_paths() > 0);
     by_paths_ = by_paths ? *by_paths == 1 : passes_over_paths_ > 1;
     choices_.record("by_paths", by_paths_ ? 1 : 0);
-    sinks_.say(
-        "noise of passes over that of paths in the same time: " + pass_number("%.2g", passes_over_paths_) +
-        (by_paths_ ? ", so paths go on" : ", so passes go on"));
+    char ratio[32];
+    std::snprintf(ratio, sizeof ratio, "%.2g", passes_over_paths_);
+    sinks_.say(std::string("noise of passes over that of paths in the same time: ") + ratio +
+               (by_paths_ ? ", so paths go on" : ", so passes go on"));
     if (by_paths_) choose_emission();
     const int before = paths_->paths();
     const bool whole = !by_paths_ || go_on_by_paths(more);
@@ -484,7 +369,7 @@ class PassRun {
   image::Image with_all_noise() const { return has_own_emission() ? paths_->picture() : sent(); }
   image::Image to_denoise() const {
     if (!by_paths_) return with_all_noise();
-    image::Image clean = pipeline::without_specks(paths_->film(), has_own_emission());
+    image::Image clean = pipeline::without_fireflies(paths_->film(), has_own_emission());
     return has_own_emission() ? clean : picture_->with_mirrored(std::move(clean));
   }
   Picture finished(const image::Image& image) const {
@@ -510,7 +395,7 @@ class PassRun {
         std::vector<float> before = std::move(result_.picture.planes[0].rgb);
         result_.picture = is_smaller() ? to_picture(picture_->enlarged_with_emission(denoised->picture))
                                        : finished(denoised->picture);
-        estimate_.trace.numbers["denoise.kept"] = denoised->kept;
+        tracer_.estimate().trace.numbers["denoise.kept"] = denoised->kept;
         result_.picture.planes.push_back({"undenoised", std::move(before)});
         seconds_["denoise"] = timer.seconds();
       }
@@ -523,11 +408,11 @@ class PassRun {
     if (rest_->seconds() > 0) seconds_["rest"] = rest_->seconds();
     if (paths_) {
       seconds_["paths"] = paths_->seconds();
-      estimate_.trace.numbers["paths"] = paths_->paths();
-      estimate_.trace.numbers["paths.light_paths"] = paths_->light_paths();
-      estimate_.trace.numbers["passes_over_paths"] = passes_over_paths_;
+      tracer_.estimate().trace.numbers["paths"] = paths_->paths();
+      tracer_.estimate().trace.numbers["paths.light_paths"] = paths_->light_paths();
+      tracer_.estimate().trace.numbers["passes_over_paths"] = passes_over_paths_;
     }
-    auto& numbers = estimate_.trace.numbers;
+    auto& numbers = tracer_.estimate().trace.numbers;
     if (result_.interrupted) choices_ = {};
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
     numbers["rest.paths"] = rest_->paths();
@@ -540,11 +425,12 @@ class PassRun {
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
-    estimate_.trace.notes["method.why"] =
+    tracer_.estimate().trace.notes["method.why"] =
         by_paths_ ? "less noise than by " + task_.info->name + " in the same time" : task_.why;
-    picture_->denoising().note(seconds_.contains("denoise"), estimate_.trace.notes);
-    if (!shortage_.empty()) estimate_.trace.notes["budget.short"] = shortage_;
-    result_.report = make_report(*prepared_, traced_, asked_, *task_.info, estimate_, cost_, choices_.made());
+    picture_->denoising().note(seconds_.contains("denoise"), tracer_.estimate().trace.notes);
+    if (!shortage_.empty()) tracer_.estimate().trace.notes["budget.short"] = shortage_;
+    result_.report = make_report(*tracer_.prepared(), tracer_.traced(), asked_, *task_.info,
+                                 tracer_.estimate(), tracer_.cost(), choices_.made());
     if (passes_ > 1)
       result_.report.notes["error.of"] =
           std::string("the noise of all ") + (by_paths_ ? "paths" : "passes") + ", before a denoiser";
@@ -575,13 +461,13 @@ class PassRun {
   methods::TimedChoices choices_;
   std::optional<PassPicture> picture_;
   std::optional<RestTracing> rest_;
-  SharedSurvey survey_;
+  std::map<std::string, double> seconds_;
+  PassTracer tracer_;
   PassSeconds expected_;
   double features_expected_ = 0;  // what follows the first pass
   PassPlan plan_{false};
   double rest_due_ = 0;
   int wanted_ = 1, passes_ = 0, next_eighths_ = PassPlan::kWhole;
-  int eighths_ = PassPlan::kWhole;  // size of the pass
   std::optional<PathsBeside> paths_;
   double passes_seconds_ = 0, passes_over_paths_ = 0;
   bool paths_alone_ = false;
@@ -590,12 +476,6 @@ class PassRun {
   int features_of_paths_ = 0;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;
-  // Of the last pass: what reports tell of sizes.
-  SharedPrepared prepared_;
-  TracedLight traced_;
-  methods::Estimate estimate_;
-  matrix::Cost cost_;
-  std::map<std::string, double> seconds_;
   RenderResult result_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -13,6 +12,7 @@
 #include "pipeline/picture_denoising.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
+#include "pipeline/short_budget.h"
 #include "pipeline/smaller_film.h"
 
 namespace lumirank::pipeline {
@@ -71,9 +71,9 @@ class PathRun {
   void plan() {
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
     wanted_ = by_hand > 0 ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPaths : kUsualPaths;
-    if (!timed()) return;
     if (const auto earlier = choices_.earlier(kChoiceOfPaths, kMaxPaths))
       wanted_ = static_cast<int>(*earlier);
+    if (!timed()) return;
     const int divisor = chosen_divisor();
     choices_.record("film_divisor", divisor);
     if (divisor > 1) view_ = smaller(view_, divisor);
@@ -103,15 +103,8 @@ class PathRun {
       while (divisor < kMaxPathDivisor && fit() < 1);
     }
     if (divisor == 1 && fit() >= 1) return divisor;
-    char text[200], budget[100];
-    if (asked_.time < task_.build_seconds)
-      std::snprintf(budget, sizeof budget, "building the scene took %.2g s, and the budget of %.3g s is over",
-                    task_.build_seconds, asked_.time);
-    else
-      std::snprintf(budget, sizeof budget, "the budget of %.3g s is short for this view", asked_.time);
-    std::snprintf(text, sizeof text, "%s%s; about %.2g s would do", budget,
-                  divisor > 1 ? ": light is rendered smaller, and enlarged" : "", enough);
-    shortage_ = text;
+    shortage_ = said({asked_.time, task_.build_seconds, asked_.time < task_.build_seconds, enough},
+                     said_of_smaller(divisor));
     sinks_.warn(shortage_);
     return divisor;
   }
@@ -157,14 +150,14 @@ class PathRun {
   }
 
   void picture() {
-    if (timed() && !result_.interrupted) choices_.record(kChoiceOfPaths, paths());
+    if (!result_.interrupted) choices_.record(kChoiceOfPaths, paths());
     if (result_.interrupted) choices_ = {};
     result_.picture = sized_for(film_->result().image, task_.view);
     if (result_.interrupted) return;
     // What is seen straight comes by features of the larger film.
     const bool apart = view_.width < task_.view.width && options_.emission && denoising_.traced();
     const Timer timer;
-    image::Image traced = without_specks(*film_, options_.emission && !apart);
+    image::Image traced = without_fireflies(*film_, options_.emission && !apart);
     if (apart) image::add_to(traced, denoising_.mirrored(traced));
     const image::Image difference = paths() < PictureDenoising::kPathsForNoise ? image::Image{}
                                     : apart                                    ? film_->sent_difference()

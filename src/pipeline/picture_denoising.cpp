@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/timer.h"
 #include "denoise/enlarging.h"
-#include "denoise/specks.h"
+#include "denoise/fireflies.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -31,8 +31,8 @@ constexpr int kGlaringSamples = 48;
 
 }  // namespace
 
-image::Image without_specks(const pathtrace::PathFilm& film, bool with_emission) {
-  image::Image sent = denoise::without_specks(film.sent(), film.sent_deviation());
+image::Image without_fireflies(const pathtrace::PathFilm& film, bool with_emission) {
+  image::Image sent = denoise::without_fireflies(film.sent(), film.sent_deviation());
   if (with_emission) image::add_to(sent, film.result().emission);
   return sent;
 }

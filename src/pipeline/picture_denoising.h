@@ -17,9 +17,9 @@
 
 namespace lumirank::pipeline {
 
-// What the paths say of the picture, without specks (denoise/specks.h); with the emission that they see, or
-// what surfaces send alone.
-image::Image without_specks(const pathtrace::PathFilm& film, bool with_emission);
+// What the paths say of the picture, without fireflies (denoise/fireflies.h); with the emission that they
+// see, or what surfaces send alone.
+image::Image without_fireflies(const pathtrace::PathFilm& film, bool with_emission);
 
 class PictureDenoising {
  public:

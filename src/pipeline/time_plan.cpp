@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "pipeline/short_budget.h"
+
 namespace lumirank::pipeline {
 namespace {
 
@@ -65,8 +67,7 @@ std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, cons
                           double left) {
   std::string lacks;
   const auto add = [&](const std::string& text) { lacks += (lacks.empty() ? "" : ", ") + text; };
-  if (plan.divisor > 1)
-    add("rendered with 1/" + std::to_string(plan.divisor) + " of its width and height, and enlarged");
+  if (plan.divisor > 1) add(said_of_smaller(plan.divisor));
   if (plan.spp < wishes.spp)
     add(std::to_string(plan.spp) + " instead of " + std::to_string(wishes.spp) + " receivers per pixel");
   else if (wishes.spp_given && wanted_for_receivers(costs, wishes.spp, wishes.layers) > left)
@@ -79,12 +80,7 @@ std::string shortage_text(const TimeWishes& wishes, const TimeCosts& costs, cons
   if (costs.direct > 0 && plan.direct_seconds < kMinDirect * samples * costs.direct * (1 - 1e-9))
     add("fewer than " + planned_number(kMinDirect) + " samples of traced direct light");
   if (lacks.empty() && !plan.build_alone) return {};
-  const std::string budget = planned_number(wishes.budget) + " s";
-  std::string text = plan.build_alone ? "building the scene took " + planned_number(costs.passed) +
-                                            " s, and the budget of " + budget + " is over"
-                                      : "the budget of " + budget + " is short for this view";
-  if (!lacks.empty()) text += ": " + lacks;
-  return text + "; about " + planned_number(plan.enough) + " s would do";
+  return said({wishes.budget, costs.passed, plan.build_alone, plan.enough}, lacks);
 }
 
 TimePlan plan_of_size(const TimeWishes& wishes, const TimeCosts& costs) {

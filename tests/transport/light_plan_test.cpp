@@ -86,7 +86,7 @@ TEST(LightRoulette, KeepsTheEnergyBalanceOfAFurnace) {
   constexpr int kSeeds = 40, kDepths = 4;
   constexpr std::size_t kPaths = 400;
   const auto world = lit_furnace(0.6f).build();
-  const EmitterChoice choice(world);
+  const world::EmitterChoice choice(world);
   std::vector<LightImportance::Site> sites;
   const Vec3f axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int k = 0; k < 3; ++k) {

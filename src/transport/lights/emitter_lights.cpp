@@ -164,7 +164,7 @@ std::size_t samples_for(double wanted) {
   return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(0.5 * wanted)));
 }
 
-void every_emitter(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
+void every_emitter(const world::World& world, const world::EmitterChoice& choice, std::uint64_t seed,
                    std::size_t count, LightBatch& batch) {
   double sampled = 0;
   std::size_t fixed = 0;
@@ -182,7 +182,7 @@ void every_emitter(const world::World& world, const EmitterChoice& choice, std::
   }
 }
 
-void some_emitters(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
+void some_emitters(const world::World& world, const world::EmitterChoice& choice, std::uint64_t seed,
                    std::size_t count, LightBatch& batch) {
   constexpr std::uint64_t kAll = ~0ull;  // no emitter has this id
   count = even(count);
@@ -198,7 +198,7 @@ void some_emitters(const world::World& world, const EmitterChoice& choice, std::
 
 }  // namespace
 
-DirectNeed direct_need(const world::World& world, const EmitterChoice& choice) {
+DirectNeed direct_need(const world::World& world, const world::EmitterChoice& choice) {
   DirectNeed need;
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const std::size_t n = fixed_count(world.emitters()[static_cast<std::size_t>(choice.emitter(k))]);
@@ -208,7 +208,7 @@ DirectNeed direct_need(const world::World& world, const EmitterChoice& choice) {
   return need;
 }
 
-LightBatch emitter_lights(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
+LightBatch emitter_lights(const world::World& world, const world::EmitterChoice& choice, std::uint64_t seed,
                           std::size_t count) {
   LightBatch batch;
   if (choice.empty() || count == 0) return batch;
@@ -228,7 +228,7 @@ EmitterCounts count_emitter_lights(std::span<const world::World* const> worlds, 
   };
   std::map<std::string, Seen> seen;
   for (const world::World* world : worlds) {
-    const EmitterChoice choice(*world);
+    const world::EmitterChoice choice(*world);
     for (std::size_t k = 0; k < choice.size(); ++k) {
       const emitters::Emitter& e = world->emitters()[static_cast<std::size_t>(choice.emitter(k))];
       Seen& s = seen[e.name];
@@ -255,7 +255,7 @@ LightBatch emitter_lights(const world::World& world, const EmitterCounts& counts
   std::size_t fewest = 0;
   for (const auto& [name, n] : counts.of)
     if (n > kDiscSamples) fewest = fewest == 0 ? n : std::min(fewest, n);
-  const EmitterChoice choice(world);
+  const world::EmitterChoice choice(world);
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const int emitter = choice.emitter(k);
     const emitters::Emitter& e = world.emitters()[static_cast<std::size_t>(emitter)];

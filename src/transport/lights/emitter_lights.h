@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "transport/lights/emitter_choice.h"
 #include "transport/lights/light_record.h"
+#include "world/emitter_choice.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -19,11 +19,11 @@ struct DirectNeed {
   std::size_t min_count = 0;
   bool sampled = false;  // some emitter can use more
 };
-DirectNeed direct_need(const world::World& world, const EmitterChoice& choice);
+DirectNeed direct_need(const world::World& world, const world::EmitterChoice& choice);
 
 // About `count` lights for all emitters together. If there are more emitters than half of `count`, a
 // stratified choice of them by power stands for all; otherwise every one gets its own, the larger ones more.
-LightBatch emitter_lights(const world::World& world, const EmitterChoice& choice, std::uint64_t seed,
+LightBatch emitter_lights(const world::World& world, const world::EmitterChoice& choice, std::uint64_t seed,
                           std::size_t count);
 
 // How many lights each emitter gets, by its name: fixed for all moments of a scene, so that their lights are

@@ -109,7 +109,7 @@ class GatherLighting {
   void add_photons(std::size_t count) {
     if (count == 0 || (survey_.parts.deepest >= 0 && survey_.parts.deepest < 2)) return;
     std::vector<LightBatch> pieces((count + kPhotonsAtOnce - 1) / kPhotonsAtOnce);
-    const EmitterChoice choice(world_);
+    const world::EmitterChoice choice(world_);
     const ParticleTracer tracer(world_, choice,
                                 {settings_.seed,
                                  Stage::gather_samples,

@@ -62,8 +62,8 @@ struct Round {
   double indirect = 0;  // as Aim::indirect
 };
 
-Round run_round(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings,
-                const Relevance& relevance) {
+Round run_round(const world::World& world, const world::EmitterChoice& choice,
+                const ParticleSettings& settings, const Relevance& relevance) {
   constexpr std::size_t kPathsAtOnce = 256;
   const ParticleTracer tracer(world, choice, settings);
   std::vector<Round> pieces((settings.paths + kPathsAtOnce - 1) / kPathsAtOnce);
@@ -99,7 +99,7 @@ Round run_round(const world::World& world, const EmitterChoice& choice, const Pa
 
 }  // namespace
 
-Aim learn_aim(const world::World& world, const EmitterChoice& choice, const LightSettings& asked,
+Aim learn_aim(const world::World& world, const world::EmitterChoice& choice, const LightSettings& asked,
               int deepest) {
   const Receivers& receivers = *asked.receivers;
   Aim aim;

@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "transport/lights/emission_guide.h"
-#include "transport/lights/emitter_choice.h"
 #include "transport/lights/light_importance.h"
 #include "transport/lights/virtual_lights.h"
 #include "transport/rows/receivers.h"
+#include "world/emitter_choice.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -23,7 +23,7 @@ struct Aim {
 
 // For settings.receivers, which must be given. Deterministic in the seed. About 50,000 paths, a few
 // hundredths of a second each ten thousand.
-Aim learn_aim(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
+Aim learn_aim(const world::World& world, const world::EmitterChoice& choice, const LightSettings& settings,
               int deepest);
 
 }  // namespace lumirank::transport

@@ -45,8 +45,8 @@ struct Pilot {
   std::vector<float> importances;
 };
 
-Pilot run_pilot(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings,
-                const LightImportance* importance) {
+Pilot run_pilot(const world::World& world, const world::EmitterChoice& choice,
+                const ParticleSettings& settings, const LightImportance* importance) {
   struct Piece {
     double lights = 0, first = 0, scattered = 0;
     std::vector<double> powers;
@@ -195,7 +195,7 @@ RoulettePlan plan_roulette(std::vector<double> uses, std::size_t pilot_paths, do
   }
 }
 
-LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice,
+LightSurvey survey_lights(const world::World& world, const world::EmitterChoice& choice,
                           const LightSettings& settings) {
   LightSurvey survey;
   const bool unlimited = settings.max_depth < 0;
@@ -220,8 +220,8 @@ LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice
   return survey;
 }
 
-LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
-                      const LightSurvey& survey) {
+LightPlan plan_lights(const world::World& world, const world::EmitterChoice& choice,
+                      const LightSettings& settings, const LightSurvey& survey) {
   LightPlan plan;
   plan.emitter_samples = emitter_sample_count(settings.count, survey);
   if (!survey.parts.indirect) return plan;

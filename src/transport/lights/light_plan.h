@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "transport/lights/emitter_choice.h"
 #include "transport/lights/emitter_lights.h"
 #include "transport/lights/guide_pilot.h"
 #include "transport/lights/virtual_lights.h"
+#include "world/emitter_choice.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -30,7 +30,7 @@ struct LightSurvey {
   // Of the pilot's lights, times the number of its paths; empty where none is of any use.
   std::vector<double> uses;
 };
-LightSurvey survey_lights(const world::World& world, const EmitterChoice& choice,
+LightSurvey survey_lights(const world::World& world, const world::EmitterChoice& choice,
                           const LightSettings& settings);
 
 // Of so many lights, those that emitters get for their direct light.
@@ -46,8 +46,8 @@ struct LightPlan {
 // settings.count equal ones: (Σ use)²/Σ use² after roulette. Where the guide knows well where light comes in
 // that is about one path for each few lights; where it does not, up to sixteen paths for each light are
 // traced so that none stands for much more light than the others.
-LightPlan plan_lights(const world::World& world, const EmitterChoice& choice, const LightSettings& settings,
-                      const LightSurvey& survey);
+LightPlan plan_lights(const world::World& world, const world::EmitterChoice& choice,
+                      const LightSettings& settings, const LightSurvey& survey);
 
 // Paths and level for lights of the given uses (times the number of paths), met on `pilot_paths`, so that
 // `wanted` are kept. In any order.

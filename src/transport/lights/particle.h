@@ -6,10 +6,10 @@
 
 #include "base/random.h"
 #include "transport/lights/emission_guide.h"
-#include "transport/lights/emitter_choice.h"
 #include "transport/lights/light_record.h"
 #include "transport/lights/light_roulette.h"
 #include "transport/lights/shining_lobes.h"
+#include "world/emitter_choice.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -33,7 +33,8 @@ struct PathTally {
 
 class ParticleTracer {
  public:
-  ParticleTracer(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings)
+  ParticleTracer(const world::World& world, const world::EmitterChoice& choice,
+                 const ParticleSettings& settings)
       : world_(world), choice_(choice), settings_(settings) {
     if (settings_.guide == nullptr) settings_.guide = &uniform_;
   }
@@ -62,7 +63,7 @@ class ParticleTracer {
                   Branch& branch, Rng& rng) const;
 
   const world::World& world_;
-  const EmitterChoice& choice_;
+  const world::EmitterChoice& choice_;
   ParticleSettings settings_;
   EmissionGuide uniform_;
 };

@@ -47,8 +47,8 @@ struct MediaBatch {
 
 class ParticlesInMedia {
  public:
-  ParticlesInMedia(const world::World& world, const EmitterChoice& choice, const MediaLightSettings& settings,
-                   Stage stage, std::size_t paths, int deepest)
+  ParticlesInMedia(const world::World& world, const world::EmitterChoice& choice,
+                   const MediaLightSettings& settings, Stage stage, std::size_t paths, int deepest)
       : world_(world),
         choice_(choice),
         settings_(settings),
@@ -209,7 +209,7 @@ class ParticlesInMedia {
   }
 
   const world::World& world_;
-  const EmitterChoice& choice_;
+  const world::EmitterChoice& choice_;
   const MediaLightSettings& settings_;
   Stage stage_;
   std::size_t paths_;
@@ -294,7 +294,7 @@ void repeat(std::vector<LightRecord>& lights, std::size_t least, float radius) {
 LightsInMedia trace_lights_in_media(const world::World& world, const MediaLightSettings& settings,
                                     const Sinks& sinks) {
   if (settings.count < 1) throw InputError("the number of virtual lights is 0", "ask for at least 1");
-  const EmitterChoice choice(world);
+  const world::EmitterChoice choice(world);
   LightsInMedia out;
   if (choice.empty()) return out;
   // A light of depth d is seen over two more segments: to the row, and from there to the eye. A ray light's

@@ -86,12 +86,13 @@ struct Lit {
 
 class EmitterPilot {
  public:
-  EmitterPilot(const world::World& world, const EmitterChoice& choice) : world_(world), choice_(choice) {}
+  EmitterPilot(const world::World& world, const world::EmitterChoice& choice)
+      : world_(world), choice_(choice) {}
 
   // One direct sample: its irradiance, and where a path that brings it would start.
   float irradiance(const Lit& at, Rng& rng, std::array<float, kStartDimensions>* start) const {
     const double u = rng.next_double();
-    const EmitterChoice::Drawn drawn = choice_.draw(u);
+    const world::EmitterChoice::Drawn drawn = choice_.draw(u);
     const Vec2f u2 = rng.next_2d(), free = rng.next_2d();
     const std::uint64_t opacity = rng.next_bits();
     const auto s = world_.sample_direct(drawn.emitter, at.position, drawn.remapped, u2);
@@ -117,7 +118,7 @@ class EmitterPilot {
 
  private:
   const world::World& world_;
-  const EmitterChoice& choice_;
+  const world::EmitterChoice& choice_;
 };
 
 // The part of what a receiver reflects whose direct light goes through columns.
@@ -133,7 +134,7 @@ float part_by_columns(const Receivers& receivers, std::size_t i, float traced_be
 
 }  // namespace
 
-ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice& choice,
+ReceiverPilot run_receiver_pilot(const world::World& world, const world::EmitterChoice& choice,
                                  const Receivers& receivers, std::uint64_t seed, float traced_below) {
   constexpr std::size_t kReceiversAtOnce = 256;
   ReceiverPilot all;

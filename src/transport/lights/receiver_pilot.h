@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "transport/lights/emission_guide.h"
-#include "transport/lights/emitter_choice.h"
 #include "transport/lights/light_importance.h"
 #include "transport/rows/receivers.h"
+#include "world/emitter_choice.h"
 #include "world/world.h"
 
 namespace lumirank::transport {
@@ -26,7 +26,7 @@ struct ReceiverPilot {
 
 // `traced_below`: lobes with a roughness below it get their direct light elsewhere. Deterministic in the
 // seed.
-ReceiverPilot run_receiver_pilot(const world::World& world, const EmitterChoice& choice,
+ReceiverPilot run_receiver_pilot(const world::World& world, const world::EmitterChoice& choice,
                                  const Receivers& receivers, std::uint64_t seed, float traced_below);
 
 }  // namespace lumirank::transport

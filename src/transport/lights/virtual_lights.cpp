@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kPathsPerPiece = 1024;
 
-void trace_particles(const world::World& world, const EmitterChoice& choice, const ParticleSettings& settings,
-                     std::span<LightBatch> pieces, const Sinks& sinks) {
+void trace_particles(const world::World& world, const world::EmitterChoice& choice,
+                     const ParticleSettings& settings, std::span<LightBatch> pieces, const Sinks& sinks) {
   const ParticleTracer tracer(world, choice, settings);
   std::atomic<std::size_t> done{0};
   parallel_for(settings.paths, kPathsPerPiece, [&](std::size_t begin, std::size_t end) {
@@ -58,7 +58,7 @@ VirtualLights light_gather_samples(const world::World& world, const LightSurvey&
 }  // namespace
 
 std::shared_ptr<const LightSurvey> survey_lights(const world::World& world, const LightSettings& settings) {
-  const EmitterChoice choice(world);
+  const world::EmitterChoice choice(world);
   if (choice.empty()) return std::make_shared<LightSurvey>();
   return std::make_shared<LightSurvey>(survey_lights(world, choice, settings));
 }
@@ -66,7 +66,7 @@ std::shared_ptr<const LightSurvey> survey_lights(const world::World& world, cons
 VirtualLights trace_virtual_lights(const world::World& world, const LightSettings& settings,
                                    const Sinks& sinks) {
   if (settings.count < 1) throw InputError("the number of virtual lights is 0", "ask for at least 1");
-  const EmitterChoice choice(world);
+  const world::EmitterChoice choice(world);
   if (choice.empty()) return {};
   const auto made =
       settings.survey ? nullptr : std::make_unique<LightSurvey>(survey_lights(world, choice, settings));

@@ -1,4 +1,4 @@
-#include "denoise/specks.h"
+#include "denoise/fireflies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ constexpr int kAround = 2;         // pixels
 constexpr float kBrighter = 1.5f;  // than all pixels around it but one
 constexpr float kCalm = 1.6f;      // these over their mean
 constexpr float kUnsure = 2.5f;    // deviations
-constexpr std::size_t kSpeckLines = 16;
-// What a speck loses goes to pixels so far away, each of which becomes brighter by such a part at most.
+constexpr std::size_t kFireflyLines = 16;
+// What a firefly loses goes to pixels so far away, each of which becomes brighter by such a part at most.
 constexpr int kSpread = 16;
 constexpr float kAddedAtMost = 0.05f;
 
@@ -40,7 +40,7 @@ Around around(const std::vector<float>& brightness, int width, int height, int x
   return {second, count > 0 ? (sum - first) / static_cast<float>(count) : second};
 }
 
-// What a speck has lost, shared out over the pixels around it in proportion to their brightness and to a
+// What a firefly has lost, shared out over the pixels around it in proportion to their brightness and to a
 // weight that falls smoothly to 0: adds to `gains`, by what part each becomes brighter.
 void share_out(float lost, const image::Image& clean, int x, int y, std::vector<float>& gains) {
   const int left = std::max(0, x - kSpread), right = std::min(clean.width - 1, x + kSpread);
@@ -62,15 +62,15 @@ void share_out(float lost, const image::Image& clean, int x, int y, std::vector<
 
 }  // namespace
 
-image::Image without_specks(const image::Image& noisy, std::span<const float> deviation) {
+image::Image without_fireflies(const image::Image& noisy, std::span<const float> deviation) {
   if (deviation.size() != noisy.pixels.size())
-    throw InternalError("without_specks: pictures of different sizes");
+    throw InternalError("without_fireflies: pictures of different sizes");
   const int width = noisy.width, height = noisy.height;
   std::vector<float> brightness(noisy.pixels.size());
   for (std::size_t p = 0; p < brightness.size(); ++p) brightness[p] = luminance(noisy.pixels[p]);
   image::Image clean = noisy;
   std::vector<float> lost(noisy.pixels.size());
-  parallel_for(static_cast<std::size_t>(height), kSpeckLines, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(height), kFireflyLines, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (int x = 0; x < width; ++x) {
         const std::size_t p = y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);

@@ -1,12 +1,12 @@
-#include "transport/lights/emitter_choice.h"
+#include "world/emitter_choice.h"
 
 #include <algorithm>
 #include <variant>
 
-namespace lumirank::transport {
+namespace lumirank::world {
 namespace {
 
-constexpr double kGroupFloor = 0.25, kEvenShare = 0.1;
+constexpr double kMinOfGroup = 0.25, kEvenPart = 0.1;
 
 bool is_far(const emitters::Emitter& e) {
   return std::holds_alternative<emitters::DirectionalEmitter>(e.kind) ||
@@ -15,7 +15,7 @@ bool is_far(const emitters::Emitter& e) {
 
 }  // namespace
 
-EmitterChoice::EmitterChoice(const world::World& world) {
+EmitterChoice::EmitterChoice(const World& world) {
   std::vector<double> weights;
   std::vector<bool> far;
   double total[2] = {0, 0};
@@ -31,14 +31,14 @@ EmitterChoice::EmitterChoice(const world::World& world) {
   if (emitters_.empty()) return;
   double share[2] = {total[0] / (total[0] + total[1]), total[1] / (total[0] + total[1])};
   if (total[0] > 0 && total[1] > 0) {
-    share[1] = std::clamp(share[1], kGroupFloor, 1 - kGroupFloor);
+    share[1] = std::clamp(share[1], kMinOfGroup, 1 - kMinOfGroup);
     share[0] = 1 - share[1];
   }
   cdf_.push_back(0);
-  const double even = kEvenShare / static_cast<double>(weights.size());
+  const double even = kEvenPart / static_cast<double>(weights.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const int group = far[k] ? 1 : 0;
-    cdf_.push_back(cdf_.back() + (1 - kEvenShare) * share[group] * weights[k] / total[group] + even);
+    cdf_.push_back(cdf_.back() + (1 - kEvenPart) * share[group] * weights[k] / total[group] + even);
   }
   for (double& c : cdf_) c /= cdf_.back();
 }
@@ -51,4 +51,4 @@ EmitterChoice::Drawn EmitterChoice::draw(double u) const {
   return {emitters_[k], p, std::min(remapped, 0x1.fffffep-1f)};
 }
 
-}  // namespace lumirank::transport
+}  // namespace lumirank::world

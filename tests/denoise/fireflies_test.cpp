@@ -1,4 +1,4 @@
-#include "denoise/specks.h"
+#include "denoise/fireflies.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using image::Image;
 
 constexpr int kWidth = 40, kHeight = 30;
 
-struct Specked {
+struct WithFireflies {
   Image image{kWidth, kHeight, Rgb(0.2f, 0.4f, 0.1f)};
   std::vector<float> deviation = std::vector<float>(image.pixels.size(), 0.01f);
 
@@ -24,11 +24,11 @@ struct Specked {
     image.at(x, y) *= times;
     deviation[static_cast<std::size_t>(y * kWidth + x)] = (times - 1) * usual / deviations;
   }
-  Image clean() const { return without_specks(image, deviation); }
+  Image clean() const { return without_fireflies(image, deviation); }
 };
 
-TEST(Specks, AreAsBrightAsWhatIsAround) {
-  Specked s;
+TEST(Fireflies, AreAsBrightAsWhatIsAround) {
+  WithFireflies s;
   const Image calm = s.image;
   s.set(20, 10, 5, 1.2f);
   s.set(0, 0, 30, 1);
@@ -38,15 +38,15 @@ TEST(Specks, AreAsBrightAsWhatIsAround) {
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(clean.pixels[p][c], calm.pixels[p][c], 0.05f) << p;
 }
 
-TEST(Specks, WhatManySamplesHaveFoundStays) {
-  Specked s;
+TEST(Fireflies, WhatManySamplesHaveFoundStays) {
+  WithFireflies s;
   s.set(20, 10, 5, 4);
   const Image clean = s.clean();
   for (std::size_t p = 0; p < clean.pixels.size(); ++p) ASSERT_EQ(clean.pixels[p], s.image.pixels[p]) << p;
 }
 
-TEST(Specks, EdgesAndLinesStay) {
-  Specked s;
+TEST(Fireflies, EdgesAndLinesStay) {
+  WithFireflies s;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
       if (x >= 20 || x == 8 || y == 15) s.set(x, y, 6, 1);
@@ -54,8 +54,8 @@ TEST(Specks, EdgesAndLinesStay) {
 }
 
 // Of paths that seldom find a light the mean is right, and all of them are needed for it.
-TEST(Specks, TheMeanOfMuchNoiseStays) {
-  Specked s;
+TEST(Fireflies, TheMeanOfMuchNoiseStays) {
+  WithFireflies s;
   Rng random(3, Stage::projection, 8);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
@@ -68,8 +68,8 @@ TEST(Specks, TheMeanOfMuchNoiseStays) {
   EXPECT_NEAR(sum(s.clean()) / sum(s.image), 1, 0.01);
 }
 
-TEST(Specks, RefusesOtherSizes) {
-  Specked s;
+TEST(Fireflies, RefusesOtherSizes) {
+  WithFireflies s;
   s.deviation.pop_back();
   EXPECT_THROW(s.clean(), InternalError);
 }

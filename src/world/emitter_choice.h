@@ -1,4 +1,4 @@
-// Choice of the emitter that a particle or a sample starts from.
+// Choice of the emitter that a particle, a sample or a light path starts from.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 #include "world/world.h"
 
-namespace lumirank::transport {
+namespace lumirank::world {
 
 // Emitters by power, with two floors. Infinitely far light is measured over the disc that covers the whole
 // scene, of which an interior sees little through its windows; so neither the far nor the near emitters get
@@ -15,7 +15,7 @@ namespace lumirank::transport {
 // not left without.
 class EmitterChoice {
  public:
-  explicit EmitterChoice(const world::World& world);
+  explicit EmitterChoice(const World& world);
 
   bool empty() const { return cdf_.empty(); }  // nothing shines
   std::size_t size() const { return emitters_.size(); }
@@ -35,4 +35,4 @@ class EmitterChoice {
   std::vector<double> cdf_;
 };
 
-}  // namespace lumirank::transport
+}  // namespace lumirank::world
