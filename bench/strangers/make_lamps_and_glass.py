@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Writes six more scenes that nobody tuned for (Mitsuba 3 XML, PLY and a PNG): lamps of many kinds, and glass that is more than a pane.
+"""Writes seven more scenes that nobody tuned for (Mitsuba 3 XML, PLY and a PNG): lamps of many kinds, and glass that is more than a pane.
 
-    bench/strangers/make_lamps_and_glass.py OUT [bottles screen gallery pool stair shop]
+    bench/strangers/make_lamps_and_glass.py OUT [bottles glass screen gallery pool stair shop]
 
   bottles  bottles of colored glass, which absorbs, and a ball of clear glass on a table, by sun and sky from behind
+  glass    balls of glass on a table under two bulbs, each a lamp within a ball of glass: no path from the eye finds what these light
   screen   a room at night, lit by the picture of a television and by one lamp within a shade
   gallery  spots on pictures and on bronze statues under a black ceiling; a block of glass on a pedestal
   pool     an indoor pool: sun and sky come in by a glazed wall, and to the bottom of the water by its waves
@@ -58,6 +59,24 @@ def bottles(out):
     scene.sun_and_sky((0.3, 0.6, -0.8), 1)
     scene.lamp((0, 2.55, 0.8), (0.3, 0, 0), (0, 0, 0.3), (5, 4.8, 4.4))
     return scene, out / "bottles"
+
+
+def glass(out):
+    rng = random.Random(3)
+    scene = Scene("Glass on a table under bulbs.", ((1.6, 1.5, 2.0), (0, 0.8, 0)), 50, (640, 360))
+    wall, floor = scene.material("wall", diffuse((0.7, 0.68, 0.64))), scene.material("floor", diffuse((0.3, 0.2, 0.12)))
+    ceiling, top = scene.material("ceiling", diffuse((0.8, 0.8, 0.8))), scene.material("top", diffuse((0.6, 0.5, 0.4)))
+    balls, bulbs = scene.single("balls", GLASS), scene.single("bulbs", GLASS)
+    room(wall, floor, ceiling, (2.5, 2.5), 2.5)
+    top.box((-1, 0.68, -0.6), (1, 0.72, 0.6), 0.01)
+    for _ in range(12):
+        x, z, r = rng.uniform(-0.9, 0.9), rng.uniform(-0.5, 0.5), rng.uniform(0.06, 0.14)
+        balls.sphere((x, 0.722 + r, z), r, 48)
+    for x in (-0.5, 0.5):
+        bulbs.sphere((x, 1.9, 0), 0.12, 48)
+        scene.lamp((x, 1.9, 0), (0.03, 0, 0), (0, 0, 0.03), (900, 800, 640))
+        scene.lamp((x, 1.901, 0), (0.03, 0, 0), (0, 0, -0.03), (900, 800, 640))
+    return scene, out / "glass"
 
 
 def screen(out):
@@ -192,7 +211,7 @@ def shop(out):
     return scene, out / "shop"
 
 
-SCENES = {"bottles": bottles, "screen": screen, "gallery": gallery, "pool": pool, "stair": stair, "shop": shop}
+SCENES = {"bottles": bottles, "glass": glass, "screen": screen, "gallery": gallery, "pool": pool, "stair": stair, "shop": shop}
 
 
 if __name__ == "__main__":

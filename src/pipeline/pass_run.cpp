@@ -42,7 +42,11 @@ constexpr double kRestForPaths = 0.2, kPathsOfPass = 5, kPathsOfOnlyPass = 2;
 // What a pass counts for beside a path for each pixel, where it is asked whether all pixels are worth it.
 constexpr double kPathsWorthAPass = 2.5;
 constexpr double kPassesOfHalf = 3;  // that are better than paths
-constexpr int kPathsForError = 16;   // before a target for the error is believed
+// Of the picture's light that passes show and paths have not found: above that it is none of their noise.
+// Paths for each pixel of a small film that it is asked of.
+constexpr double kMissed = 0.03;
+constexpr int kPathsOfMissed = 2;
+constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
@@ -116,7 +120,7 @@ class PassRun {
                    took.by_pixel / shrunk};
       features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
       const bool few = too_few_fit(), half = few && may_be_half(eye_rays / shrunk);
-      paths_alone_ = few && !half;
+      paths_alone_ = few && !half && !paths_miss(small, image);
       if (paths_alone_) return;
       choose_size(half ? 2 : 1);
     } else if (timed()) {
@@ -250,7 +254,10 @@ class PassRun {
   bool may_be_paths_alone() const { return timed() && task_.may_be_paths; }
   bool rest_is_most() const {
     if (replays()) return asked_.choices.contains(kChoiceOfPaths);
-    return task_.may_be_paths && rest_->plan().piloted && rest_->plan().pilot.share > kRestForPaths;
+    // Where paths from the lamps are worth their time, these are hard to find from the eye, and through glass
+    // no path finds what they have lit: then passes come first, and show what paths would miss.
+    return task_.may_be_paths && rest_->plan().piloted && rest_->plan().light_paths == 0 &&
+           rest_->plan().pilot.share > kRestForPaths;
   }
   // There is no time to find out whether paths have less noise, and they are likely to.
   bool too_few_fit() const {
@@ -275,6 +282,15 @@ class PassRun {
     features_expected_ = before;
     return false;
   }
+  // Light that a pass of a small film shows, and paths do not. Only with light paths is there reason to ask:
+  // lamps that paths from the eye hardly find, and what is seen through glass is not found from these either.
+  bool paths_miss(const View& small, const image::Image& by_pass) {
+    if (rest_->plan().light_paths == 0) return false;
+    PathsBeside paths(*task_.world, small, asked_, sinks_);
+    if (!paths.add(kPathsOfMissed, sinks_)) throw Cancelled();
+    const double missed = missed_by_paths({by_pass, {}}, {paths.sent(), paths.sent_difference()});
+    return missed > kMissed;
+  }
   RenderResult by_paths_alone(const char* why) {
     task_.why = why;
     task_.denoiser_pixel_seconds = picture_->denoising().pixel_seconds();
@@ -291,7 +307,9 @@ class PassRun {
     passes_over_paths_ = passes_over_paths(picture_->with_noise(*rest_), passes_seconds_,
                                            {paths_->sent(), paths_->sent_difference()}, paths_->seconds(),
                                            paths_->light_paths() > 0);
-    by_paths_ = by_paths ? *by_paths == 1 : passes_over_paths_ > 1;
+    const double missed =
+        missed_by_paths(picture_->with_noise(*rest_), {paths_->sent(), paths_->sent_difference()});
+    by_paths_ = by_paths ? *by_paths == 1 : passes_over_paths_ > 1 && missed < kMissed;
     choices_.record("by_paths", by_paths_ ? 1 : 0);
     char ratio[32];
     std::snprintf(ratio, sizeof ratio, "%.2g", passes_over_paths_);

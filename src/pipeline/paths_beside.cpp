@@ -22,6 +22,9 @@ pathtrace::ReferenceOptions all_light(const world::World& world, const View& vie
   return options;
 }
 
+// Light is missed over so many pixels a side together, beyond so many deviations.
+constexpr int kMissedTogether = 8;
+constexpr double kSureOfMissed = 2;
 constexpr double kLateOfPath = 0.3, kLateOfBudget = 0.01;
 
 // Over what is usual around a pixel: a pixel's own noise is in its own value, and few paths that found
@@ -93,6 +96,29 @@ double own_emission_over_apart(const image::Image& picture, const image::Image& 
 int paths_that_fit(double left, double each, double budget) {
   const double late = std::min(kLateOfPath * each, kLateOfBudget * budget);
   return static_cast<int>(std::clamp((left + late) / each, 0.0, 1.0 * (1 << 20)));
+}
+
+double missed_by_paths(const NoisyPicture& passes, const NoisyPicture& paths) {
+  const image::Image &more = passes.picture, &less = paths.picture;
+  double usual = 0;
+  for (const Rgb& p : more.pixels) usual += brightness(p);
+  usual *= kOfUsual / static_cast<double>(std::max<std::size_t>(1, more.pixels.size()));
+  double missed = 0;
+  for (int y = 0; y < more.height; y += kMissedTogether)
+    for (int x = 0; x < more.width; x += kMissedTogether) {
+      double by_passes = 0, by_paths = 0, apart_of_passes = 0, apart_of_paths = 0;
+      int pixels = 0;
+      for (int v = y; v < std::min(y + kMissedTogether, more.height); ++v)
+        for (int u = x; u < std::min(x + kMissedTogether, more.width); ++u, ++pixels) {
+          by_passes += brightness(more.at(u, v)), by_paths += brightness(less.at(u, v));
+          if (!passes.difference.pixels.empty()) apart_of_passes += brightness(passes.difference.at(u, v));
+          apart_of_paths += brightness(paths.difference.at(u, v));
+        }
+      const double noise = std::hypot(apart_of_passes, apart_of_paths) / 2;
+      const double lacks = by_passes - by_paths - kSureOfMissed * noise;
+      if (lacks > 0) missed += pixels * lacks / (by_passes + pixels * usual);
+    }
+  return missed / static_cast<double>(std::max<std::size_t>(1, more.pixels.size()));
 }
 
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,

@@ -47,6 +47,12 @@ struct NoisyPicture {
   image::Image picture, difference;
 };
 
+// The part of the picture's light that passes show and paths have not: over what is there and a tenth of what
+// is usual, in the mean over pixels, beyond the noise of both in small blocks. Not noise, but what no path
+// may find at all: what is lit by a lamp within glass, and seen through glass. `passes`: the difference may
+// be empty, where it is not known.
+double missed_by_paths(const NoisyPicture& passes, const NoisyPicture& paths);
+
 // Noise of passes over that of paths for the same seconds, as eyes see it: over what is there and a tenth of
 // what is usual, in the mean over pixels. That of passes counts worse than it is: it is alike in neighbors,
 // which share lights, and a denoiser leaves more of it. Still worse beside light paths, without which the

@@ -23,9 +23,9 @@ constexpr int kSmallestDenoised = 16;
 // Film samples of each pixel; and of a larger film's than is rendered.
 constexpr int kEverywhere = 4, kEverywhereOfLarger = 2;
 // Film samples at edges, beside those of all pixels; under a budget as many as this part of what is left
-// pays, but no fewer than leave fur dotted.
+// pays, but no fewer than leave fur dotted, unless these took a fifth.
 constexpr int kEdgeSamples = 12, kMinEdgeSamples = 5;
-constexpr double kTimeOfEdges = 0.08;
+constexpr double kTimeOfEdges = 0.08, kMostOfEdges = 0.2;
 // Beside these where emission glares.
 constexpr int kGlaringSamples = 48;
 
@@ -105,12 +105,17 @@ View PictureDenoising::filtered(View view) const {
 
 bool PictureDenoising::trace_first(const world::World& world, const View& view, const Recipe& recipe,
                                    double left, const Sinks& sinks) {
-  const Timer timer;
   features_.emplace(world, view, recipe);
   if (!features_->trace_all(samples_everywhere(), sinks)) return false;
-  const double one = timer.seconds() / samples_everywhere();  // in each pixel
-  if (!features_->trace_differing(edge_samples(one, left), sinks)) return false;
-  const int glaring = samples_for("glaring_samples", one * features_->glaring(), left, {0, kGlaringSamples});
+  // What a sample takes at edges is measured there: glass has many, and eye rays branch in it.
+  const Timer timer;
+  const int first = settings_.view.film_samples.value_or(kEdgeSamples) > samples_everywhere() ? 1 : 0;
+  if (!features_->trace_differing(first, sinks)) return false;
+  const double at_edges = timer.seconds();
+  if (!features_->trace_differing(edge_samples(at_edges, left) - first, sinks, 1)) return false;
+  const double differing = features_->differing();
+  const double glaring_pixels = differing > 0 ? features_->glaring() / differing : 0;
+  const int glaring = samples_for("glaring_samples", at_edges * glaring_pixels, left, {0, kGlaringSamples});
   return settings_.view.film_samples || features_->trace_glaring(glaring, sinks);
 }
 
@@ -118,10 +123,11 @@ bool PictureDenoising::trace_another(int number, const Sinks& sinks) {
   return number < kEdgeSamples || features_->trace_another(static_cast<std::uint64_t>(number), sinks);
 }
 
-int PictureDenoising::edge_samples(double one_everywhere, double left) const {
+int PictureDenoising::edge_samples(double one, double left) const {
   if (settings_.view.film_samples) return std::max(0, *settings_.view.film_samples - samples_everywhere());
-  return samples_for("edge_samples", one_everywhere * features_->differing(), left,
-                     {kMinEdgeSamples, kEdgeSamples});
+  const bool dear = one > 0 && kMinEdgeSamples * one > kMostOfEdges * left;
+  const int min = dear ? std::max(1, static_cast<int>(kMostOfEdges * left / one)) : kMinEdgeSamples;
+  return samples_for("edge_samples", one, left, {min, kEdgeSamples});
 }
 
 // As many as may be had, or under a budget as a part of what is left pays, where one takes so long.

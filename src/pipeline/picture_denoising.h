@@ -75,7 +75,8 @@ class PictureDenoising {
   void try_denoiser(const View& view);
   int samples_everywhere() const;
   bool timed() const { return settings_.time > 0; }
-  int edge_samples(double one_everywhere, double left) const;
+  // Of each pixel at an edge, where one in all of them takes so long.
+  int edge_samples(double one, double left) const;
   struct SampleRange {
     int min, max;
   };

@@ -112,8 +112,8 @@ bool PixelFeatureTracing::trace_all(int samples, const Sinks& sinks) {
   return true;
 }
 
-bool PixelFeatureTracing::trace_differing(int samples, const Sinks& sinks) {
-  return trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 2), Edge::some, sinks);
+bool PixelFeatureTracing::trace_differing(int samples, const Sinks& sinks, std::uint64_t portion) {
+  return trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 2, portion), Edge::some, sinks);
 }
 
 bool PixelFeatureTracing::trace_glaring(int samples, const Sinks& sinks) {

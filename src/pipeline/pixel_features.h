@@ -33,8 +33,8 @@ class PixelFeatureTracing {
   // emission by more than a screen shows: a hundredth of a sunny window is seen on a bar across it.
   double differing() const { return part_from(Edge::some); }
   double glaring() const { return part_from(Edge::glaring); }
-  // So many more for these. False if it was cancelled.
-  bool trace_differing(int samples, const Sinks& sinks);
+  // So many more for these; the first may come in two portions. False if it was cancelled.
+  bool trace_differing(int samples, const Sinks& sinks, std::uint64_t portion = 0);
   bool trace_glaring(int samples, const Sinks& sinks);
   // One more for each pixel; `number`: which. False if it was cancelled.
   bool trace_another(std::uint64_t number, const Sinks& sinks);

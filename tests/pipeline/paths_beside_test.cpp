@@ -69,6 +69,30 @@ TEST(PathsBeside, WithoutEmissionBothAreAlike) {
   EXPECT_EQ(own_emission_over_apart(black, black, black, 8, 32), 1);
 }
 
+// A ball of glass that paths leave black, in a sixteenth of the picture.
+TEST(MissedByPaths, IsWhatPassesShowAndPathsDoNot) {
+  const NoisyPicture passes = even_noise(1, 0.2f);
+  NoisyPicture paths = even_noise(1, 0.3f);
+  EXPECT_EQ(missed_by_paths(passes, paths), 0);
+  for (int y = 16; y < 32; ++y)
+    for (int x = 8; x < 24; ++x) paths.picture.at(x, y) = Rgb(0), paths.difference.at(x, y) = Rgb(0);
+  EXPECT_NEAR(missed_by_paths(passes, paths), (1 - 0.2) / 1.1 / 16, 1e-6) << "beyond two deviations";
+  EXPECT_NEAR(missed_by_paths({passes.picture, {}}, paths), 1 / 1.1 / 16, 1e-6);
+  EXPECT_EQ(missed_by_paths(paths, passes), 0) << "what paths alone have found, as caustics";
+}
+
+// What few paths have found is noise, however little the others have.
+TEST(MissedByPaths, NoiseIsNoLightThatIsMissed) {
+  const NoisyPicture passes = even_noise(1, 0.05f);
+  NoisyPicture paths{image::Image(kSide, kSide, Rgb(0.2f)), image::Image(kSide, kSide)};
+  for (int y = 0; y < kSide; y += 4)
+    for (int x = 0; x < kSide; x += 4) {
+      const float found = (x + y) % 8 ? 1.0f : 19;  // a fifth of the light in every second one is lacking
+      paths.picture.at(x, y) = Rgb(found), paths.difference.at(x, y) = Rgb(2 * found);
+    }
+  EXPECT_LT(missed_by_paths(passes, paths), 0.03);
+}
+
 TEST(PathsThatFit, MayEndALittleLate) {
   EXPECT_EQ(paths_that_fit(5, 1, 100), 5);
   EXPECT_EQ(paths_that_fit(4.75, 1, 100), 5)
