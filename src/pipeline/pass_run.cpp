@@ -294,7 +294,10 @@ class PassRun {
   RenderResult by_paths_alone(const char* why) {
     task_.why = why;
     task_.denoiser_pixel_seconds = picture_->denoising().pixel_seconds();
-    return run_by_paths(std::move(task_), asked_, sinks_, preview_);
+    RenderSettings settings = asked_;
+    // What no clock decided is decided again where the report is repeated.
+    if (!timed()) settings.method.name = "auto";
+    return run_by_paths(std::move(task_), settings, sinks_, preview_);
   }
 
   // False if it was cancelled.

@@ -71,9 +71,9 @@ class PathRun {
   void plan() {
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
     wanted_ = by_hand > 0 ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPaths : kUsualPaths;
+    if (!timed()) return;
     if (const auto earlier = choices_.earlier(kChoiceOfPaths, kMaxPaths))
       wanted_ = static_cast<int>(*earlier);
-    if (!timed()) return;
     const int divisor = chosen_divisor();
     choices_.record("film_divisor", divisor);
     if (divisor > 1) view_ = smaller(view_, divisor);
@@ -150,7 +150,7 @@ class PathRun {
   }
 
   void picture() {
-    if (!result_.interrupted) choices_.record(kChoiceOfPaths, paths());
+    if (timed() && !result_.interrupted) choices_.record(kChoiceOfPaths, paths());
     if (result_.interrupted) choices_ = {};
     result_.picture = sized_for(film_->result().image, task_.view);
     if (result_.interrupted) return;
