@@ -16,12 +16,17 @@ double sum_of(const Image& image) {
   return sum;
 }
 
-// A lamp is seen: the paths that end there are the same that surfaces' light comes by.
-TEST(PathFilm, WhatSurfacesSendIsAllButEmission) {
+test::SceneMaker box_with_lamp() {
   test::SceneMaker scene;
   scene.box_inside(1, scene.diffuse({0.7f, 0.6f, 0.5f}));
   scene.lamp({0, 0.2f, 0.9f}, {0, 0.3f, 0}, {0.3f, 0, 0}, Rgb(4), scene.diffuse(Rgb(0.2f)));
   scene.desc.sensors.push_back(test::sensor({0, 0, -0.9f}, {0, 0, 1}, {0, 1, 0}, 80, 12, 8));
+  return scene;
+}
+
+// A lamp is seen: the paths that end there are the same that surfaces' light comes by.
+TEST(PathFilm, WhatSurfacesSendIsAllButEmission) {
+  test::SceneMaker scene = box_with_lamp();
   const world::World world = scene.build();
   const world::View view = world::make_view(scene.desc, {});
   ReferenceOptions options;
@@ -42,10 +47,7 @@ TEST(PathFilm, WhatSurfacesSendIsAllButEmission) {
 // What pixels say of their own noise, against what pictures by other paths differ by. Paths of a pixel are
 // spread evenly, so they differ by no more.
 TEST(PathFilm, DeviationIsThatOfOtherPaths) {
-  test::SceneMaker scene;
-  scene.box_inside(1, scene.diffuse({0.7f, 0.6f, 0.5f}));
-  scene.lamp({0, 0.2f, 0.9f}, {0, 0.3f, 0}, {0.3f, 0, 0}, Rgb(4), scene.diffuse(Rgb(0.2f)));
-  scene.desc.sensors.push_back(test::sensor({0, 0, -0.9f}, {0, 0, 1}, {0, 1, 0}, 80, 12, 8));
+  test::SceneMaker scene = box_with_lamp();
   const world::World world = scene.build();
   const world::View view = world::make_view(scene.desc, {});
   constexpr int kPictures = 48;
