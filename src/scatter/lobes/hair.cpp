@@ -97,7 +97,7 @@ bool hair_specular_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
   return true;
 }
 
-// The share above, by as many values of δ as leave a hundredth of error.
+// The share above, by so few values of δ as keep what albedo() promises (tests/scatter/energy_test.cpp).
 Rgb hair_specular_albedo(LobeView view, Vec3f wo) {
   constexpr int kDeltas = 8;
   const Lobe& lobe = view.lobe;
