@@ -46,6 +46,9 @@ constexpr double kPassesOfHalf = 3;  // that are better than paths
 // Paths for each pixel of a small film that it is asked of.
 constexpr double kMissed = 0.03;
 constexpr int kPathsOfMissed = 2;
+// Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
+// takes two of these at least, and none so dear has had less noise.
+constexpr double kDearPath = 0.75;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
@@ -259,18 +262,21 @@ class PassRun {
     return task_.may_be_paths && rest_->plan().piloted && rest_->plan().light_paths == 0 &&
            rest_->plan().pilot.share > kRestForPaths;
   }
+  // Of one path for each pixel, as the rest's pilot says; 0: there was none.
+  double path_seconds() const {
+    return rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
+           static_cast<double>(view_.height);
+  }
   // There is no time to find out whether paths have less noise, and they are likely to.
   bool too_few_fit() const {
-    const double path = rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
-                        static_cast<double>(view_.height);
+    const double path = path_seconds();
     const double pass = expected_.total() * (1 + rest_share()), passes = kPassesBeforePaths + kWorthATrial;
     return may_be_paths_alone() && rest_->plan().piloted && passes * pass > left() &&
            pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path;
   }
   // Where paths alone would be of a smaller film as well, passes of that one are tried if some fit.
   bool may_be_half(double one_feature) {
-    const double path = rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
-                        static_cast<double>(view_.height);
+    const double path = path_seconds();
     if (!is_whole_film(task_.view) || !picture_->denoising().wanted() ||
         left() > paths_worth_a_pixel(view_) * path)
       return false;
@@ -338,12 +344,12 @@ class PassRun {
   bool try_paths() {
     const auto earlier = choices_.earlier("trial_paths", kMaxBeside);
     const double pass = passes_seconds_ / passes_;
-    if (earlier ? *earlier == 0 : left() < kWorthATrial * pass) return true;
+    if (earlier ? *earlier == 0 : left() < kWorthATrial * pass || path_seconds() > kDearPath * pass)
+      return true;
     paths_.emplace(*task_.world, view_, asked_, sinks_);
     if (earlier) return paths_->add(static_cast<int>(*earlier), sinks_);
     if (!paths_->add(1, sinks_)) return false;
-    // Where one path takes longer than a pass, there is no time to find out.
-    if (paths_->seconds() > pass) {
+    if (paths_->seconds() > kDearPath * pass) {
       paths_.reset();
       return true;
     }

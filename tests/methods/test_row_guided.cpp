@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
+#include "base/random.h"
 #include "matrix/synthetic.h"
 #include "methods/method.h"
 #include "methods/row_guided_sampling/light_records.h"
@@ -72,13 +74,58 @@ TEST(SpreadFraction, BlocksAreScrambledApart) {
   }
 }
 
+TEST(BoundedDistribution, GoesByPowerDistanceAndDirections) {
+  // Points straight above a floor; a surface that faces it, and one that faces away.
+  const std::vector<Vec3f> positions{{0, 0, 1}, {0, 0, 3}, {0, 0, 1}, {0, 0, 1}};
+  const std::vector<Vec3f> normals{{}, {}, {0, 0, -1}, {0, 0, 1}};
+  const std::vector<float> power{1, 2, 1, 1};
+  matrix::ColumnFeatures columns;
+  columns.position = positions, columns.normal = normals, columns.power = power;
+  const std::vector<Vec3f> place{{0, 0, 0}}, up{{0, 0, 1}};
+  matrix::RowFeatures rows;
+  rows.position = place, rows.normal = up;
+  const std::vector<matrix::Index> group{0};
+  BoundedDistribution bounded;
+  EXPECT_TRUE(bounded.empty());
+  bounded.update({columns, 4}, rows, group);
+  ASSERT_FALSE(bounded.empty());
+  EXPECT_NEAR(bounded.probability(1) / bounded.probability(0), 2.0 / 9, 1e-5);
+  EXPECT_NEAR(bounded.probability(2) / bounded.probability(0), 4, 1e-4);  // 1/π beside 1/(4π)
+  EXPECT_GT(bounded.probability(3), 0);
+  EXPECT_LT(bounded.probability(3), bounded.probability(0));
+  std::vector<int> met(4);
+  constexpr int kSteps = 10000;
+  for (int k = 0; k < kSteps; ++k) ++met[bounded.draw((k + 0.5) / kSteps)];
+  for (matrix::Index j = 0; j < 4; ++j)
+    EXPECT_NEAR(met[j], kSteps * static_cast<double>(bounded.probability(j)), 1.01) << j;
+}
+
+TEST(BoundedDistribution, KnowsNothingWithoutPlaces) {
+  const std::vector<float> power{1, 2};
+  matrix::ColumnFeatures columns;
+  columns.power = power;
+  BoundedDistribution bounded;
+  const std::vector<matrix::Index> group{0};
+  bounded.update({columns, 2}, {}, group);
+  EXPECT_TRUE(bounded.empty());
+}
+
 // Probabilities of all columns add up to 1, and draws are as frequent as they say.
 TEST(RecordMixture, SaysWithWhatProbabilityItDraws) {
-  const auto matrix = matrix::sparse_matrix({40, 60, 1}, 0.3);
+  auto matrix = matrix::sparse_matrix({40, 60, 1}, 0.3);
+  Rng rng(1, Stage::test);
+  const auto place = [&] { return Vec3f{rng.next_float(), rng.next_float(), rng.next_float()}; };
+  std::generate_n(std::back_inserter(matrix.row_position), 40, place);
+  std::generate_n(std::back_inserter(matrix.column_position), 60, place);
+  matrix.column_normal.resize(60), matrix.power.assign(60, 1.0f);
   const std::vector<matrix::Index> rows{3, 11, 17, 28, 35};
   const LightRecords records(matrix, rows, [](std::size_t) { return true; });
   ASSERT_EQ(records.size(), rows.size());
-  const RecordMixture mixture(records, 20);
+  BoundedDistribution bounded;
+  const std::vector<matrix::Index> group{18, 19, 20, 21};
+  bounded.update({matrix.column_features(), matrix.columns()}, matrix.row_features(), group);
+  ASSERT_FALSE(bounded.empty());
+  const RecordMixture mixture(records, bounded, 20);
   constexpr int kSteps = 60000;
   std::vector<int> met(60);
   std::vector<float> probability(60);
@@ -92,8 +139,8 @@ TEST(RecordMixture, SaysWithWhatProbabilityItDraws) {
   double sum = 0;
   for (std::size_t j = 0; j < 60; ++j) {
     sum += static_cast<double>(probability[j]);
-    // Each of the nine distributions may gain or lose a step at either end of its column.
-    EXPECT_NEAR(met[j], kSteps * static_cast<double>(probability[j]), 18.1) << j;
+    // Each of the ten distributions may gain or lose a step at either end of its column.
+    EXPECT_NEAR(met[j], kSteps * static_cast<double>(probability[j]), 20.1) << j;
   }
   EXPECT_NEAR(sum, 1, 1e-5);  // all columns have power, so all were met
 }

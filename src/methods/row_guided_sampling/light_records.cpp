@@ -157,13 +157,23 @@ LightRecords::Near LightRecords::nearest(Index row) const {
   near.fill(kNone);
   std::array<float, kNear> distance;
   distance.fill(std::numeric_limits<float>::infinity());
-  for (std::size_t k = 0; k < count_; ++k) {
-    float d = 0;
-    for (std::size_t c = 0; c < at.size(); ++c) d += (places_[c][k] - at[c]) * (places_[c][k] - at[c]);
-    if (!(d < distance.back())) continue;
-    std::size_t to = kNear - 1;
-    for (; to > 0 && distance[to - 1] > d; --to) distance[to] = distance[to - 1], near[to] = near[to - 1];
-    distance[to] = d, near[to] = static_cast<std::uint32_t>(k);
+  // All distances of a stretch first: few of them are among the least.
+  constexpr std::size_t kTogether = 64;
+  std::array<float, kTogether> of;
+  for (std::size_t first = 0; first < count_; first += kTogether) {
+    const std::size_t count = std::min(kTogether, count_ - first);
+    of.fill(0);
+    for (std::size_t c = 0; c < at.size(); ++c) {
+      const float* place = places_[c].data() + first;
+      for (std::size_t k = 0; k < count; ++k) of[k] += (place[k] - at[c]) * (place[k] - at[c]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!(of[k] < distance.back())) continue;
+      std::size_t to = kNear - 1;
+      for (; to > 0 && distance[to - 1] > of[k]; --to)
+        distance[to] = distance[to - 1], near[to] = near[to - 1];
+      distance[to] = of[k], near[to] = static_cast<std::uint32_t>(first + k);
+    }
   }
   return near;
 }

@@ -8,15 +8,18 @@ namespace lumirank::methods {
 
 namespace {
 
-// What goes to rows with visibility and without; the others are drawn by power.
-constexpr float kLitShare = 0.6f, kUnoccludedShare = 0.25f;
+// What goes to rows with visibility, without, and to bounds; the others are drawn by power.
+constexpr float kLitShare = 0.55f, kUnoccludedShare = 0.15f, kBoundedShare = 0.2f;
+// Among the distributions' numbers.
+constexpr std::uint32_t kBounded = LightRecords::kPower - 1;
 // Records see what a receiver sees, or nearly: what none of them sees is looked for more seldom, not never.
 constexpr float kLeastVisible = 0.05f;
 
 }  // namespace
 
-RecordMixture::RecordMixture(const LightRecords& records, matrix::Index row)
-    : records_(records), power_(records.distribution(LightRecords::kPower)) {
+RecordMixture::RecordMixture(const LightRecords& records, const BoundedDistribution& bounded,
+                             matrix::Index row)
+    : records_(records), bounded_(bounded), power_(records.distribution(LightRecords::kPower)) {
   const LightRecords::Near nearest = records.nearest(row);
   std::size_t known = 0, lit = 0;
   for (const std::uint32_t record : nearest)
@@ -41,6 +44,7 @@ RecordMixture::RecordMixture(const LightRecords& records, matrix::Index row)
     near.unoccluded_light = records.brightness(2 * record + 1) / static_cast<float>(near.unoccluded.total());
     near_[near_count_++] = near;
   }
+  if (!bounded.empty()) piece(kBounded, bounded_share_ = kBoundedShare);
   power_share_ = static_cast<float>(1 - end) / static_cast<float>(power_.total());
   pieces_[piece_count_++] = {1, LightRecords::kPower};
 }
@@ -48,23 +52,33 @@ RecordMixture::RecordMixture(const LightRecords& records, matrix::Index row)
 void RecordMixture::draw(double offset, std::span<GuidedColumn> drawn) const {
   constexpr std::size_t kTogether = 16;
   std::array<RunningSum::Search, kTogether> searches;
+  std::array<std::size_t, kTogether> searched;
   std::size_t k = 0;
   for (std::size_t first = 0; first < drawn.size(); first += kTogether) {
-    const std::size_t count = std::min(kTogether, drawn.size() - first);
-    for (std::size_t m = 0; m < count; ++m) {
-      const double u = (static_cast<double>(first + m) + offset) / static_cast<double>(drawn.size());
+    const std::size_t end = std::min(first + kTogether, drawn.size());
+    std::size_t count = 0;
+    for (std::size_t m = first; m < end; ++m) {
+      const double u = (static_cast<double>(m) + offset) / static_cast<double>(drawn.size());
       while (k + 1 < piece_count_ && u >= pieces_[k].end) ++k;
       const double begin = k > 0 ? pieces_[k - 1].end : 0;
       const double within = std::min((u - begin) / (pieces_[k].end - begin), 0x1.fffffffffffffp-1);
-      searches[m] = RunningSum::Search(records_.distribution(pieces_[k].distribution), within);
+      const std::uint32_t number = pieces_[k].distribution;
+      if (number == kBounded) {
+        drawn[m].column = bounded_.draw(within);
+      } else {
+        searched[count] = m;
+        searches[count++] = RunningSum::Search(records_.distribution(number), within);
+      }
     }
     RunningSum::Search::finish(std::span(searches).first(count));
-    for (std::size_t m = 0; m < count; ++m) drawn[first + m] = guided(searches[m].column());
+    for (std::size_t s = 0; s < count; ++s) drawn[searched[s]].column = searches[s].column();
+    for (std::size_t m = first; m < end; ++m) drawn[m] = guided(drawn[m].column);
   }
 }
 
 GuidedColumn RecordMixture::guided(std::uint32_t column) const {
   float probability = power_share_ * static_cast<float>(power_.units(column)), lit = 0, whole = 0;
+  if (bounded_share_ > 0) probability += bounded_share_ * bounded_.probability(column);
   for (std::size_t n = 0; n < near_count_; ++n) {
     const NearRecord& near = *near_[n];
     const auto l = static_cast<float>(near.lit.units(column));

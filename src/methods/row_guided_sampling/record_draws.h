@@ -7,6 +7,7 @@
 #include <span>
 
 #include "matrix/lighting_matrix.h"
+#include "methods/row_guided_sampling/bounded_columns.h"
 #include "methods/row_guided_sampling/light_records.h"
 
 namespace lumirank::methods {
@@ -17,12 +18,13 @@ struct GuidedColumn {
   float visible;      // what the records near think of its visibility, in (0, 1]
 };
 
-// A mixture of the distributions of the nearest records, with and without visibility, and of the columns'
-// power: where one of them knows nothing of a column, another does, and no column that has power is out of
-// reach (importance caching: Georgiev, Křivánek, Popov and Slusallek 2012).
+// A mixture of the distributions of the nearest records, with and without visibility, of bounds (may be
+// empty), and of the columns' power: where one of them knows nothing of a column, another does, and no column
+// that has power is out of reach (importance caching: Georgiev, Křivánek, Popov and Slusallek 2012). Records
+// and bounds must outlive it.
 class RecordMixture {
  public:
-  RecordMixture(const LightRecords& records, matrix::Index row);
+  RecordMixture(const LightRecords& records, const BoundedDistribution& bounded, matrix::Index row);
 
   // As many columns as `drawn` holds, in equal steps of [0, 1) from `offset`, in [0, 1), steps on: they are
   // spread over the distributions, and in each of them over its columns in their order.
@@ -42,11 +44,12 @@ class RecordMixture {
   };
 
   const LightRecords& records_;
-  std::array<Piece, 2 * LightRecords::kNear + 1> pieces_;
+  const BoundedDistribution& bounded_;
+  std::array<Piece, 2 * LightRecords::kNear + 2> pieces_;
   std::size_t piece_count_ = 0, near_count_ = 0;
   std::array<std::optional<NearRecord>, LightRecords::kNear> near_;
   RunningSum power_;
-  float power_share_ = 1;
+  float bounded_share_ = 0, power_share_ = 1;
 };
 
 // The fraction of a scrambled van der Corput sequence (Owen 1995): any 2^k ≤ 64 numbers after one another

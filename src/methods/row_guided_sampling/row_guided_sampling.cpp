@@ -6,9 +6,9 @@
 // from receiver to receiver, without any shape that a denoiser or an eye takes for something.
 //
 // Deviations from Georgiev et al.: one draw from a mixture with fixed shares where they weigh four
-// distributions by the α-max heuristic, which needs each distribution's own draws; no bounded
-// distribution, for which the unoccluded one and power stand in; records are rows of the
-// picture, half of them where places and directions are far from all others', and not refined by error.
+// distributions by the α-max heuristic, which needs each distribution's own draws; the bounded distribution
+// is that of a group of receivers instead of a record's; records are rows of the picture, half of them where
+// places and directions are far from all others', and not refined by error.
 //
 // Unbiased: records decide probabilities, and every column that has power can be drawn.
 #include "methods/row_guided_sampling/row_guided_sampling.h"
@@ -55,11 +55,19 @@ constexpr double kRecordsShare = 0.25;
 // Receivers whose entries are asked for together: neighbors.
 constexpr std::size_t kGuidedTogether = 32;
 
+// By what columns are drawn.
+struct Guides {
+  const LightRecords& records;
+  BoundedColumns columns;
+  matrix::RowFeatures rows;
+};
+
 struct GuidedWorkspace {
   explicit GuidedWorkspace(const matrix::LightingMatrix& matrix)
       : reader(matrix.reader()), row_ids(matrix.row_features().id) {}
   std::unique_ptr<matrix::EntryReader> reader;
   std::span<const std::uint64_t> row_ids;
+  BoundedDistribution bounded;
   std::vector<GuidedColumn> candidates;  // of all rows of a group, as many for each
   std::vector<Index> rows, columns;
   std::vector<Rgb> entries;
@@ -93,12 +101,14 @@ class RowGuidedSampling final : public Method {
     if (!estimate.interrupted) {
       WorkspacePool<GuidedWorkspace> pool([&] { return std::make_unique<GuidedWorkspace>(matrix); });
       const RowGroups groups = stretches(matrix.rows());
+      const Guides guides{records, BoundedColumns(matrix.column_features(), matrix.columns()),
+                          matrix.row_features()};
       const TurnMethod method{.entries_per_row =
                                   static_cast<double>(settings_.samples * settings_.candidates)};
       const RowGroupResult pass =
           run_in_turns(turns, groups, {options, timer, 0, "columns"}, method, estimate.sums, pool,
                        [&](std::size_t group, GuidedWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
-                         sum_rows(groups[group], records, options.seed, turn, w, sums);
+                         sum_rows(groups[group], guides, options.seed, turn, w, sums);
                        });
       turns.write(estimate.trace);
       note_stop(pass, estimate);
@@ -161,14 +171,15 @@ class RowGuidedSampling final : public Method {
     return {std::move(all), std::move(first)};
   }
 
-  void sum_rows(std::span<const Index> rows, const LightRecords& records, std::uint64_t seed,
-                const Turn& turn, GuidedWorkspace& w, std::span<Rgb> sums) const {
+  void sum_rows(std::span<const Index> rows, const Guides& guides, std::uint64_t seed, const Turn& turn,
+                GuidedWorkspace& w, std::span<Rgb> sums) const {
     const std::size_t samples = turn.scaled(settings_.samples), count = samples * settings_.candidates;
     const Timer timer;
     const std::uint64_t scramble = hash_ids(seed, Stage::method, turn.number);
+    w.bounded.update(guides.columns, guides.rows, rows);
     w.candidates.resize(rows.size() * count);
     for (std::size_t r = 0; r < rows.size(); ++r)
-      RecordMixture(records, rows[r])
+      RecordMixture(guides.records, w.bounded, rows[r])
           .draw(spread_fraction(rows[r], scramble), std::span(w.candidates).subspan(r * count, count));
     const double drawn = timer.seconds();
     w.rows.clear(), w.columns.clear(), w.scale.clear(), w.ends.clear();
