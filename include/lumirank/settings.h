@@ -49,6 +49,8 @@ enum class Panes { straight, exact };
 enum class ReferencePaths { all, columns, rest };
 // automatic: where the library is found.
 enum class Denoise { automatic, on, off };
+// What a target for the error is of, as in PictureError (lumirank/info.h).
+enum class ErrorMetric { l1, relmse, flip };
 enum class ToneMap { none, reinhard, agx };
 
 // What is rendered, and how finely.
@@ -101,7 +103,9 @@ struct MethodSettings {
   std::string name = "auto";
   std::map<std::string, std::string> parameters = {};  // by key; list_methods() has them
   std::uint64_t seed = 0;   // other choices on the same lights and receivers; 0: the render's seed
-  double target_error = 0;  // estimated relative error to stop at; 0: the method's default
+  double target_error = 0;  // estimated error to stop at; 0: the method's default
+  // Of pictures of passes or paths any, by the noise of all of them; else relative L1 alone.
+  ErrorMetric error_metric = ErrorMetric::l1;
 };
 
 // Light that is traced beside the matrix.

@@ -17,6 +17,7 @@
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
 #include "pipeline/memory.h"
+#include "pipeline/noise_metric.h"
 #include "pipeline/pass_run.h"
 #include "pipeline/path_run.h"
 #include "pipeline/preview_throttle.h"
@@ -90,6 +91,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
                         settings.choices.contains(pipeline::kChoiceOfPaths);
     const bool passes = pipeline::runs_in_passes(*task.info, settings) && !in_media;
     if (passes) pipeline::check_passes(settings);
+    pipeline::check_metric(settings.method, passes || by_paths);
     pipeline::check_layers(*task.info, settings);
     methods::require_capabilities(*task.info, transport::SceneMatrix::kCapabilities);
     task.method = task.info->make(settings.method.parameters);

@@ -12,6 +12,7 @@
 #include "methods/tensor_clustering/tensor_clustering.h"
 #include "pipeline/develop.h"
 #include "pipeline/memory.h"
+#include "pipeline/noise_metric.h"
 #include "pipeline/report.h"
 #include "pipeline/rest_tracing.h"
 #include "pipeline/shot.h"
@@ -123,6 +124,7 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
   };
   require(settings.time <= 0, "it keeps no time budget",
           "leave out --time; --set columns=… decides its time");
+  pipeline::check_metric(settings.method, false);
   require(settings.layers.empty(), "it makes no layers", "leave out --aov, or choose another method");
   require(!settings.view.is_open(), "its frames are of one moment each",
           "leave out --shutter, or choose another method");

@@ -12,6 +12,7 @@
 #include "pipeline/develop.h"
 #include "pipeline/layers.h"
 #include "pipeline/memory.h"
+#include "pipeline/noise_metric.h"
 
 namespace lumirank {
 
@@ -61,6 +62,7 @@ std::vector<std::string> Prepared::lights() const {
 Prepared prepare(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                  const Prepared& previous) {
   validate(settings);
+  pipeline::check_metric(settings.method, false);
   if (settings.view.is_open())
     throw InputError("what is prepared is of one moment", "leave out the shutter, or use render()");
   auto impl = std::make_shared<Prepared::Impl>();

@@ -11,6 +11,7 @@
 #include "pipeline/develop.h"
 #include "pipeline/layers.h"
 #include "pipeline/media_run.h"
+#include "pipeline/noise_metric.h"
 #include "pipeline/pass_picture.h"
 #include "pipeline/pass_plan.h"
 #include "pipeline/pass_tracer.h"
@@ -50,6 +51,7 @@ constexpr int kPathsOfMissed = 2;
 // takes two of these at least, and none so dear has had less noise.
 constexpr double kDearPath = 0.75;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
+constexpr double kPathsToErrorAgain = 1.1;
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
@@ -195,8 +197,7 @@ class PassRun {
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
     if (passes_ == 0) return true;
-    if (asked_.method.target_error > 0 && passes_ >= 4 && picture_->noise() < asked_.method.target_error)
-      return false;
+    if (asked_.method.target_error > 0 && passes_ >= 4 && noise() < asked_.method.target_error) return false;
     return !timed() || replays() || as_asked_ || next_eighths_ > 0;
   }
 
@@ -360,9 +361,12 @@ class PassRun {
 
   // Until the budget is over, or as many as an earlier run had.
   bool go_on_by_paths(std::optional<std::int64_t> earlier) {
+    int check_error_at = kPathsForError;
     for (std::int64_t done = 0;;) {
-      if (!earlier && paths_->paths() >= kPathsForError && paths_->error() < asked_.method.target_error)
-        return true;
+      if (!earlier && asked_.method.target_error > 0 && paths_->paths() >= check_error_at) {
+        if (noise() < asked_.method.target_error) return true;
+        check_error_at = static_cast<int>(kPathsToErrorAgain * paths_->paths());
+      }
       const double each = paths_->seconds() / paths_->paths();
       const std::int64_t wanted = earlier ? *earlier - done : paths_that_fit(left(), each, asked_.time);
       if (wanted < 1) return true;
@@ -387,6 +391,14 @@ class PassRun {
 
   // ------------------------------------------------------------ the picture
 
+  // Of what goes on, as the metric of the target for the error counts it.
+  double noise() const {
+    const ErrorMetric metric = asked_.method.error_metric;
+    if (metric == ErrorMetric::l1) return by_paths_ ? paths_->error() : picture_->noise();
+    if (by_paths_) return noise_by(metric, paths_->picture(), paths_->difference());
+    const NoisyPicture passes = picture_->with_noise(*rest_);
+    return noise_by(metric, passes.picture, passes.difference);
+  }
   image::Image sent() const {
     return picture_->with_mirrored(by_paths_ ? paths_->sent() : picture_->sent(*rest_));
   }
@@ -447,8 +459,7 @@ class PassRun {
     numbers["passes"] = passes_;
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
-    if (passes_ > 1)
-      numbers["error.noise"] = numbers["error.estimate"] = by_paths_ ? paths_->error() : picture_->noise();
+    if (passes_ > 1) numbers["error.noise"] = numbers["error.estimate"] = noise();
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);
@@ -460,7 +471,7 @@ class PassRun {
                                  tracer_.estimate(), tracer_.cost(), choices_.made());
     if (passes_ > 1)
       result_.report.notes["error.of"] =
-          std::string("the noise of all ") + (by_paths_ ? "paths" : "passes") + ", before a denoiser";
+          said_of_noise(asked_.method.error_metric, by_paths_ ? "paths" : "passes");
     if (by_paths_) result_.report.method = kByPaths;
     of_all_passes(result_.report);
     seconds_["total"] = task_.timer.seconds();

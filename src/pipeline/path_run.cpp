@@ -8,6 +8,7 @@
 #include "pathtrace/reference.h"
 #include "pipeline/develop.h"
 #include "pipeline/light_path_pilot.h"
+#include "pipeline/noise_metric.h"
 #include "pipeline/paths_beside.h"
 #include "pipeline/picture_denoising.h"
 #include "pipeline/preview_throttle.h"
@@ -137,10 +138,16 @@ class PathRun {
     return whole;
   }
 
+  double noise() const {
+    const ErrorMetric metric = asked_.method.error_metric;
+    return metric == ErrorMetric::l1 ? film_->result().error
+                                     : noise_by(metric, film_->result().image, film_->halves_difference());
+  }
+
   // Paths for each pixel that come next; 0: it is enough.
   int next() {
     if (asked_.method.target_error > 0 && paths() >= kPathsBeforeError &&
-        film_->result().error < asked_.method.target_error)
+        noise() < asked_.method.target_error)
       return 0;
     const double each = seconds_["paths"] / paths();
     const double at_once = std::clamp(kAtOnce / std::max(each, 1e-9), 1.0, 1.0 * kMaxPaths);
@@ -182,8 +189,8 @@ class PathRun {
     report.numbers["spp"] = paths();
     report.numbers["paths.light_paths"] = options_.light_paths;
     if (paths() > 1) {
-      report.numbers["error.noise"] = report.numbers["error.estimate"] = film_->result().error;
-      report.notes["error.of"] = "the noise of all paths, before a denoiser";
+      report.numbers["error.noise"] = report.numbers["error.estimate"] = noise();
+      report.notes["error.of"] = said_of_noise(asked_.method.error_metric, "paths");
     }
     if (view_.width < task_.view.width)
       report.numbers["film.rendered_part"] =

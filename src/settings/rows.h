@@ -84,6 +84,10 @@ struct EnumNames<Denoise> {
   static constexpr const char* names[] = {"auto", "on", "off"};
 };
 template <>
+struct EnumNames<ErrorMetric> {
+  static constexpr const char* names[] = {"l1", "relmse", "flip"};
+};
+template <>
 struct EnumNames<ReferencePaths> {
   static constexpr const char* names[] = {"all", "columns", "rest"};
 };

@@ -20,6 +20,7 @@
 #include "pages/page.h"
 #include "pipeline/error_advice.h"
 #include "pipeline/memory.h"
+#include "pipeline/noise_metric.h"
 #include "pipeline/prepared.h"
 #include "pipeline/sound_pixels.h"
 #include "study/equal_cost.h"
@@ -57,6 +58,7 @@ class Study {
   }
 
   Comparison run() {
+    check_metric(settings_.base.method, false);
     prepare_as_asked();
     // Not before: a comparison that is refused leaves nothing behind.
     std::error_code code;

@@ -94,6 +94,18 @@ TEST(Passes, StopWhereTheNoiseIsAsAsked) {
   EXPECT_GE(report["passes"], 4);
 }
 
+TEST(Passes, StopByAnotherMetric) {
+  RenderSettings s = few_passes(0);
+  s.method.target_error = 0.05;
+  s.method.error_metric = ErrorMetric::relmse;
+  const auto report = said(render(example_box(), s));
+  EXPECT_LT(report["error.estimate"], 0.05);
+  EXPECT_NE(report["error.of"].get<std::string>().find("relMSE"), std::string::npos);
+  s.method.name = "slice-cuts";
+  s.passes = 0;
+  EXPECT_THROW(render(example_box(), s), InputError);
+}
+
 // Without clamping nothing of the light is lost: the mean over pixels, whose noise is a hundredth, is the
 // path tracer's.
 TEST(Passes, HaveTheWholeLight) {
