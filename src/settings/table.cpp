@@ -90,9 +90,9 @@ void add_run_rows(std::vector<Row>& t) {
   t.push_back(choice({"denoise", "", "auto", "", "",
                       "take the noise out of a picture of passes, by Open Image Denoise where it is found"},
                      Top<&S::denoise>{}));
-  t.push_back(number({"error", "", "0", "0 … 10", "",
-                      "stop when the estimated error is below; 0: the method's default"},
-                     At<&S::method, &MethodSettings::target_error>{}, 0, 10));
+  t.push_back(number(
+      {"error", "", "0", "0 … 10", "", "stop when the estimated error is below; 0: the method's default"},
+      At<&S::method, &MethodSettings::target_error>{}, 0, 10));
   t.push_back(choice({"error-metric", "", "l1", "", "",
                       "what --error is of: relative L1, or in pictures of passes or paths relMSE or FLIP"},
                      At<&S::method, &MethodSettings::error_metric>{}));
