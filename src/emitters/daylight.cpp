@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/photometry.h"
-
 namespace lumirank::emitters {
 
 namespace {
@@ -15,8 +13,6 @@ Rgb from_xyz(double X, double Y, double Z) {
               static_cast<float>(0.0556434 * X - 0.2040259 * Y + 1.0572252 * Z));
   return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)};
 }
-
-double cubic(const double (&k)[4], double t) { return ((k[0] * t + k[1]) * t + k[2]) * t + k[3]; }
 
 // The CIE 1931 curves by the sums of Gaussians of Wyman, Sloan and Shirley (JCGT 2013).
 double lobe(double nm, double mean, double below, double above) {
@@ -51,43 +47,6 @@ double interpolate(const double (&table)[kCount], double nm) {
 }
 
 }  // namespace
-
-double PreethamSky::Perez::eval(double cos_theta, double gamma) const {
-  const double cos_gamma = std::cos(gamma);
-  return (1 + a * std::exp(b / cos_theta)) * (1 + c * std::exp(d * gamma) + e * cos_gamma * cos_gamma);
-}
-
-// Appendix A.2 of the paper.
-PreethamSky::PreethamSky(float turbidity, Vec3f to_sun) : to_sun_(to_sun) {
-  const double T = turbidity;
-  const double theta = std::acos(std::clamp(static_cast<double>(to_sun.y), 0.0, 1.0));
-  Y_ = {0.1787 * T - 1.4630, -0.3554 * T + 0.4275, -0.0227 * T + 5.3251, 0.1206 * T - 2.5771,
-        -0.0670 * T + 0.3703};
-  x_ = {-0.0193 * T - 0.2592, -0.0665 * T + 0.0008, -0.0004 * T + 0.2125, -0.0641 * T - 0.8989,
-        -0.0033 * T + 0.0452};
-  y_ = {-0.0167 * T - 0.2608, -0.0950 * T + 0.0092, -0.0079 * T + 0.2102, -0.0441 * T - 1.6537,
-        -0.0109 * T + 0.0529};
-  const double chi = (4.0 / 9 - T / 120) * (kPiD - 2 * theta);
-  const double Y = (4.0453 * T - 4.9710) * std::tan(chi) - 0.2155 * T + 2.4192;
-  const double x = T * T * cubic({0.00166, -0.00375, 0.00209, 0}, theta) +
-                   T * cubic({-0.02903, 0.06377, -0.03202, 0.00394}, theta) +
-                   cubic({0.11693, -0.21196, 0.06052, 0.25886}, theta);
-  const double y = T * T * cubic({0.00275, -0.00610, 0.00317, 0}, theta) +
-                   T * cubic({-0.04214, 0.08970, -0.04153, 0.00516}, theta) +
-                   cubic({0.15346, -0.26756, 0.06670, 0.26688}, theta);
-  zenith_Y_ = Y / Y_.eval(1, theta);
-  zenith_x_ = x / x_.eval(1, theta);
-  zenith_y_ = y / y_.eval(1, theta);
-}
-
-Rgb PreethamSky::radiance(Vec3f direction) const {
-  if (!(direction.y > 0)) return Rgb{};
-  const double cos_theta = std::max(static_cast<double>(direction.y), 1e-4);
-  const double gamma = std::acos(std::clamp(static_cast<double>(dot(direction, to_sun_)), -1.0, 1.0));
-  const double Y = std::max(0.0, zenith_Y_ * Y_.eval(cos_theta, gamma)) * 1000 / kLumensPerUnit;
-  const double x = zenith_x_ * x_.eval(cos_theta, gamma), y = zenith_y_ * y_.eval(cos_theta, gamma);
-  return from_xyz(Y / y * x, Y, Y / y * (1 - x - y));
-}
 
 Rgb sun_radiance(float turbidity, float theta) {
   // Ångström's turbidity coefficient and the relative optical mass of the air (appendix A.1).

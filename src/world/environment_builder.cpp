@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "emitters/daylight.h"
 #include "emitters/environment.h"
+#include "emitters/hosek_wilkie.h"
 #include "image/image_io.h"
 #include "world/equal_area.h"
 #include "world/lights.h"
@@ -102,7 +103,7 @@ std::optional<em::DirectionalEmitter> EnvironmentBuilder::add_sun_sky(const sd::
   const auto bad = [&](const char* message, const char* remedy) {
     throw InputError(from.where, message, remedy);
   };
-  if (!(d.turbidity >= 1 && d.turbidity <= em::PreethamSky::kMaxTurbidity))
+  if (!(d.turbidity >= em::HosekWilkieSky::kMinTurbidity && d.turbidity <= em::HosekWilkieSky::kMaxTurbidity))
     bad("the turbidity is not between 1 and 10", "give a number in between");
   if (!(d.sun_scale >= 0 && d.sky_scale >= 0 && std::isfinite(d.sun_scale) && std::isfinite(d.sky_scale)))
     bad("a scale of the sun or the sky is negative or not finite", "give 0 or more");
@@ -116,13 +117,8 @@ std::optional<em::DirectionalEmitter> EnvironmentBuilder::add_sun_sky(const sd::
   const Frame frame = orientation(d.to_world, from.where);
 
   if (d.sky) {
-    float turbidity = d.turbidity;
-    if (turbidity < em::PreethamSky::kMinTurbidity) {
-      turbidity = em::PreethamSky::kMinTurbidity;
-      notes_.warn(from.where, "a sky of turbidity below 1.7", "a sky of turbidity 1.7");
-    }
     constexpr int kWidth = 512, kHeight = 256;
-    const em::PreethamSky sky(turbidity, to_sun);
+    const em::HosekWilkieSky sky(d.turbidity, d.albedo, to_sun);
     std::vector<Rgb> radiance(static_cast<std::size_t>(kWidth) * kHeight);
     parallel_for(kHeight, 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; ++y)
@@ -139,8 +135,10 @@ std::optional<em::DirectionalEmitter> EnvironmentBuilder::add_sun_sky(const sd::
   sun.direction = -frame.to_world(to_sun);
   // The power does not change with the radius: a larger disc is dimmer.
   const float s = std::sin(em::kSunHalfAngle);
-  sun.irradiance =
-      em::sun_radiance(d.turbidity, std::acos(std::min(to_sun.y, 1.0f))) * (kPi * s * s * d.sun_scale);
+  const float theta = std::acos(std::min(to_sun.y, 1.0f));
+  const Rgb disc = d.sun_model == sd::SunModel::preetham ? em::sun_radiance(d.turbidity, theta)
+                                                         : em::hosek_wilkie_sun(d.turbidity, kPi / 2 - theta);
+  sun.irradiance = disc * (kPi * s * s * d.sun_scale);
   sun.cos_half_angle = std::cos(em::kSunHalfAngle * d.sun_radius_scale);
   return sun;
 }

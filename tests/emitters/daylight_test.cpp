@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "emitters/hosek_wilkie.h"
+
 namespace lumirank::emitters {
 namespace {
 
@@ -14,22 +16,30 @@ Vec3f at_zenith_angle(double theta, double azimuth = 0) {
 
 constexpr double kCandelasPerUnit = 683 * 106.857;
 
-TEST(Sky, ZenithLuminanceIsThatOfThePaper) {
-  // Equation of appendix A.2: Yz = (4.0453 T - 4.9710) tan((4/9 - T/120)(π - 2θs)) - 0.2155 T + 2.4192
-  // kcd/m².
-  for (const double turbidity : {2.0, 3.0, 6.0})
-    for (const double theta : {0.2, 0.8, 1.3}) {
-      const double chi = (4.0 / 9 - turbidity / 120) * (3.14159265358979 - 2 * theta);
-      const double zenith = (4.0453 * turbidity - 4.9710) * std::tan(chi) - 0.2155 * turbidity + 2.4192;
-      const PreethamSky sky(static_cast<float>(turbidity), at_zenith_angle(theta));
-      // Rgb's luminance weights are rounded to four digits.
-      EXPECT_NEAR(luminance(sky.radiance({0, 1, 0})) * kCandelasPerUnit / (1000 * zenith), 1, 1e-3);
-    }
+// Against what Mitsuba 3.9.1 says of its own.
+TEST(Sky, IsMitsubas) {
+  struct Case {
+    float turbidity, albedo;
+    Vec3f sun, direction;
+    Rgb radiance;
+  };
+  const Case cases[] = {
+      {3, 0.3f, {0.35f, 0.85f, 0.2f}, {0, 0.3f, -1}, {0.06393553f, 0.10980947f, 0.18976717f}},
+      {3, 0.3f, {0.35f, 0.85f, 0.2f}, {1, 0.05f, 0}, {0.16061795f, 0.22107169f, 0.2902252f}},
+      {3, 0.3f, {0.9f, 0.1f, 0.1f}, {1, 0.05f, 0}, {0.5856726f, 0.37738895f, 0.12339173f}},
+      {2.5f, 0.7f, {0.2f, 0.4f, 0.6f}, {0, 0.3f, 1}, {0.16163515f, 0.2172339f, 0.2786944f}},
+      {6.3f, 0.1f, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, {0.06229996f, 0.08762127f, 0.12680382f}},
+  };
+  for (const Case& c : cases) {
+    const HosekWilkieSky sky(c.turbidity, Rgb(c.albedo), normalize(c.sun));
+    const Rgb radiance = sky.radiance(normalize(c.direction));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(radiance[k] / c.radiance[k], 1, 1e-4) << c.turbidity;
+  }
 }
 
 TEST(Sky, IsBlueAboveBrightestNearTheSunAndBlackBelow) {
   const Vec3f sun = at_zenith_angle(0.9);
-  const PreethamSky sky(3, sun);
+  const HosekWilkieSky sky(3, Rgb(0.3f), sun);
   const Rgb zenith = sky.radiance({0, 1, 0}), beside = sky.radiance(at_zenith_angle(0.85));
   const Rgb away = sky.radiance(at_zenith_angle(0.5, 3.14159265));
   EXPECT_GT(zenith.b, zenith.r);
@@ -53,6 +63,23 @@ TEST(Sun, ExtinctionGrowsAndReddensTowardsTheHorizon) {
     last_ratio = ratio;
   }
   EXPECT_LT(luminance(sun_radiance(8, 0.5f)), luminance(sun_radiance(2, 0.5f)));
+}
+
+// Irradiance over π under Mitsuba 3.9.1's sun of turbidities 1, 3 and 6, in four digits.
+TEST(Sun, IsMitsubas) {
+  struct Case {
+    float turbidity, degrees;
+    Rgb over_pi;
+  };
+  const Case cases[] = {{1, 85, {0.4939f, 0.4193f, 0.3310f}},
+                        {3, 60, {0.4132f, 0.3460f, 0.2665f}},
+                        {3, 15, {0.0968f, 0.0666f, 0.0323f}},
+                        {6, 35, {0.2288f, 0.1810f, 0.1269f}}};
+  for (const Case& c : cases) {
+    const float elevation = c.degrees * kPi / 180, sine = std::sin(kSunHalfAngle);
+    const Rgb over_pi = hosek_wilkie_sun(c.turbidity, elevation) * (sine * sine * std::sin(elevation));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(over_pi[k] / c.over_pi[k], 1, 0.01) << c.degrees;
+  }
 }
 
 TEST(Sun, IlluminanceUnderAClearSkyIsInTheMeasuredRange) {

@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "emitters/daylight.h"
 #include "emitters/environment.h"
+#include "emitters/hosek_wilkie.h"
 #include "image/image_io.h"
 #include "support/statistics.h"
 #include "world/scene_maker.h"
@@ -200,7 +201,7 @@ TEST(Environment, SeveralAreSummed) {
   ASSERT_EQ(w.emitters().size(), 1u);
   EXPECT_EQ(w.emitters()[0].name, "a");
   EXPECT_EQ(w.background({0, -1, 0}), Rgb(1, 2, 0));
-  const emitters::PreethamSky model(3, normalize(Vec3f{0.3f, 0.8f, 0.2f}));
+  const emitters::HosekWilkieSky model(3, sky.albedo, normalize(Vec3f{0.3f, 0.8f, 0.2f}));
   const Rgb zenith = w.background({0, 1, 0}), expected = model.radiance({0, 1, 0}) + Rgb(1, 2, 0);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(zenith[k] / expected[k], 1, 0.01);  // one texel is 0.7° wide
 }
@@ -222,7 +223,7 @@ TEST(Sun, ShinesFromItsDirection) {
   EXPECT_LT(length(sun.direction + towards), 1e-6f);
   EXPECT_NEAR(std::acos(sun.cos_half_angle), 2 * 0.2679 * kPiD / 180, 1e-4);
   // The irradiance is that of the undilated disc: L π sin²α.
-  const double expected = 3 * luminance(emitters::sun_radiance(3, static_cast<float>(kPiD / 4))) * kPiD *
+  const double expected = 3 * luminance(emitters::hosek_wilkie_sun(3, static_cast<float>(kPiD / 4))) * kPiD *
                           std::pow(std::sin(0.2679 * kPiD / 180), 2);
   EXPECT_NEAR(luminance(sun.irradiance) / expected, 1, 1e-3);
   // Seen directly, the disc has the radiance that integrates to the irradiance: E = L π sin²α. The half angle

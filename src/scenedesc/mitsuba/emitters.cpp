@@ -128,6 +128,7 @@ SunSkyDesc sun_sky(Reader& reader, Plugin& p) {
       !reader.dialect().camel_case();  // 3.x: +x south, +y west, +z up; 0.6: +x east, +y up, +z south
   SunSkyDesc out;
   out.sun = p.type() != "sky", out.sky = p.type() != "sun";
+  out.sun_model = z_up ? SunModel::hosek_wilkie : SunModel::preetham;
   out.turbidity = p.number("turbidity", 3);
   if (!(out.turbidity >= 1 && out.turbidity <= 10))
     throw InputError(p.where_of("turbidity"), "\"turbidity\" of " + p.title() + " is not between 1 and 10");

@@ -195,9 +195,10 @@ std::string kind(const EmitterDesc& e) {
                  },
                  [](const SunSkyDesc& x) {
                    return std::string(x.sun ? (x.sky ? "sunsky" : "sun") : "sky") + ", turbidity " +
-                          num(x.turbidity) + ", sun towards " + show(x.sun_direction) + ", scales " +
-                          num(x.sun_scale) + " and " + num(x.sky_scale) + ", radius × " +
-                          num(x.sun_radius_scale) + ", albedo " + show(x.albedo) + show(x.to_world);
+                          num(x.turbidity) + (x.sun_model == SunModel::preetham ? ", Preetham's sun" : "") +
+                          ", sun towards " + show(x.sun_direction) + ", scales " + num(x.sun_scale) +
+                          " and " + num(x.sky_scale) + ", radius × " + num(x.sun_radius_scale) + ", albedo " +
+                          show(x.albedo) + show(x.to_world);
                  }},
       e.kind);
 }

@@ -71,8 +71,11 @@ struct EnvironmentMapDesc {
   // of the true one) is made this.
   std::optional<float> illuminance = std::nullopt;
 };
+// Of Mitsuba 3 and of 0.6; the sky is Hosek and Wilkie's in both.
+enum class SunModel { hosek_wilkie, preetham };
 struct SunSkyDesc {  // the models "sun", "sky" and "sunsky"
   bool sun = true, sky = true;
+  SunModel sun_model = SunModel::hosek_wilkie;
   float turbidity = 3;
   Vec3f sun_direction{0, 1, 0};  // towards the sun, in the local frame of to_world (+y up)
   float sun_scale = 1, sky_scale = 1;

@@ -120,7 +120,9 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
 
 // Mitsuba 3's sky has +z up and the sun's direction in the frame of the world.
 void MitsubaWriter::sky(const SunSkyDesc& d, const EmitterDesc& from, const std::string& id) {
-  warn(from.where, "the sky of Preetham", "its \"sunsky\", which is that of Hosek and Wilkie");
+  if (d.sun && d.sun_model == SunModel::preetham)
+    warn(from.where, "the sun of Mitsuba 0.6 (Preetham's)", "that of Mitsuba 3");
+
   xml_.open("emitter", id.empty() ? Xml::Attributes{{"type", "sunsky"}}
                                   : Xml::Attributes{{"type", "sunsky"}, {"id", id}});
   xml_.number("turbidity", d.turbidity);
