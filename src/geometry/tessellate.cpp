@@ -52,23 +52,26 @@ TriangleMesh make_rectangle() {
   return mesh;
 }
 
+// Where textures lie on the sides is as in Mitsuba: from its first corner on, each side's corners have the uv
+// (0, 1), (1, 1), (1, 0), (0, 0).
 TriangleMesh make_cube() {
+  constexpr float kCorners[6][4][3] = {{{1, -1, -1}, {1, -1, 1}, {-1, -1, 1}, {-1, -1, -1}},
+                                       {{1, 1, -1}, {-1, 1, -1}, {-1, 1, 1}, {1, 1, 1}},
+                                       {{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}},
+                                       {{1, -1, 1}, {1, 1, 1}, {-1, 1, 1}, {-1, -1, 1}},
+                                       {{-1, -1, 1}, {-1, 1, 1}, {-1, 1, -1}, {-1, -1, -1}},
+                                       {{1, 1, -1}, {1, -1, -1}, {-1, -1, -1}, {-1, 1, -1}}};
   TriangleMesh mesh;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const float side : {-1.0f, 1.0f}) {
-      Vec3f n, u, v;
-      n[axis] = side;
-      // u × v = n, so the corners run counter-clockwise as seen from outside.
-      u[(axis + 1) % 3] = side;
-      v[(axis + 2) % 3] = 1;
-      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-      for (const Vec2f c : {Vec2f{-1, -1}, Vec2f{1, -1}, Vec2f{1, 1}, Vec2f{-1, 1}}) {
-        mesh.positions.push_back(n + u * c.x + v * c.y);
-        mesh.normals.push_back(n);
-        mesh.uvs.push_back({0.5f * (c.x + 1), 0.5f * (c.y + 1)});
-      }
-      add_quad(mesh, first, first + 1, first + 2, first + 3);
+  for (const auto& side : kCorners) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    Vec3f middle;
+    for (const auto& corner : side) {
+      mesh.positions.push_back({corner[0], corner[1], corner[2]});
+      middle += mesh.positions.back() / 4;
     }
+    mesh.normals.insert(mesh.normals.end(), 4, middle);
+    mesh.uvs.insert(mesh.uvs.end(), {{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+    add_quad(mesh, first, first + 1, first + 2, first + 3);
   }
   return mesh;
 }

@@ -77,6 +77,17 @@ struct RgbGradient {
 
 RgbGradient rgb_gradient(const TextureSet& set, int index, const SurfaceUv& at);
 
+// Where a slope is taken along one axis. Between the centers of two texels it is constant, by interpolation:
+// wider differences would smooth what is as fine as texels. Without interpolation, from texel to texel.
+struct Span {
+  float begin, end, texels;
+};
+Span span_of(float at, float size, TexFilter filter) {
+  if (filter != TexFilter::bilinear) return {at - 1 / size, at + 1 / size, 2};
+  const float first = std::floor(at * size - 0.5f) + 0.5f;
+  return {first / size, (first + 1) / size, 1};
+}
+
 struct GradientVisitor {
   const TextureSet& set;
   const SurfaceUv& at;
@@ -111,9 +122,9 @@ struct GradientVisitor {
   RgbGradient operator()(const BitmapTexture& t) const {
     const Vec2f uv = transform(t.to_uv, finite(at.uv));
     const auto w = static_cast<float>(t.pixels->width), h = static_cast<float>(t.pixels->height);
-    const Vec2f right{1 / w, 0}, up{0, 1 / h};
-    const Rgb du = (bitmap_at(t, uv + right) - bitmap_at(t, uv - right)) * (0.5f * w);
-    const Rgb dv = (bitmap_at(t, uv + up) - bitmap_at(t, uv - up)) * (0.5f * h);
+    const Span u = span_of(uv.x, w, t.filter), v = span_of(uv.y, h, t.filter);
+    const Rgb du = (bitmap_at(t, {u.end, uv.y}) - bitmap_at(t, {u.begin, uv.y})) * (w / u.texels);
+    const Rgb dv = (bitmap_at(t, {uv.x, v.end}) - bitmap_at(t, {uv.x, v.begin})) * (h / v.texels);
     return {du * t.to_uv[0] + dv * t.to_uv[3], du * t.to_uv[1] + dv * t.to_uv[4]};
   }
 };

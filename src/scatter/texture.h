@@ -70,7 +70,8 @@ struct TextureSet {
   Rgb lookup(int texture, const SurfaceUv& at) const;
   // Scalar inputs read the luminance of color textures (Mitsuba does the same).
   float lookup_float(int texture, const SurfaceUv& at) const;
-  // ∂(lookup_float)/∂u and /∂v by central differences of one texel; for bump maps.
+  // ∂(lookup_float)/∂u and /∂v, for bump maps: of a bitmap that is interpolated its own slope; of one that is
+  // not, by central differences of one texel.
   Vec2f gradient(int texture, const SurfaceUv& at) const;
   // Mean over the unit square: for powers of textured emitters.
   Rgb mean(int texture) const;

@@ -64,6 +64,14 @@ TEST(Tessellate, RectangleAndCubeAreExact) {
   expect_sound(cube);
   EXPECT_EQ(area(cube), 24);
   EXPECT_EQ(open_edges(cube), 0u);
+  // The side towards +x, as Mitsuba 3.9.1 says of its own.
+  const std::pair<Vec3f, Vec2f> corners[] = {
+      {{1, -1, -1}, {0, 1}}, {{1, 1, -1}, {1, 1}}, {{1, 1, 1}, {1, 0}}, {{1, -1, 1}, {0, 0}}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(cube.normals[8 + k], (Vec3f{1, 0, 0}));
+    EXPECT_EQ(cube.positions[8 + k], corners[k].first);
+    EXPECT_EQ(cube.uvs[8 + k], corners[k].second);
+  }
 }
 
 // The regular n-gon inscribed in the unit circle has the area (n/2) sin(2π/n).

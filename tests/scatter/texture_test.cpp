@@ -92,13 +92,16 @@ TEST(Bitmap, StrangeCoordinatesAreHarmless) {
 }
 
 TEST(Bitmap, GradientOfALinearRamp) {
-  // Between columns the value rises by 1 per texel, so by 4 per unit of u; it falls by 2 per unit of v (row 0
-  // is on top).
+  // From column to column red rises by 1, so by 4 for a unit of u; green falls from the lower row to the
+  // upper one by 1, so by 2 for a unit of v.
   TextureSet set{{numbered()}};
   const SurfaceUv at{{0.5f, 0.5f}, Rgb(1)};
   const Vec2f g = set.gradient(0, at);
   EXPECT_NEAR(g.x, 4 * 0.2126f, 1e-5f);
-  EXPECT_NEAR(g.y, 0, 1e-5f);  // with two rows the central difference of one texel wraps onto itself
+  EXPECT_NEAR(g.y, -2 * 0.7152f, 1e-5f);
+  // As steep everywhere between two centers, and between the last and the first, which repeats.
+  EXPECT_NEAR(set.gradient(0, {{0.40f, 0.5f}, Rgb(1)}).x, 4 * 0.2126f, 1e-5f);
+  EXPECT_NEAR(set.gradient(0, {{0.95f, 0.5f}, Rgb(1)}).x, -12 * 0.2126f, 1e-5f);
   // Through a transform by the chain rule: u' = 2u doubles the slope.
   BitmapTexture stretched = numbered();
   stretched.to_uv[0] = 2;
