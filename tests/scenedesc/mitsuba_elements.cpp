@@ -7,6 +7,7 @@
 #include <string>
 
 #include "scenedesc/data/ior.h"
+#include "scenedesc/data/mitsuba_metals.h"
 #include "scenedesc/mitsuba/solar.h"
 #include "scenedesc/readers.h"
 #include "scenedesc/writer/mitsuba_writer.h"
@@ -134,7 +135,7 @@ TEST(MitsubaDefaults, ConductorsAreCopperIn06AndMirrorsIn3) {
              now = std::get<ConductorDesc>(parse(text).bsdfs.at(0).kind);
   EXPECT_EQ(now.eta, Rgb(0));
   EXPECT_EQ(now.k, Rgb(1));
-  const auto copper = *metal_index("Cu");
+  const auto copper = *mitsuba_metal("Cu");
   EXPECT_FLOAT_EQ(old.eta.g, copper.eta.g / 1.000277f);
 }
 
@@ -324,6 +325,18 @@ TEST(MitsubaMetals, LookAsTheyShould) {
     EXPECT_LT(r.b, 0.6f);
   }
   EXPECT_FALSE(metal_index("Unobtainium").has_value());
+}
+
+// What Mitsuba 3.9.1 says of its own, and a metal that it does not have.
+TEST(MitsubaMetals, AreMitsubas) {
+  const auto gold = *mitsuba_metal("Au");
+  EXPECT_NEAR(gold.eta.g, 0.3753f, 1e-3f);
+  EXPECT_NEAR(gold.k.b, 1.6034f, 1e-3f);
+  EXPECT_NEAR(mitsuba_metal("Na_palik")->k.r, 3.1793f, 1e-3f);
+  EXPECT_NE(mitsuba_metal("Cu")->eta, mitsuba_metal("Cu_palik")->eta);
+  EXPECT_EQ(mitsuba_metal("CuZn")->k, metal_index("CuZn")->k);
+  EXPECT_EQ(mitsuba_metal("none")->k, Rgb(1));
+  EXPECT_FALSE(mitsuba_metal("Unobtainium").has_value());
 }
 
 TEST(MitsubaSpectrum, FilesAndPairsAreTheSame) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scenedesc/data/ior.h"
+#include "scenedesc/data/mitsuba_metals.h"
 #include "scenedesc/mitsuba/bsdf_fields.h"
 
 namespace lumirank::scenedesc::mitsuba {
@@ -108,12 +109,12 @@ BsdfKind conductor(Reader& reader, Plugin& p) {
   MetalIndex metal = {Rgb(0), Rgb(1)};
   if (!own) {
     const std::string material = name.value_or(reader.dialect().camel_case() ? "Cu" : "none");
-    if (const auto known = metal_index(material)) {
+    if (const auto known = mitsuba_metal(material)) {
       metal = *known;
     } else {
-      metal = *metal_index("Cr");
-      reader.warn(p.where_of("material"), "the metal \"" + material + "\" (known are: " + metal_names() + ")",
-                  "Cr");
+      metal = *mitsuba_metal("Cr");
+      reader.warn(p.where_of("material"),
+                  "the metal \"" + material + "\" (known are: " + mitsuba_metal_names() + ")", "Cr");
     }
   } else {
     metal.eta = p.constant_color("eta", Rgb(0), Intent::index);
