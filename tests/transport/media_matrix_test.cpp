@@ -257,7 +257,7 @@ void expect_unbiased(PairKind kind, bool shared) {
   };
   std::vector<double> scales;
   for (std::size_t n = 0; n < is.size(); ++n) scales.push_back(scale_of(n));
-  constexpr std::uint64_t kSeeds = 150;
+  constexpr std::uint64_t kSeeds = 300;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const MediaPairs pairs(r.world, r.rows, r.lights, {seed, -1, shared});
     MediaBatch batch(pairs, Part::value);
