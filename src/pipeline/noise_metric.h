@@ -12,6 +12,9 @@ namespace lumirank::pipeline {
 // twice the noise, from independent halves.
 double noise_by(ErrorMetric metric, const image::Image& picture, const image::Image& difference);
 
+// More paths before it is asked again: FLIP of a large picture takes as long as a path for each pixel.
+inline constexpr double kPathsToAskAgain = 1.1;
+
 // For the notes of a report: what `error.estimate` is of. `of`: "passes" or "paths".
 std::string said_of_noise(ErrorMetric metric, const char* of);
 

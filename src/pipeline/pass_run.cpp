@@ -48,10 +48,9 @@ constexpr double kPassesOfHalf = 3;  // that are better than paths
 constexpr double kMissed = 0.03;
 constexpr int kPathsOfMissed = 2;
 // Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
-// takes two of these at least, and none so dear has had less noise.
+// takes two of these at least, which was a third of ten seconds among thousands of lamps.
 constexpr double kDearPath = 0.75;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
-constexpr double kPathsToErrorAgain = 1.1;
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
@@ -365,7 +364,7 @@ class PassRun {
     for (std::int64_t done = 0;;) {
       if (!earlier && asked_.method.target_error > 0 && paths_->paths() >= check_error_at) {
         if (noise() < asked_.method.target_error) return true;
-        check_error_at = static_cast<int>(kPathsToErrorAgain * paths_->paths());
+        check_error_at = static_cast<int>(kPathsToAskAgain * paths_->paths());
       }
       const double each = paths_->seconds() / paths_->paths();
       const std::int64_t wanted = earlier ? *earlier - done : paths_that_fit(left(), each, asked_.time);
@@ -459,7 +458,10 @@ class PassRun {
     numbers["passes"] = passes_;
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
-    if (passes_ > 1) numbers["error.noise"] = numbers["error.estimate"] = noise();
+    if (passes_ > 1) {
+      numbers["error.noise"] = by_paths_ ? paths_->error() : picture_->noise();
+      numbers["error.estimate"] = noise();
+    }
     if (view_.width < task_.view.width)
       numbers["film.rendered_part"] =
           static_cast<double>(view_.width) / static_cast<double>(task_.view.width);

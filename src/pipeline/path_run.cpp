@@ -146,9 +146,10 @@ class PathRun {
 
   // Paths for each pixel that come next; 0: it is enough.
   int next() {
-    if (asked_.method.target_error > 0 && paths() >= kPathsBeforeError &&
-        noise() < asked_.method.target_error)
-      return 0;
+    if (asked_.method.target_error > 0 && paths() >= ask_error_at_) {
+      if (noise() < asked_.method.target_error) return 0;
+      ask_error_at_ = static_cast<int>(kPathsToAskAgain * paths());
+    }
     const double each = seconds_["paths"] / paths();
     const double at_once = std::clamp(kAtOnce / std::max(each, 1e-9), 1.0, 1.0 * kMaxPaths);
     int more = std::min(wanted_ - paths(), static_cast<int>(at_once));
@@ -189,7 +190,8 @@ class PathRun {
     report.numbers["spp"] = paths();
     report.numbers["paths.light_paths"] = options_.light_paths;
     if (paths() > 1) {
-      report.numbers["error.noise"] = report.numbers["error.estimate"] = noise();
+      report.numbers["error.noise"] = film_->result().error;
+      report.numbers["error.estimate"] = noise();
       report.notes["error.of"] = said_of_noise(asked_.method.error_metric, "paths");
     }
     if (view_.width < task_.view.width)
@@ -212,8 +214,9 @@ class PathRun {
   View view_;
   pathtrace::ReferenceOptions options_;
   std::optional<pathtrace::PathFilm> film_;
-  double denoiser_kept_ = 0;  // Shrunk::kept
-  int wanted_ = kUsualPaths;  // paths per pixel
+  double denoiser_kept_ = 0;              // Shrunk::kept
+  int wanted_ = kUsualPaths;              // paths per pixel
+  int ask_error_at_ = kPathsBeforeError;  // paths per pixel
   std::string shortage_;
   std::map<std::string, double> seconds_;
   RenderResult result_;
