@@ -120,8 +120,8 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
 void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
                                double u_light, float connection) const {
   const Vec3f wo = -walk.ray.direction;
-  walk.from = world::lit_point(hit.point.position, closure, wo);
-  const auto s = lights_.sample(walk.from, u_light, walk.random.next_2d());
+  const auto s =
+      lights_.sample(world::lit_point(hit.point.position, closure, wo), u_light, walk.random.next_2d());
   if (!(s.pdf > 0)) return;
   Rgb f = scatter::eval(closure, wo, s.direct.direction);
   if (connection > 0) f *= missing(connection, closure, wo, s.direct.direction);
@@ -223,6 +223,8 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     walk.eta_scale *= next->eta * next->eta;
     walk.specular = next->delta;
     walk.bsdf_pdf = next->pdf;
+    // Not where a path goes straight on: what it finds later is weighted against lights sampled here.
+    walk.from = world::lit_point(hit.point.position, closure, wo);
     if (first_after_receiver && next->delta) walk.counts = settings_.paths != Paths::columns;
     walk.after_receiver = false;
     if (!next->delta && ++walk.non_delta_vertices == 1) {

@@ -231,8 +231,8 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
   if (walk.non_delta_vertices == 0) scatter::face_viewer(closure, wo);  // as rows are
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_non_delta() && may_continue) {
-    walk.vertex = {.at = world::lit_point(hit.point.position, closure, wo)};
-    const auto light = lights_.sample(walk.vertex.at, u_light, walk.random.next_2d());
+    const auto light =
+        lights_.sample(world::lit_point(hit.point.position, closure, wo), u_light, walk.random.next_2d());
     const Vec3f wi = light.direct.direction;
     const Rgb f = light.pdf > 0 ? scatter::eval(closure, wo, wi) : Rgb{0};
     if (!is_black(f)) {
@@ -257,7 +257,8 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
     walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;
     walk.specular = next->delta;
-    walk.vertex.direction = Rgb(next->pdf);
+    // Not where a path goes straight on: what it finds later is weighted against lights sampled here.
+    walk.vertex = {.at = world::lit_point(hit.point.position, closure, wo), .direction = Rgb(next->pdf)};
     if (!next->delta) ++walk.non_delta_vertices;
     if (!survives(walk)) return false;
   }

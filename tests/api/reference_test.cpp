@@ -83,6 +83,32 @@ TEST(Reference, PartsOfTheFurnace) {
   expect_mean(reference(scene, settings, how).picture, {0.5, 0.1, 1.6}, "indirect");
 }
 
+TEST(Reference, HalfOpenSurfacesLoseNothingInAFurnace) {
+  // A white ball that lets half of the light pass, in a ball that shines evenly: it can't be seen. What is
+  // found behind a surface that a path went straight through counts once.
+  const std::string ball =
+      "<shape type=\"sphere\"><bsdf type=\"mask\"><float name=\"opacity\" value=\"0.5\"/><bsdf "
+      "type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
+      "value=\"1\"/></bsdf></bsdf></bsdf></shape>"
+      "<shape type=\"sphere\"><float name=\"radius\" value=\"9\"/><boolean name=\"flip_normals\" "
+      "value=\"true\"/>"
+      "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0\"/></bsdf><emitter type=\"area\"><rgb "
+      "name=\"radiance\" value=\"1\"/></emitter></shape>";
+  const std::string camera = point_camera("0,0,5", "0,0,0", 16, 15);
+  const std::string elsewhere =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" z=\"7.5\"/><float name=\"radius\" "
+      "value=\"0.1\"/><bsdf type=\"null\"/><medium name=\"interior\" type=\"homogeneous\"><float "
+      "name=\"sigma_t\" "
+      "value=\"1\"/></medium></shape>";
+  RenderSettings settings;
+  settings.view.max_depth = -1;
+  ReferenceSettings how;
+  how.spp = 256;
+  expect_mean(reference(load_text(camera + ball), settings, how).picture, {1, 1, 1}, "paths");
+  expect_mean(reference(load_text(camera + ball + elsewhere), settings, how).picture, {1, 1, 1},
+              "paths of scenes with a medium");
+}
+
 TEST(Reference, DiffusePlaneUnderTheSky) {
   // A plane that reflects ρ under constant radiance L from the whole hemisphere: ρ·L.
   const Scene scene =
