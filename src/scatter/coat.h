@@ -26,7 +26,8 @@ inline float coat_transmittance(const Coat& coat, float cos_theta) {
 
 // The cosine within the layer of a direction outside at `cos_theta`; 0 if it does not get in (eta < 1).
 inline float coat_cosine(const Coat& coat, float cos_theta) {
-  return std::sqrt(std::max(0.0f, 1 - (1 - cos_theta * cos_theta) / (coat.bend * coat.bend)));
+  // So that near the horizon nothing is rounded away where directions are hardly bent.
+  return std::sqrt(std::max(0.0f, cos_theta * cos_theta + (coat.bend * coat.bend - 1))) / coat.bend;
 }
 
 // A glossy lobe near the critical angle loses light to total internal reflection, of which most comes back to

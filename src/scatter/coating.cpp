@@ -32,6 +32,8 @@ struct Layer {
   float alpha = 0;  // 0: smooth
   float diffuse_transmittance = 1;
   float r0 = 0;           // at normal incidence
+  float scale = 1;        // of what is reflected below
+  bool straight = false;  // see CoatingDesc
   Rgb diffuse_return{0};  // rd, absorption on the way up and down included
 };
 
@@ -54,6 +56,21 @@ float left_by_absorption(float eta, float depth) {
   };
   add(0, critical), add(critical, 1);
   return all > 0 ? left / all : 1.0f;
+}
+
+// As the base of lossless plastic (interface.h): what the layer does not reflect on the way in and out, and
+// what that leaves of diffuse light only once.
+Layer straight_layer(float eta, float weight, NormalDistribution distribution, float alpha) {
+  const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
+  Layer layer;
+  layer.distribution = distribution, layer.alpha = alpha, layer.straight = true;
+  layer.coat.eta = eta;
+  for (int i = 0; i < 6; ++i) layer.coat.t[i] = weight * k.left[i];
+  layer.coat.t[0] += 1 - weight;
+  std::copy(layer.coat.t, layer.coat.t + 6, layer.twice);
+  layer.diffuse_transmittance = 1 - weight + weight * k.diffuse_left;
+  layer.scale = 1 / layer.diffuse_transmittance;
+  return layer;
 }
 
 Layer make_layer(float eta, float weight, Rgb depth, NormalDistribution distribution, float alpha) {
@@ -105,7 +122,7 @@ Widening widening(const Layer& layer) {
 
 void widen(const Layer& layer, Lobe& lobe) {
   const auto family_widen = family_of(lobe.kind).widen;
-  if (layer.alpha > 0 && family_widen) family_widen(lobe, widening(layer));
+  if (layer.alpha > 0 && !layer.straight && family_widen) family_widen(lobe, widening(layer));
 }
 
 constexpr float kTrapped = 1.5f, kBeyond = 0.7f;
@@ -134,6 +151,7 @@ UnderCoat under_coat(LobeView view) {
 // What the layer needs to know of a nested lobe. Sheen and clear coat send back next to nothing, and what is
 // transmitted is gone.
 Base base_of(const Layer& layer, const UnderCoat& lobe) {
+  if (layer.straight) return {};
   if (lobe.sort == UnderCoat::Sort::glossy)
     return glossy_base(layer, lobe.albedo, lobe.oblique_albedo, lobe.distribution, lobe.alpha);
   return lobe.sort == UnderCoat::Sort::diffuse ? Base{lobe.albedo, lobe.albedo * layer.diffuse_return}
@@ -187,8 +205,10 @@ LayerHere layer_at(const TextureSet& textures, const CoatingMaterial& m, const S
     here.alpha_u = rough_alpha(textures, m.alpha_u, at.uv);
     here.alpha_v = rough_alpha(textures, m.alpha_v, at.uv);
   }
-  here.layer = make_layer(m.eta, here.covered, positive_color(textures, m.absorption, at.uv), m.distribution,
-                          std::sqrt(here.alpha_u * here.alpha_v));
+  const float alpha = std::sqrt(here.alpha_u * here.alpha_v);
+  here.layer = m.straight ? straight_layer(m.eta, here.covered, m.distribution, alpha)
+                          : make_layer(m.eta, here.covered, positive_color(textures, m.absorption, at.uv),
+                                       m.distribution, alpha);
   return here;
 }
 
@@ -231,6 +251,7 @@ void add_lobes(const CoatingMaterial& m, ClosureBuilder& out, const SurfacePoint
       continue;
     }
     widen(layer, lobe);
+    if (!transmits(lobe.kind)) lobe.color *= layer.scale;
     const UnderCoat nested_lobe = under_coat(view_from(lobe, true));
     Base base = base_of(layer, nested_lobe);
     if (lobe.sheen_layer) {

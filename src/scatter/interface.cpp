@@ -45,5 +45,23 @@ Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution
   lobe.color = color / k.diffuse_left;
   return lobe;
 }
+Lobe masked_reflection_lobe(Rgb f0, NormalDistribution distribution, float alpha) {
+  Lobe lobe;
+  lobe.kind = LobeKind::interfaced_diffuse;
+  const MaskedCoefficients k = interface_table(distribution).masked(alpha);
+  if (k.diffuse_left < 0.005f) return lobe;
+  lobe.distribution = distribution;
+  lobe.alpha_u = alpha;
+  lobe.alpha_v = k.diffuse_left;
+  lobe.eta = kMaskedEta;
+  lobe.conductor_eta = {k.left[0], k.left[1], k.left[2]};
+  lobe.conductor_k = {k.left[3], k.left[4], k.left[5]};
+  const Rgb fresnel = f0 + (Rgb(1) - f0) / 21.0f;
+  for (int c = 0; c < 3; ++c) {
+    const float f = fresnel[c], kept = 1 - k.diffuse_left;
+    lobe.color[c] = f * f * kept / (1 - f * k.diffuse_left) / k.diffuse_left;
+  }
+  return lobe;
+}
 
 }  // namespace lumirank::scatter

@@ -43,5 +43,10 @@ Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distributi
 // A base that gets all that the layer does not reflect: color/π·L(wi)·L(wo)/(2∫L(μ)μ dμ), L = 1 - R. With the
 // layer's reflection it sends back all light if it is white (Kelemen and Szirmay-Kalos 2001).
 Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha);
+// What a metal's microfacets lose by masking each other, sent back by further bounces: color/π·L(wi)·L(wo) /
+// (2∫L(μ)μ dμ), L = 1 - E, E the albedo of white ones. Each bounce is colored by the mean Fresnel factor of
+// Schlick's curve from `f0`. Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"; black
+// where less than half a percent is lost.
+Lobe masked_reflection_lobe(Rgb f0, NormalDistribution distribution, float alpha);
 
 }  // namespace lumirank::scatter

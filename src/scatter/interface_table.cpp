@@ -67,6 +67,18 @@ InterfaceMeans means_over(NormalDistribution distribution, float alpha, float et
   return {sum.transmittance / n, sum.reflectance / n};
 }
 
+// Of what a perfect mirror's facets reflect.
+double masked_share(NormalDistribution distribution, float alpha, Vec3f w,
+                    const std::vector<Vec3f>& normals) {
+  double left = 0;
+  for (const Vec3f m : normals) {
+    const Vec3f reflected = reflect(w, m);
+    const bool leaves = dot(w, m) > 0 && reflected.z > 0;
+    left += 1 - (leaves ? microfacet_g1(distribution, reflected, alpha, alpha) : 0.0f);
+  }
+  return left / static_cast<double>(normals.size());
+}
+
 // Least squares by normal equations and Gaussian elimination with pivoting.
 using Matrix = std::array<std::array<double, kTerms + 1>, kTerms>;
 std::array<double, kTerms> solve(Matrix m) {
@@ -121,6 +133,14 @@ double out_again(const Rule& rule, float eta, double mu,
   return std::max(0.0, smooth(c) + found);
 }
 
+MaskedCoefficients masked_cell(const Rule& rule, const std::array<double, kRuleCosines>& left) {
+  MaskedCoefficients cell;
+  fit(rule, kMaskedEta, left, cell.left);
+  for (int k = 0; k < kRuleCosines; ++k)
+    cell.diffuse_left += static_cast<float>(2 * rule.w[k] * rule.x[k] * left[k]);
+  return cell;
+}
+
 }  // namespace
 
 InterfaceMeans interface_means(NormalDistribution distribution, float alpha, float eta, float cos_theta,
@@ -136,14 +156,17 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
     const float root = static_cast<float>(a) / (kAlphas - 1);
     const float alpha = std::max(root * root, kMinAlpha);
     std::array<std::array<InterfaceMeans, kRuleCosines>, kEtas> means;
+    std::array<double, kRuleCosines> masked;
     for (int k = 0; k < kRuleCosines; ++k) {
       const Vec3f w = direction(static_cast<float>(rule.x[k]));
       const std::vector<Vec3f> normals = visible_normals(distribution, alpha, w, side);
+      masked[k] = masked_share(distribution, alpha, w, normals);
       for (int e = 0; e < kEtas; ++e) {
         const auto eta = static_cast<float>(std::exp(kLogRange * (2.0 * e / (kEtas - 1) - 1)));
         means[e][k] = means_over(distribution, alpha, eta, w, normals);
       }
     }
+    masked_.push_back(masked_cell(rule, masked));
     for (int e = 0; e < kEtas; ++e) {
       const auto eta = static_cast<float>(std::exp(kLogRange * (2.0 * e / (kEtas - 1) - 1)));
       std::array<double, kRuleCosines> t;
@@ -174,6 +197,17 @@ InterfaceTable::InterfaceTable(NormalDistribution distribution) : cells_(kAlphas
       cells_[static_cast<std::size_t>(a) * kEtas + e] = cell;
     }
   }
+}
+
+MaskedCoefficients InterfaceTable::masked(float alpha) const {
+  const float a = std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) * (kAlphas - 1);
+  const int a0 = std::min(static_cast<int>(a), kAlphas - 2);
+  const float f = a - static_cast<float>(a0);
+  const auto &low = masked_[static_cast<std::size_t>(a0)], &high = masked_[static_cast<std::size_t>(a0) + 1];
+  MaskedCoefficients out;
+  for (int i = 0; i < kTerms; ++i) out.left[i] = low.left[i] + f * (high.left[i] - low.left[i]);
+  out.diffuse_left = low.diffuse_left + f * (high.diffuse_left - low.diffuse_left);
+  return out;
 }
 
 InterfaceCoefficients InterfaceTable::lookup(float alpha, float eta) const {

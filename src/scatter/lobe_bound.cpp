@@ -254,7 +254,7 @@ Rgb ClosureBound::in_rings(const LobeTerm& t, CosineFactor factor) const {
     float cos_lo = r.cos_lo, cos_hi = r.cos_hi;
     if (within) {
       const auto outside = [&](float c) {
-        return std::sqrt(std::max(0.0f, 1 - square(coat.bend) * (1 - c * c)));
+        return std::sqrt(std::max(0.0f, square(coat.bend * c) - (square(coat.bend) - 1)));
       };
       cos_lo = outside(cos_lo), cos_hi = std::min(1.0f, outside(cos_hi) + 1e-6f);
     }

@@ -129,6 +129,7 @@ struct PrincipledMaterial {
   FloatInput roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, clearcoat,
       clearcoat_gloss, flatness;
   float eta = 1.5f;
+  bool lossless = false;  // see PrincipledDesc
 };
 void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -167,6 +168,7 @@ struct CoatingMaterial {
   FloatInput weight;      // share of the surface that is coated
   NormalDistribution distribution;
   FloatInput alpha_u, alpha_v;
+  bool straight = false;  // see CoatingDesc
   int nested = -1;
   bool smooth = true;
 };

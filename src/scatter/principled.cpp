@@ -1,8 +1,9 @@
-// The principled material (Burley 2012, 2015; weights as in Mitsuba 3): up to seven lobes. The blended
+// The principled material (Burley 2012, 2015; weights as in Mitsuba 3): up to eight lobes. The blended
 // Fresnel term is a sum of three, so it becomes three lobes over the same microfacets, of which mostly one or
 // two have a color.
 #include "scatter/closure_builder.h"
 #include "scatter/fresnel.h"
+#include "scatter/interface.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -69,6 +70,11 @@ void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePo
   spec.color = Rgb(metallic);
   spec.conductor_eta = base;
   out.push(spec, at, weight);
+  if (m.lossless && metallic > 0) {
+    Lobe masked = masked_reflection_lobe(base, spec.distribution, std::sqrt(spec.alpha_u * spec.alpha_v));
+    masked.color *= metallic;
+    out.push(masked, at, weight);
+  }
   out.push(through, at, weight);
 
   Lobe diffuse;

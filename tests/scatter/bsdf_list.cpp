@@ -92,9 +92,21 @@ BsdfCase oren_nayar(std::string name, float rho, float alpha) {
 }
 
 CoatingMaterial layer(NormalDistribution d, float alpha, float eta, float depth, float weight) {
-  return {
-      eta, gray(1),   color(depth, 0.5f * depth, 2 * depth), number(weight), d, number(alpha), number(alpha),
-      0,   alpha == 0};
+  return {eta,
+          gray(1),
+          color(depth, 0.5f * depth, 2 * depth),
+          number(weight),
+          d,
+          number(alpha),
+          number(alpha),
+          false,
+          0,
+          alpha == 0};
+}
+CoatingMaterial clear_coat(float alpha, float weight) {
+  CoatingMaterial m = layer(kGgx, alpha, 1.5f, 0, weight);
+  m.straight = true;
+  return m;
 }
 
 BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
@@ -183,6 +195,11 @@ std::vector<BsdfCase> build() {
   list.push_back(ward("balanced_sharp", 2, 0.02f, 0.02f));
   list.push_back(principled("plain", 0, 0, 0.5f, 0));
   list.push_back(principled("metal", 1, 0, 0.3f, 0));
+  for (const float roughness : {0.5f, 1.0f}) {
+    list.push_back(principled(roughness < 1 ? "metal_lossless" : "metal_rough_lossless", 1, 0, roughness, 0));
+    std::get<PrincipledMaterial>(list.back().set.materials[0]).lossless = true;
+    list.back().energy_exempt.clear();
+  }
   list.push_back(principled("glass", 0, 1, 0.3f, 0));
   list.back().energy_exempt.clear();
   list.push_back(principled("everything", 0.3f, 0.4f, 0.4f, 0.5f));
@@ -211,6 +228,9 @@ std::vector<BsdfCase> build() {
       nested("coating_anisotropic_metal", conductor(kGgx, 0.08f, 0.4f), layer(kGgx, 0.05f, 1.33f, 0, 1)));
   list.push_back(
       nested("coating_half_metal", conductor(kGgx, 0.3f, 0.3f), layer(kGgx, 0.05f, 1.5f, 0.2f, 0.5f)));
+  list.push_back(nested("clear_coat_diffuse", DiffuseMaterial{gray(1)}, clear_coat(0, 1)));
+  list.push_back(nested("clear_coat_rough_half_metal", perfect_mirror(kGgx, 0.3f), clear_coat(0.2f, 0.5f)));
+  list.push_back(nested("clear_coat_plastic", plastic(kGgx, 0.2f, false), clear_coat(0.1f, 1)));
   list.push_back(nested("coating_plastic", plastic(kGgx, 0.2f, true), layer(kGgx, 0, 1.6f, 0, 1)));
   list.push_back(nested("coating_sharp_mirror", perfect_mirror(kGgx, 0.05f), layer(kGgx, 0, 2, 0, 1)));
   list.push_back(

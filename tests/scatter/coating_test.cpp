@@ -34,7 +34,7 @@ MaterialSet stacked(const Stack& s) {
   MaterialSet set;
   set.materials.push_back(s.base);
   set.materials.push_back(CoatingMaterial{s.eta, gray(1), gray(s.depth), number(1), NormalDistribution::ggx,
-                                          number(s.alpha), number(s.alpha), 0, s.alpha == 0});
+                                          number(s.alpha), number(s.alpha), false, 0, s.alpha == 0});
   return set;
 }
 
@@ -79,7 +79,7 @@ TEST(Coating, OverMattIsPlastic) {
   MaterialSet set;
   set.materials.push_back(DiffuseMaterial{ColorInput{Rgb(0.8f, 0.5f, 0.1f), -1}});
   set.materials.push_back(CoatingMaterial{1.5f, gray(1), gray(0), number(1), NormalDistribution::ggx,
-                                          number(0.2f), number(0.2f), 0, false});
+                                          number(0.2f), number(0.2f), false, 0, false});
   set.materials.push_back(PlasticMaterial{1.5f, ColorInput{Rgb(0.8f, 0.5f, 0.1f), -1}, gray(1), true,
                                           NormalDistribution::ggx, number(0.2f), false, false});
   const SurfacePoint at = point_with_normal({0, 0, 1});
@@ -96,7 +96,7 @@ TEST(Coating, OfWeightZeroIsNotThere) {
   MaterialSet set;
   set.materials.push_back(metal(0.2f));
   set.materials.push_back(CoatingMaterial{1.5f, gray(1), gray(1), number(0), NormalDistribution::ggx,
-                                          number(0.2f), number(0.2f), 0, false});
+                                          number(0.2f), number(0.2f), false, 0, false});
   const Vec3f wo = at_angle(0.7f, 1), wi = at_angle(0.6f, 4);
   const SurfacePoint at = point_with_normal({0, 0, 1});
   EXPECT_EQ(eval_f(set.closure(0, at, wo), wo, wi), eval_f(set.closure(1, at, wo), wo, wi));

@@ -126,6 +126,41 @@ TEST(Plastic, WhiteLosslessSendsBackAllAtAnyRoughness) {
       }
 }
 
+TEST(Principled, WhiteLosslessMetalSendsBackAllAtAnyRoughness) {
+  for (const float alpha : {0.05f, 0.3f, 0.6f, 1.0f})
+    for (const float mu : {0.1f, 0.3f, 0.6f, 1.0f}) {
+      const Lobe base = masked_reflection_lobe(Rgb(1), NormalDistribution::ggx, alpha);
+      const float left = base.color.g * base.alpha_v * interface_transmittance(base, mu);
+      // The mean over the facets of a Fresnel factor of 1.
+      const double reflected = interface_means(NormalDistribution::ggx, alpha, 1e6f, mu, 64).reflectance;
+      EXPECT_NEAR(reflected + left, 1, 0.012) << alpha << ' ' << mu;
+    }
+}
+
+// Kulla and Conty 2017: of gray metal what is masked loses more, at every further bounce.
+TEST(Principled, FurtherBouncesAreColored) {
+  const float all = masked_reflection_lobe(Rgb(1), NormalDistribution::ggx, 1).color.g;
+  const float half = masked_reflection_lobe(Rgb(0.5f), NormalDistribution::ggx, 1).color.g;
+  const float fresnel = 0.5f + 0.5f / 21,
+              left = masked_reflection_lobe(Rgb(1), NormalDistribution::ggx, 1).alpha_v;
+  EXPECT_NEAR(half / all, fresnel * fresnel * (1 - left) / (1 - fresnel * left), 1e-4f);
+  EXPECT_EQ(masked_reflection_lobe(Rgb(1), NormalDistribution::ggx, 0.01f).color, Rgb(0));
+}
+
+// What the coat does not reflect falls on the base, and a white one sends it back.
+TEST(Coating, StraightOneOverWhiteIsLossless) {
+  for (const float weight : {0.4f, 1.0f}) {
+    CoatingMaterial coat{
+        1.5f, gray(1), gray(0), number(weight), NormalDistribution::ggx, number(0), number(0), true, 0, true};
+    const MaterialSet set = materials({DiffuseMaterial{gray(1)}, coat});
+    for (const float cosine : {1.0f, 0.5f, 0.1f}) {
+      const Vec3f wo = at_angle(cosine, 1);
+      EXPECT_NEAR(albedo(set.closure(1, point_with_normal(kUp), wo), wo).g, 1, 2e-5f)
+          << weight << ' ' << cosine;
+    }
+  }
+}
+
 TEST(Plastic, WhiteNonlinearIsLossless) {
   PlasticMaterial m{1.6f, gray(1), gray(1), true, NormalDistribution::ggx, number(0), false, true};
   const MaterialSet set = materials({m});

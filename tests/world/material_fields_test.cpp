@@ -152,6 +152,7 @@ TEST(MaterialFields, OfPrincipledKinds) {
     const auto m = material_of<sc::PrincipledMaterial>(d);
     SAME(base_color), SAME(roughness), SAME(anisotropic), SAME(metallic), SAME(spec_trans), SAME(spec_tint);
     SAME(sheen), SAME(sheen_tint), SAME(clearcoat), SAME(clearcoat_gloss), SAME(flatness), SAME(eta);
+    SAME(lossless);
   }
   {
     const auto d = DistinctValues().of<sd::PrincipledThinDesc>();
@@ -167,7 +168,7 @@ TEST(MaterialFields, OfKindsOverOthers) {
     const auto d = DistinctValues().of<sd::CoatingDesc>();
     const auto m = material_of<sc::CoatingMaterial>(d, &below);
     SAME(eta), SAME(specular_reflectance), SAME(absorption), SAME(weight);
-    SAME(distribution), SAME(alpha_u), SAME(alpha_v);
+    SAME(distribution), SAME(alpha_u), SAME(alpha_v), SAME(straight);
     EXPECT_FALSE(m.smooth);
     EXPECT_EQ(m.nested, below);
   }

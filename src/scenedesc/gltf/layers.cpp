@@ -38,6 +38,7 @@ int Reader::coated_bsdf(const Element& clearcoat, int base) {
   coat.distribution = Distribution::ggx;
   coat.alpha_u = coat.alpha_v = squared(clearcoat, roughness);
   coat.weight = share;
+  coat.straight = true;
   return add_bsdf(clearcoat, coat);
 }
 

@@ -35,6 +35,7 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
     principled.base_color = s.base;
     principled.roughness = s.roughness;
     principled.metallic = {1};
+    principled.lossless = true;
     metal = add_bsdf(material, principled);
   }
   if (!is_constant(s.metallic, 1)) {
@@ -173,8 +174,6 @@ std::optional<ColorInput> Reader::emission_of(const Element& material) {
   else
     emission.value *= strength;
   if (is_black(emission) || !(strength > 0)) return std::nullopt;
-  if (material.flag("doubleSided", false))
-    warn(material, "emission from the back of a double-sided material", "emission from its front");
   return emission;
 }
 
@@ -199,6 +198,12 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
       note(material, "baked occlusion, which light transport makes by itself, is left out");
   }
   out.bsdf = cut_out(material, pbr, out.bsdf);
+  if (out.emission && material.flag("doubleSided", false)) {
+    // A back of its own would halve what shows through.
+    out.emits_both_ways = material.text("alphaMode", "OPAQUE") != "BLEND";
+    if (!out.emits_both_ways)
+      warn(material, "emission from the back of a blended double-sided material", "emission from its front");
+  }
   if (given && !material.flag("doubleSided", false))
     note(material, "back faces of single-sided materials are shown as well");
   return out;

@@ -3,6 +3,7 @@
 
 #include "scenedesc/gltf/reader.h"
 #include "scenedesc/gltf/uri.h"
+#include "scenedesc/schema/lamp_back.h"
 #include "scenedesc/schema/mesh_cache.h"
 
 namespace lumirank::scenedesc::gltf {
@@ -223,6 +224,8 @@ void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
       if (built.medium != kNone) shape.media = {true, built.medium, kNone};
       shape.kind = InlineMeshDesc{data, primitive.path()};
       if (built.emission) shape.emitter = AreaEmitterDesc{*built.emission, shape.id, primitive.where()};
+      if (built.emits_both_ways && data->triangle_count() > 0 && !is_closed_outwards(*data))
+        scene_.shapes.push_back(back_of(shape));
       scene_.shapes.push_back(std::move(shape));
     }
   }

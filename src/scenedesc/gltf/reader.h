@@ -81,6 +81,7 @@ class Reader : public SceneReader {
     int medium = kNone;  // inside
     int uv_set = 0;
     std::optional<ColorInput> emission;
+    bool emits_both_ways = false;
     std::string name;
   };
   const BuiltMaterial& build_material(int material, bool colored);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "scenedesc/pbrt/shape_kinds.h"
+#include "scenedesc/schema/lamp_back.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -51,44 +52,6 @@ float power_factor(Reader& reader, Params& p, const ShapeDesc& shape, const Area
     reader.warn(p.where(), "the same power for each of many triangles of different sizes (" + p.title() + ")",
                 "the same radiance for all, of the same power together");
   return static_cast<float>(static_cast<double>(lights) * light.power / (sides * kPi * sum));
-}
-
-MeshData moved(const MeshData& mesh, float distance) {
-  MeshData out = mesh;
-  std::vector<Vec3f> normals = mesh.normals;
-  if (normals.empty()) {
-    normals.resize(mesh.positions.size());
-    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-      const auto* k = &mesh.indices[t];
-      const Vec3f a = mesh.positions[k[0]];
-      const Vec3f n = cross(mesh.positions[k[1]] - a, mesh.positions[k[2]] - a);
-      for (int i = 0; i < 3; ++i) normals[k[i]] += n;
-    }
-  }
-  for (std::size_t i = 0; i < normals.size(); ++i)
-    if (const float len = length(normals[i]); len > 0) out.positions[i] += normals[i] * (distance / len);
-  return out;
-}
-
-// The lamp's back: the same surface turned round, 10⁻⁴ of its size behind the front.
-ShapeDesc back_of(const ShapeDesc& front) {
-  constexpr float kGap = 1e-4f;
-  ShapeDesc out = front;
-  out.flip_normals = !front.flip_normals;
-  std::swap(out.media.inside, out.media.outside);
-  const float side = front.flip_normals ? 1 : -1;
-  if (auto* sphere = std::get_if<SphereDesc>(&out.kind)) {
-    sphere->radius *= 1 + side * kGap;
-    return out;
-  }
-  const auto& held = std::get<InlineMeshDesc>(front.kind);
-  Vec3f low(held.mesh->positions[0]), high = low;
-  for (const Vec3f& p : held.mesh->positions) low = min(low, p), high = max(high, p);
-  const Vec3f far = max(max(low, -low), max(high, -high));
-  out.kind = InlineMeshDesc{std::make_shared<const MeshData>(
-                                moved(*held.mesh, side * kGap * (length(high - low) + 0.1f * length(far)))),
-                            held.name + " (back)"};
-  return out;
 }
 
 }  // namespace

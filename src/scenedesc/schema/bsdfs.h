@@ -150,6 +150,8 @@ struct PrincipledDesc {  // Mitsuba 3's "principled"
   FloatInput roughness{0.5f}, anisotropic{0}, metallic{0}, spec_trans{0}, spec_tint{0}, sheen{0},
       sheen_tint{0}, clearcoat{0}, clearcoat_gloss{0}, flatness{0};
   float eta = 1.5f;
+  // Its metal sends back what single scattering by microfacets loses (scatter/interface.h). glTF.
+  bool lossless = false;
 
   static constexpr BsdfInfo kInfo{"principled"};
   static constexpr auto fields() {
@@ -164,7 +166,8 @@ struct PrincipledDesc {  // Mitsuba 3's "principled"
                       Field{"clearcoat", &PrincipledDesc::clearcoat, Role::number, Range::to_1},
                       Field{"clearcoat_gloss", &PrincipledDesc::clearcoat_gloss, Role::number, Range::to_1},
                       Field{"flatness", &PrincipledDesc::flatness, Role::number, Range::to_1},
-                      Field{"eta", &PrincipledDesc::eta, Role::own, Range::index}};
+                      Field{"eta", &PrincipledDesc::eta, Role::own, Range::index},
+                      Field{"lossless", &PrincipledDesc::lossless, Role::own}};
   }
 };
 struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fiber
@@ -229,6 +232,9 @@ struct CoatingDesc {
   FloatInput weight{1};                     // share of the surface that is coated
   Distribution distribution = Distribution::beckmann;
   FloatInput alpha_u{0}, alpha_v{0};
+  // Light goes straight through the layer, which returns nothing inside: the base gets all that the layer
+  // does not reflect. glTF's clear coat; without absorption.
+  bool straight = false;
 
   static constexpr BsdfInfo kInfo{"coating"};
   static constexpr auto fields() {
@@ -239,6 +245,7 @@ struct CoatingDesc {
                       Field{"distribution", &CoatingDesc::distribution, Role::roughness},
                       Field{"alpha_u", &CoatingDesc::alpha_u, Role::roughness},
                       Field{"alpha_v", &CoatingDesc::alpha_v, Role::roughness},
+                      Field{"straight", &CoatingDesc::straight, Role::own},
                       Field{"nested", &CoatingDesc::nested, Role::nested}};
   }
 };
