@@ -18,6 +18,8 @@ import numpy as np
 import OpenEXR
 from PIL import Image
 
+import compare_blocks
+
 mitsuba.set_variant("llvm_ad_rgb")
 
 RAW = '<boolean name="raw" value="true"/>'
@@ -148,16 +150,6 @@ def scenes():
     return all_
 
 
-def blocks(picture):
-    h, w = picture.shape[0] // 8, picture.shape[1] // 8
-    return picture[:8 * h, :8 * w].mean(2).reshape(h, 8, w, 8).mean((1, 3))
-
-
-def load(file):
-    channels = OpenEXR.File(str(file)).channels()
-    return np.array((channels["RGB"] if "RGB" in channels else channels["RGBA"]).pixels, dtype=np.float64)[..., :3]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
@@ -178,11 +170,7 @@ def main():
         if run.returncode:
             print(f"{name:26s} {run.stderr.strip()}")
             continue
-        ours = load(picture)
-        mean = ours.mean((0, 1)) / theirs.mean((0, 1))
-        off = (blocks(ours) - blocks(theirs)) / (blocks(theirs) + 0.05 * theirs.mean())
-        mark = "   <<<" if np.abs(off).max() > 0.06 or np.abs(mean - 1).max() > 0.012 else ""
-        print(f"{name:26s} {' '.join(f'{m:.3f}' for m in mean)}   {off.min():+.3f} {off.max():+.3f} {run.stderr.strip()}{mark}", flush=True)
+        print(compare_blocks.line(name, compare_blocks.load(picture), theirs, run.stderr.strip()), flush=True)
 
 
 if __name__ == "__main__":

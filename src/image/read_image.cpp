@@ -1,3 +1,7 @@
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -21,7 +25,7 @@ namespace lumirank::image {
 namespace {
 namespace fs = std::filesystem;
 
-enum class Format { pfm, exr, png, jpeg, radiance, other };
+enum class Format { pfm, exr, png, jpeg, radiance, webp, other };
 
 // By the first bytes: names lie.
 Format format_of(std::string_view start) {
@@ -29,6 +33,8 @@ Format format_of(std::string_view start) {
   if (start.starts_with("\x89PNG")) return Format::png;
   if (start.starts_with("\xff\xd8\xff")) return Format::jpeg;
   if (start.starts_with("#?")) return Format::radiance;
+  if (start.starts_with("RIFF") && start.substr(std::min<std::size_t>(8, start.size())).starts_with("WEBP"))
+    return Format::webp;
   if (start.size() > 2 && start[0] == 'P' && (start[1] == 'F' || start[1] == 'f') &&
       std::isspace(static_cast<unsigned char>(start[2])))
     return Format::pfm;
@@ -82,6 +88,29 @@ std::string whole_file(const std::string& filename, std::size_t max_pixels) {
   return bytes;
 }
 
+// A file without a place on a disk, for readers that want a name.
+class FileInMemory {
+ public:
+  explicit FileInMemory(std::string_view bytes) : file_(memfd_create("lumirank image", MFD_CLOEXEC)) {
+    while (file_ >= 0 && !bytes.empty()) {
+      const ssize_t written = write(file_, bytes.data(), bytes.size());
+      if (written <= 0) break;
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    if (file_ < 0 || !bytes.empty()) {
+      if (file_ >= 0) close(file_);
+      throw std::runtime_error(std::string("no memory for a copy of it: ") + std::strerror(errno));
+    }
+  }
+  FileInMemory(const FileInMemory&) = delete;
+  FileInMemory& operator=(const FileInMemory&) = delete;
+  ~FileInMemory() { close(file_); }
+  std::string name() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
+
 void read_bytes(Format format, std::string_view bytes, PixelSink& sink) {
   if (!has_file_end(bytes))
     throw std::runtime_error(std::string("this ") + (format == Format::png ? "PNG" : "JPEG") +
@@ -109,7 +138,7 @@ LoadedImage read_image(const std::string& filename, bool raw, std::size_t max_pi
     if (format == Format::exr) {
       require_sane_exr_header(filename, max_pixels);
       read_exr(filename, builder);
-    } else if (format == Format::other) {
+    } else if (format == Format::other || format == Format::webp) {
       read_other_format(filename, builder);
     } else {
       read_bytes(format, whole_file(filename, max_pixels), builder);
@@ -121,12 +150,15 @@ LoadedImage read_image(const std::string& filename, bool raw, std::size_t max_pi
 LoadedImage decode_image(const std::string& bytes, const std::string& name, bool raw,
                          std::size_t max_pixels) {
   const Format format = format_of(bytes);
-  if (format != Format::png && format != Format::jpeg)
-    throw InputError(SourceLocation{name, 0}, "an image in memory is neither a PNG nor a JPEG file",
+  if (format != Format::png && format != Format::jpeg && format != Format::webp)
+    throw InputError(SourceLocation{name, 0}, "an image in memory is neither a PNG, a JPEG nor a WebP file",
                      "embed one of these, or keep the image in a file of its own");
   return guarded(name, [&] {
     ImageBuilder builder(name, raw, max_pixels);
-    read_bytes(format, bytes, builder);
+    if (format == Format::webp)
+      read_other_format(FileInMemory(bytes).name(), builder);
+    else
+      read_bytes(format, bytes, builder);
     return builder.take();
   });
 }

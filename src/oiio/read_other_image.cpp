@@ -5,6 +5,8 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "image/other_formats.h"
@@ -104,7 +106,25 @@ class OtherReader {
                                        strip.data());
       // Some of its readers leave out what a file lacks, and say so only here.
       if (!read || input_->has_error()) fail(input_->geterror());
+      if constexpr (std::is_same_v<Sample, std::uint8_t>)
+        if (multiplied_by_alpha(spec)) divide_by_alpha(range.layout, strip);
       sink_.add(strip.data(), pixels);
+    }
+  }
+
+  // WebP's colors are not, but its reader (2.4.7) does it whatever is wished.
+  bool multiplied_by_alpha(const OIIO::ImageSpec& spec) const {
+    return std::string_view(input_->format_name()) == "webp" && spec.alpha_channel >= 0 &&
+           spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  }
+  static void divide_by_alpha(const PixelLayout& layout, std::vector<std::uint8_t>& strip) {
+    for (std::size_t at = 0; at < strip.size(); at += static_cast<std::size_t>(layout.channels)) {
+      const int alpha = strip[at + static_cast<std::size_t>(layout.alpha)];
+      if (alpha == 0) continue;
+      for (const int c : layout.color) {
+        std::uint8_t& value = strip[at + static_cast<std::size_t>(c)];
+        value = static_cast<std::uint8_t>(std::min(255, (255 * value + alpha / 2) / alpha));
+      }
     }
   }
 

@@ -1,5 +1,7 @@
 #include "scatter/closure_builder.h"
 
+#include <utility>
+
 #include "base/error.h"
 #include "scatter/interface.h"
 #include "scatter/lobe.h"
@@ -146,8 +148,16 @@ void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint
   coat.distribution = m.distribution;
   coat.alpha_u = coat.alpha_v = alpha;
   coat.eta = m.eta;
+  Rgb base = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
+  if (m.schlick) {
+    coat.fresnel = FresnelKind::schlick;
+    coat.conductor_eta = std::exchange(coat.color, Rgb(1));
+    if (!m.smooth) out.push(masked_reflection_lobe(coat.conductor_eta, m.distribution, alpha), at, weight);
+    // The base is made for an interface of index eta, which leaves 1 - its own reflectance.
+    const float own = square((m.eta - 1) / (m.eta + 1));
+    base *= std::min(1.0f, (1 - max_component(coat.conductor_eta)) / (1 - own));
+  }
   out.push(coat, at, weight);
-  const Rgb base = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
   out.push(m.lossless
                ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
                : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear, m.as_mitsuba_3),

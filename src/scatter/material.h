@@ -105,7 +105,8 @@ struct PlasticMaterial {
   bool nonlinear = false;
   NormalDistribution distribution;
   FloatInput alpha;
-  bool lossless = false;  // see PlasticDesc
+  bool lossless = false;  // these two: see PlasticDesc
+  bool schlick = false;
   bool smooth = true;
   bool as_mitsuba_3 = false;  // see PlasticDesc
 };

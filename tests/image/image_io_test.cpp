@@ -333,6 +333,16 @@ TEST_F(ImageIo, BytesInMemoryGiveWhatTheFileGives) {
     EXPECT_THROW(decode_image(bytes.substr(0, bytes.size() / 2), "x"), InputError);
   }
   EXPECT_THROW(decode_image("", "x"), InputError);
+  // Two pixels of lossless WebP.
+  const std::string webp(
+      "RIFF\x20\0\0\0WEBPVP8L\x14\0\0\0\x2f\x01\0\0\x10\x0f\x30\x80\xfb\x3f\xff\xa7\xf9\x0f\x2d\x54\x20"
+      "\xa2\xff\x01",
+      40);
+  const LoadedImage pair = decode_image(webp, "x", true);
+  EXPECT_EQ(pair.color.at(0, 0), Rgb(1, 0, 0));
+  EXPECT_NEAR(pair.color.at(1, 0).g, 128.0f / 255, 0.01f) << "OpenImageIO multiplies by alpha";
+  EXPECT_NEAR(pair.alpha.at(1), 0.2f, 1e-6f);
+  EXPECT_THROW(decode_image(webp.substr(0, 30), "x"), InputError);
   EXPECT_THROW(decode_image("GIF89a", "x"), InputError);
 }
 

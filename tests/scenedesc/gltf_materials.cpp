@@ -333,6 +333,92 @@ TEST(GltfMaterial, SpecularClearCoatSheenUnlit) {
   EXPECT_NE(warning_about(scene, "unlit"), nullptr);
 }
 
+// Exporters write nearly everything double-sided: a lamp that faces away shines all the same, and the inside
+// of a bulb is nobody's light.
+TEST(GltfMaterial, DoubleSidedLampsShineBothWays) {
+  GltfMaker m = with_material({{"emissiveFactor", {1, 1, 1}}, {"doubleSided", true}});
+  SceneDesc scene = parse(m);
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_TRUE(scene.shapes[1].emitter);
+  EXPECT_NE(scene.shapes[0].flip_normals, scene.shapes[1].flip_normals);
+  EXPECT_LT(std::get<InlineMeshDesc>(scene.shapes[1].kind).mesh->positions[0].z,
+            mesh_of(scene).positions[0].z);
+
+  // Its corners meet in place, not by number.
+  const std::vector<float> corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<float> positions;
+  for (const int k : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3})
+    positions.insert(positions.end(), corner[k].begin(), corner[k].end());
+  json& primitive = m.root["meshes"][0]["primitives"][0];
+  primitive.erase("indices");
+  primitive["attributes"] = {{"POSITION", m.accessor("VEC3", positions)}};
+  EXPECT_EQ(parse(m).shapes.size(), 1u) << "closed";
+  std::swap_ranges(positions.begin() + 3, positions.begin() + 6, positions.begin() + 6);
+  primitive["attributes"] = {{"POSITION", m.accessor("VEC3", positions)}};
+  EXPECT_EQ(parse(m).shapes.size(), 2u) << "one triangle is turned round";
+
+  m.root["materials"][0]["alphaMode"] = "BLEND";
+  scene = parse(m);
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  EXPECT_NE(warning_about(scene, "blended double-sided"), nullptr);
+}
+
+TEST(GltfExtensions, SpecularAndGlossiness) {
+  GltfMaker m = with_material({{"extensions",
+                                {{"KHR_materials_pbrSpecularGlossiness",
+                                  {{"diffuseFactor", {0.5, 0.25, 0, 0.75}},
+                                   {"specularFactor", {0.5, 0.25, 0.125}},
+                                   {"glossinessFactor", 0.75}}}}},
+                               {"alphaMode", "BLEND"}});
+  SceneDesc scene = parse(m);
+  const auto* plastic = find_bsdf<PlasticDesc>(scene);
+  ASSERT_NE(plastic, nullptr);
+  EXPECT_TRUE(plastic->schlick && plastic->lossless);
+  EXPECT_EQ(plastic->diffuse_reflectance.value, Rgb(0.5f, 0.25f, 0));
+  EXPECT_EQ(plastic->specular_reflectance.value, Rgb(0.5f, 0.25f, 0.125f));
+  EXPECT_EQ(plastic->alpha.value, 0.0625f) << "(1 - glossiness)²";
+  EXPECT_EQ(top_bsdf<MaskDesc>(scene).opacity.value, 0.75f);
+  EXPECT_EQ(find_bsdf<PrincipledDesc>(scene), nullptr);
+
+  json& glossy = m.root["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+  glossy["specularGlossinessTexture"]["index"] = 0;
+  add_images(m);
+  scene = parse(m);
+  plastic = find_bsdf<PlasticDesc>(scene);
+  const auto kind = [&](int k) { return scene.textures.at(static_cast<std::size_t>(k)).kind; };
+  const auto square_of = std::get<ProductTextureDesc>(kind(plastic->alpha.texture));
+  const auto rough = std::get<MixTextureDesc>(kind(square_of.a.texture));
+  EXPECT_EQ(rough.a.value, Rgb(1));
+  EXPECT_EQ(rough.b.value, Rgb(0));
+  const auto scale = std::get<ScaleTextureDesc>(kind(rough.amount.texture));
+  EXPECT_EQ(std::get<BitmapTextureDesc>(kind(scale.input.texture)).channel, TextureChannel::alpha);
+}
+
+TEST(GltfExtensions, LeavesLetLightThrough) {
+  GltfMaker m = with_material(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+       {"extensions",
+        {{"KHR_materials_diffuse_transmission",
+          {{"diffuseTransmissionFactor", 0.25}, {"diffuseTransmissionColorFactor", {0.5, 1, 0}}}}}}});
+  SceneDesc scene = parse(m);
+  const auto& mixture = top_bsdf<MixtureDesc>(scene);
+  EXPECT_EQ(mixture.parts.at(0).weight.value, 0.25f);
+  const auto* leaf = find_bsdf<DiffuseTransmitterDesc>(scene);
+  ASSERT_NE(leaf, nullptr);
+  EXPECT_EQ(leaf->transmittance.value, Rgb(0.5f, 1, 0));
+  EXPECT_EQ(leaf->reflectance.value, Rgb(0));
+}
+
+TEST(GltfExtensions, WebPIsTakenBeforeItsStandIn) {
+  GltfMaker m = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  add_images(m);
+  m.root["textures"][0] = {{"source", 0}, {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}};
+  const SceneDesc scene = parse(m);
+  const auto& metal = *find_bsdf<PrincipledDesc>(scene);
+  const auto& texture = scene.textures.at(static_cast<std::size_t>(metal.base_color.texture));
+  EXPECT_TRUE(std::get<BitmapTextureDesc>(texture.kind).bytes->starts_with("\xff\xd8\xff"));
+}
+
 TEST(GltfExtensions, UnknownOnesWarnAndRequiredOnesFail) {
   GltfMaker m = square();
   m.root["extensionsUsed"] = {"EXT_nobody_has_this", "KHR_materials_ior"};

@@ -113,10 +113,10 @@ TEST(MaterialFields, OfMicrofacetKinds) {
   // Two flags: each by itself.
   for (const bool nonlinear : {false, true}) {
     auto d = DistinctValues().of<sd::PlasticDesc>();
-    d.nonlinear = nonlinear, d.lossless = !nonlinear;
+    d.nonlinear = nonlinear, d.lossless = !nonlinear, d.schlick = nonlinear;
     const auto m = material_of<sc::PlasticMaterial>(d);
     SAME(eta), SAME(diffuse_reflectance), SAME(specular_reflectance);
-    SAME(nonlinear), SAME(distribution), SAME(alpha), SAME(lossless);
+    SAME(nonlinear), SAME(distribution), SAME(alpha), SAME(lossless), SAME(schlick);
     EXPECT_FALSE(m.smooth);
   }
 }

@@ -24,6 +24,20 @@ int Reader::sheen_bsdf(const Element& material, const Surface& s, const Element&
   return add_bsdf(sheen, cloth);
 }
 
+// KHR_materials_diffuse_transmission: a share of what enters leaves on the other side.
+int Reader::leaf_bsdf(const Element& material, const Surface& s, const Element& transmission) {
+  const FloatInput share = float_input(transmission, "diffuseTransmissionFactor", 0,
+                                       "diffuseTransmissionTexture", TextureChannel::alpha);
+  DiffuseTransmitterDesc leaf;
+  leaf.transmittance =
+      color_input(transmission, "diffuseTransmissionColorFactor", Rgb(1), "diffuseTransmissionColorTexture");
+  if (leaf.transmittance.texture == kNone)
+    leaf.transmittance.value = clamp_below(leaf.transmittance.value, 1.0f);
+  if (volume_of(material)) warn(material, "a solid that lets light through diffusely", "a thin sheet");
+  const int opaque = two_sided(material, opaque_bsdf(material, s));
+  return mix(material, s.metallic, opaque, mix(material, share, add_bsdf(transmission, leaf), opaque));
+}
+
 int Reader::coated_bsdf(const Element& clearcoat, int base) {
   const FloatInput share =
       float_input(clearcoat, "clearcoatFactor", 0, "clearcoatTexture", TextureChannel::red);

@@ -16,6 +16,11 @@ bool is_black(const ColorInput& input) { return input.texture == kNone && input.
 
 }  // namespace
 
+struct Reader::BaseColor {
+  Element at;
+  std::string factor, texture;
+};
+
 int Reader::add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind) {
   return SceneReader::add_bsdf(at.text("name", at.path()), at.where(), std::move(kind));
 }
@@ -29,6 +34,16 @@ int Reader::mix(const Element& at, FloatInput weight, int one, int other) {
 }
 
 int Reader::opaque_bsdf(const Element& material, const Surface& s) {
+  if (s.specular) {
+    PlasticDesc desc;
+    desc.eta = 1.5f;
+    desc.diffuse_reflectance = s.base;
+    desc.specular_reflectance = *s.specular;
+    desc.distribution = Distribution::ggx;
+    desc.alpha = s.alpha;
+    desc.lossless = desc.schlick = true;
+    return add_bsdf(material, desc);
+  }
   int metal = kNone, dielectric = kNone;
   if (!is_constant(s.metallic, 0)) {
     PrincipledDesc principled;
@@ -114,6 +129,10 @@ int Reader::uv_set_of(const Element& material) {
   visit(material, "normalTexture");
   visit(material, "emissiveTexture");
   const std::pair<const char*, const char*> others[] = {
+      {"KHR_materials_pbrSpecularGlossiness", "diffuseTexture"},
+      {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture"},
+      {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture"},
+      {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture"},
       {"KHR_materials_transmission", "transmissionTexture"},
       {"KHR_materials_specular", "specularTexture"},
       {"KHR_materials_specular", "specularColorTexture"},
@@ -126,17 +145,29 @@ int Reader::uv_set_of(const Element& material) {
   return std::max(found, 0);
 }
 
-Reader::Surface Reader::surface_of(const Element& material, const Element& pbr, bool colored) {
+void Reader::read_roughness(const Element& material, const BaseColor& base, Surface& s) {
+  if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness")) {
+    s.specular = color_input(*glossy, "specularFactor", Rgb(1), "specularGlossinessTexture");
+    s.roughness = complement(*glossy, float_input(*glossy, "glossinessFactor", 1, "specularGlossinessTexture",
+                                                  TextureChannel::alpha));
+    s.metallic = {0};
+  } else {
+    s.metallic = float_input(base.at, "metallicFactor", 1, "metallicRoughnessTexture", TextureChannel::blue);
+    s.roughness =
+        float_input(base.at, "roughnessFactor", 1, "metallicRoughnessTexture", TextureChannel::green);
+  }
+  s.alpha = squared(material, s.roughness);
+}
+
+Reader::Surface Reader::surface_of(const Element& material, const BaseColor& base, bool colored) {
   Surface s;
-  s.base = color_input(pbr, "baseColorFactor", Rgb(1), "baseColorTexture");
+  s.base = color_input(base.at, base.factor, Rgb(1), base.texture);
   if (colored) {
     const ColorInput vertex{Rgb(0), add_texture(material, VertexColorTextureDesc{"COLOR_0"})};
     s.base = {Rgb(0), s.base.texture == kNone && s.base.value == Rgb(1) ? vertex.texture
                                                                         : product(material, s.base, vertex)};
   }
-  s.metallic = float_input(pbr, "metallicFactor", 1, "metallicRoughnessTexture", TextureChannel::blue);
-  s.roughness = float_input(pbr, "roughnessFactor", 1, "metallicRoughnessTexture", TextureChannel::green);
-  s.alpha = squared(material, s.roughness);
+  read_roughness(material, base, s);
   if (const auto ior = material.extension("KHR_materials_ior")) {
     s.ior = ior->real("ior", 1.5f, 0, 100);
     if (s.ior == 0) {
@@ -155,11 +186,16 @@ int Reader::lit_bsdf(const Element& material, const Surface& s) {
   const auto sheen = material.extension("KHR_materials_sheen");
   const bool transmits = transmission && transmission->real("transmissionFactor", 0, 0, 1) > 0;
   if (transmits && sheen) warn(material, "sheen on a surface that transmits light", "");
-  int bsdf = transmits ? transmitting_bsdf(material, s, *transmission)
-                       : (sheen ? sheen_bsdf(material, s, *sheen) : opaque_bsdf(material, s));
+  const auto leaf = material.extension("KHR_materials_diffuse_transmission");
+  const bool shines_through = !transmits && leaf && leaf->real("diffuseTransmissionFactor", 0, 0, 1) > 0;
+  if (shines_through && sheen) warn(material, "sheen on a surface that transmits light", "");
+  int bsdf = transmits        ? transmitting_bsdf(material, s, *transmission)
+             : shines_through ? leaf_bsdf(material, s, *leaf)
+             : sheen          ? sheen_bsdf(material, s, *sheen)
+                              : opaque_bsdf(material, s);
   if (const auto clearcoat = material.extension("KHR_materials_clearcoat"))
     bsdf = coated_bsdf(*clearcoat, bsdf);
-  if (!transmits) bsdf = two_sided(material, bsdf);
+  if (!transmits && !shines_through) bsdf = two_sided(material, bsdf);
   return normal_mapped(material, bsdf);
 }
 
@@ -183,9 +219,12 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
   out.name = material.text("name", material.path());
   const Json nothing{Json::Kind::object, false, material.where().line, 0, {}, {}, {}};
   const auto given = material.find("pbrMetallicRoughness");
-  const Element pbr = given ? *given : Element(nothing, material.path(), material.file());
+  BaseColor base{given ? *given : Element(nothing, material.path(), material.file()), "baseColorFactor",
+                 "baseColorTexture"};
+  if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness"))
+    base = {*glossy, "diffuseFactor", "diffuseTexture"};
 
-  const Surface s = surface_of(material, pbr, colored);
+  const Surface s = surface_of(material, base, colored);
   if (material.extension("KHR_materials_unlit")) {
     warn(material, "an unlit material", "a black surface that shines in its base color");
     out.bsdf = add_bsdf(material, DiffuseDesc{{Rgb(0)}});
@@ -197,7 +236,7 @@ Reader::BuiltMaterial Reader::make_material(const Element& material, bool colore
     if (material.has("occlusionTexture"))
       note(material, "baked occlusion, which light transport makes by itself, is left out");
   }
-  out.bsdf = cut_out(material, pbr, out.bsdf);
+  out.bsdf = cut_out(material, base, out.bsdf);
   if (out.emission && material.flag("doubleSided", false)) {
     // A back of its own would halve what shows through.
     out.emits_both_ways = material.text("alphaMode", "OPAQUE") != "BLEND";
@@ -220,18 +259,18 @@ int Reader::normal_mapped(const Element& material, int base) {
   return map.texture == kNone ? base : add_bsdf(material, map);
 }
 
-int Reader::cut_out(const Element& material, const Element& pbr, int base) {
+int Reader::cut_out(const Element& material, const BaseColor& color, int base) {
   const std::string mode = material.text("alphaMode", "OPAQUE");
   if (mode == "OPAQUE") return base;
   if (mode != "MASK" && mode != "BLEND")
     material.at("alphaMode").fail("is \"" + mode + "\"", "OPAQUE, MASK and BLEND are known");
   FloatInput opacity{1};
-  if (const auto factor = pbr.find("baseColorFactor"); factor && factor->size() == 4) {
+  if (const auto factor = color.at.find(color.factor); factor && factor->size() == 4) {
     const Element alpha = factor->item(3);
     opacity.value = alpha.real();
     if (opacity.value < 0 || opacity.value > 1) alpha.fail("is an alpha outside [0, 1]", "give a share");
   }
-  if (const auto info = pbr.find("baseColorTexture")) {
+  if (const auto info = color.at.find(color.texture)) {
     const int texture = build_texture(*info, true, TextureChannel::alpha);
     if (texture != kNone && !without_alpha(texture))
       opacity = {0, scaled(*info, texture, Rgb(opacity.value))};

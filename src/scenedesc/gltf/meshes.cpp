@@ -224,9 +224,9 @@ void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
       if (built.medium != kNone) shape.media = {true, built.medium, kNone};
       shape.kind = InlineMeshDesc{data, primitive.path()};
       if (built.emission) shape.emitter = AreaEmitterDesc{*built.emission, shape.id, primitive.where()};
-      if (built.emits_both_ways && data->triangle_count() > 0 && !is_closed_outwards(*data))
-        scene_.shapes.push_back(back_of(shape));
       scene_.shapes.push_back(std::move(shape));
+      if (built.emits_both_ways && data->triangle_count() > 0 && !is_closed_outwards(*data))
+        scene_.shapes.push_back(back_of(scene_.shapes.back()));
     }
   }
 }

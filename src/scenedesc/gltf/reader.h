@@ -87,17 +87,20 @@ class Reader : public SceneReader {
   const BuiltMaterial& build_material(int material, bool colored);
   BuiltMaterial make_material(const Element& material, bool colored);
   int uv_set_of(const Element& material);
-  struct Surface;  // a material's inputs on their way to a BSDF
-  Surface surface_of(const Element& material, const Element& metallic_roughness, bool colored);
+  struct Surface;    // a material's inputs on their way to a BSDF
+  struct BaseColor;  // where a material has it
+  Surface surface_of(const Element& material, const BaseColor& base, bool colored);
+  void read_roughness(const Element& material, const BaseColor& base, Surface& surface);
   int lit_bsdf(const Element& material, const Surface& surface);
   std::optional<ColorInput> emission_of(const Element& material);
   int opaque_bsdf(const Element& material, const Surface& surface);
   int transmitting_bsdf(const Element& material, const Surface& surface, const Element& transmission);
-  int sheen_bsdf(const Element& material, const Surface& surface, const Element& sheen);  // layers.cpp
-  int coated_bsdf(const Element& clearcoat, int base);                                    // layers.cpp
+  int leaf_bsdf(const Element& material, const Surface& surface, const Element& transmission);  // layers.cpp
+  int sheen_bsdf(const Element& material, const Surface& surface, const Element& sheen);        // layers.cpp
+  int coated_bsdf(const Element& clearcoat, int base);                                          // layers.cpp
   int two_sided(const Element& at, int bsdf);
   int normal_mapped(const Element& material, int base);
-  int cut_out(const Element& material, const Element& metallic_roughness, int base);
+  int cut_out(const Element& material, const BaseColor& color, int base);
   int mix(const Element& at, FloatInput weight, int one, int other);  // weight · one + (1 - weight) · other
   int add_bsdf(const Element& at, decltype(BsdfDesc::kind) kind);
 
@@ -111,6 +114,7 @@ class Reader : public SceneReader {
   int scaled(const Element& at, int texture, Rgb scale);
   int product(const Element& at, ColorInput a, ColorInput b);
   FloatInput squared(const Element& at, FloatInput input);
+  FloatInput complement(const Element& at, FloatInput input);  // 1 - input
   int add_texture(const Element& at, decltype(TextureDesc::kind) kind);
   FloatInput float_input(const Element& object, const std::string& factor, float fallback,
                          const std::string& texture, TextureChannel channel, float max_value = 1);

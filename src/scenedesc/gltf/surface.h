@@ -10,6 +10,8 @@ struct Reader::Surface {
   FloatInput metallic, roughness;
   FloatInput alpha;  // roughness²: the width of GGX
   float ior = 1.5f;
+  // KHR_materials_pbrSpecularGlossiness: reflectance at normal incidence, over `base`.
+  std::optional<ColorInput> specular;
 };
 
 }  // namespace lumirank::scenedesc::gltf

@@ -59,9 +59,10 @@ int Reader::add_texture(const Element& at, decltype(TextureDesc::kind) kind) {
 int Reader::build_texture(const Element& info, bool raw, TextureChannel channel) {
   const Element index = info.at("index");
   const Element& texture = textures_[index_of(index, textures_.size(), "texture")];
-  const auto source = texture.find("source");
+  auto source = texture.find("source");
+  if (const auto webp = texture.extension("EXT_texture_webp")) source = webp->find("source");
   if (!source) {
-    warn(texture, "a texture that is neither PNG nor JPEG", "its factor alone");
+    warn(texture, "a texture that is neither PNG, JPEG nor WebP", "its factor alone");
     return kNone;
   }
   const std::size_t slot = index_of(*source, images_.size(), "image");
@@ -135,6 +136,11 @@ FloatInput Reader::squared(const Element& at, FloatInput input) {
   if (input.texture == kNone) return {input.value * input.value};
   const ColorInput factor{Rgb(0), input.texture};
   return {0, product(at, factor, factor)};
+}
+
+FloatInput Reader::complement(const Element& at, FloatInput input) {
+  if (input.texture == kNone) return {1 - input.value};
+  return {0, add_texture(at, MixTextureDesc{{Rgb(1)}, {Rgb(0)}, {Rgb(0), input.texture}})};
 }
 
 FloatInput Reader::float_input(const Element& object, const std::string& factor, float fallback,

@@ -104,6 +104,10 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
   // otherwise what single scattering by a rough interface lets through: much less, if it is rough. glTF;
   // overrides nonlinear.
   bool lossless = false;
+  // Reflects by Schlick's curve from `specular_reflectance`, the reflectance at normal incidence, and the
+  // base keeps what the largest of its channels leaves: glTF's materials by specular color and glossiness.
+  // `eta` then shapes the base alone.
+  bool schlick = false;
   // Under a rough coating, what comes back inside is averaged as Mitsuba 3 does (scatter/interface.h).
   bool as_mitsuba_3 = false;
 
@@ -116,6 +120,7 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
                       Field{"distribution", &PlasticDesc::distribution, Role::roughness},
                       Field{"alpha", &PlasticDesc::alpha, Role::roughness},
                       Field{"lossless", &PlasticDesc::lossless, Role::own},
+                      Field{"schlick", &PlasticDesc::schlick, Role::own},
                       Field{"as_mitsuba_3", &PlasticDesc::as_mitsuba_3, Role::own}};
   }
 };
