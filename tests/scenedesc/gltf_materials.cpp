@@ -458,6 +458,30 @@ TEST(GltfLights, PointSpotAndDirectional) {
   EXPECT_EQ(scene.emitters[2].id, "sun");
 }
 
+// Its exporter takes 683 lm for a watt of a lamp, and none for what is emissive.
+TEST(GltfLights, BlendersAreOfWattsAgain) {
+  GltfMaker m = with_material({{"emissiveFactor", {1, 1, 1}}});
+  m.root["asset"]["generator"] = "Khronos glTF Blender I/O v4.5.48";
+  m.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 683}},
+                                                           {{"type", "directional"}, {"intensity", 68.3}}};
+  m.root["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}}};
+  for (int k = 0; k < 2; ++k)
+    m.root["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", k}}}}}});
+  SceneDesc scene = parse(m);
+  EXPECT_EQ(std::get<PointLightDesc>(scene.emitters[0].kind).intensity, Rgb(1));
+  EXPECT_NEAR(std::get<DirectionalLightDesc>(scene.emitters[1].kind).irradiance.g, 0.1f, 1e-6f);
+  EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(1));
+  EXPECT_EQ(scene.lumens_per_unit, 683);
+  // "Unitless", or by another program.
+  m.root["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 80;
+  EXPECT_EQ(std::get<PointLightDesc>(parse(m).emitters[0].kind).intensity, Rgb(80));
+  m.root["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 683;
+  m.root["asset"].erase("generator");
+  scene = parse(m);
+  EXPECT_EQ(std::get<PointLightDesc>(scene.emitters[0].kind).intensity, Rgb(683));
+  EXPECT_EQ(scene.lumens_per_unit, 1);
+}
+
 TEST(GltfCameras, PerspectiveLooksAlongMinusZ) {
   GltfMaker m = square();
   m.root["cameras"] = {

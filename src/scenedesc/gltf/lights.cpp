@@ -1,6 +1,12 @@
 // KHR_lights_punctual. One candela is 1 W/sr here and one lux 1 W/m² (SceneDesc::lumens_per_unit is 1):
 // pictures are as bright as the numbers say, and emissive strengths (nits), environments and lamps keep their
 // proportions.
+//
+// Blender's exporter breaks them: it takes 683 lm for each watt of a lamp, but writes the strength of what is
+// emissive, in W/(m² sr), as it is. Its files are read back in watts. They are told from those exported
+// "unitless" by their brightest lamp: in watts 300 would be a lamp of 3,770 W, in candela all lamps would be
+// below 5.6 W.
+#include <algorithm>
 #include <cmath>
 
 #include "scenedesc/gltf/reader.h"
@@ -10,12 +16,25 @@ namespace {
 
 constexpr float kDegrees = 57.29577951308232f;
 
+constexpr float kLumensPerWatt = 683, kMaxUnitless = 300;
+
 }  // namespace
+
+float lumens_per_unit_of(const Element& root) {
+  const auto punctual = root.extension("KHR_lights_punctual");
+  if (!punctual || root.at("asset").text("generator", "").find("Blender") == std::string::npos) return 1;
+  float max_intensity = 0;
+  for (const Element& light : punctual->list("lights"))
+    max_intensity = std::max(max_intensity, light.real("intensity", 1, 0));
+  return max_intensity > kMaxUnitless ? kLumensPerWatt : 1.0f;
+}
 
 void Reader::build_light(const Node& node, const Element& light_index) {
   const Element& light = lights_[index_of(light_index, lights_.size(), "light")];
   Rgb color = color_input(light, "color", Rgb(1), "").value;
-  color *= light.real("intensity", 1, 0);
+  color *= light.real("intensity", 1, 0) / lumens_per_unit_;
+  if (lumens_per_unit_ != 1)
+    note(light, "lamps by Blender: 683 of their lumens are one watt, the unit of emissive strength there");
   const Element type = light.at("type");
   const std::string id = light.text("name", name_of(node));
   // Lights shine along -z; nothing but the direction of the axes counts.

@@ -43,9 +43,10 @@ bool contains(const List& list, const std::string& name) {
 }  // namespace
 
 Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const std::string& filename,
-               const ReadOptions& options)
+               const ReadOptions& options, float lumens_per_unit)
     : SceneReader(filename, "glTF 2.0", options),
       root_(root),
+      lumens_per_unit_(lumens_per_unit),
       buffers_(root, binary, is_glb),
       accessors_(root, buffers_),
       meshes_(root.list("meshes")),
@@ -55,7 +56,7 @@ Reader::Reader(const Element& root, std::string_view binary, bool is_glb, const 
       samplers_(root.list("samplers")),
       cameras_(root.list("cameras")),
       skins_(root.list("skins")) {
-  scene_.lumens_per_unit = 1;  // candela, lux and nits are its units
+  scene_.lumens_per_unit = lumens_per_unit;
   if (const auto punctual = root.extension("KHR_lights_punctual")) lights_ = punctual->list("lights");
 }
 
@@ -136,19 +137,21 @@ SceneDesc parse_gltf(const std::string& bytes, const std::string& filename, cons
   const gltf::Container container = gltf::open_container(bytes, filename);
   const gltf::Json json = gltf::parse_json(container.json, filename);
   const gltf::Element root(json, "", filename);
+  const float lumens = gltf::lumens_per_unit_of(root);
   if (!root.find("animations") && options.clip.empty())
-    return gltf::Reader(root, container.binary, container.is_glb, filename, options).read();
+    return gltf::Reader(root, container.binary, container.is_glb, filename, options, lumens).read();
   gltf::Buffers buffers(root, container.binary, container.is_glb);
   gltf::Accessors accessors(root, buffers);
   if (options.time) {
     const gltf::Animation animation(root, accessors, options.clip);
     const gltf::Json posed = animation.at(json, *options.time);
     const gltf::Element shown(posed, "", filename);
-    SceneDesc scene = gltf::Reader(shown, container.binary, container.is_glb, filename, options).read();
+    SceneDesc scene =
+        gltf::Reader(shown, container.binary, container.is_glb, filename, options, lumens).read();
     scene.motion = gltf::motion_of(animation, root);
     return scene;
   }
-  SceneDesc scene = gltf::Reader(root, container.binary, container.is_glb, filename, options).read();
+  SceneDesc scene = gltf::Reader(root, container.binary, container.is_glb, filename, options, lumens).read();
   try {
     scene.motion = gltf::motion_of(gltf::Animation(root, accessors, options.clip), root);
   } catch (const InputError& error) {  // a still picture does not need it

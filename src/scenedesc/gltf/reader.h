@@ -31,7 +31,7 @@ class Reader : public SceneReader {
  public:
   // `root` and what `binary` points to must outlive this.
   Reader(const Element& root, std::string_view binary, bool is_glb, const std::string& filename,
-         const ReadOptions& options);
+         const ReadOptions& options, float lumens_per_unit);
 
   SceneDesc read();
 
@@ -127,6 +127,7 @@ class Reader : public SceneReader {
   std::string name_of(const Node& node) const;
 
   Element root_;
+  float lumens_per_unit_;
   Buffers buffers_;
   Accessors accessors_;
   std::vector<Element> meshes_, materials_, textures_, images_, samplers_, cameras_, skins_, lights_;
@@ -137,6 +138,9 @@ class Reader : public SceneReader {
   std::map<std::pair<std::string, int>, std::shared_ptr<const MeshData>> built_meshes_;
   std::map<std::array<float, 3>, int> built_media_;  // by extinction
 };
+
+// Lumens that are one unit of power in the file as it stands, whatever moves (lights.cpp).
+float lumens_per_unit_of(const Element& root);
 
 // The rotation of a quaternion (x, y, z, w) of any length but zero, which is an InputError at `where`.
 Transform rotation(double x, double y, double z, double w, const Element& where);
