@@ -115,6 +115,7 @@ def scenes():
     all_["principledthin"] = scene(bsdf("principledthin", red + number("spec_trans", 0.5) + number("diff_trans", 0.8) + number("eta", 1.4)))
     all_["blend"] = scene(bsdf("blendbsdf", number("weight", 0.3) + bsdf("diffuse") + bsdf("roughconductor", number("alpha", 0.3))))
     all_["mask"] = scene(bsdf("mask", number("opacity", 0.4) + bsdf("diffuse")))
+    all_["hidden-emitters"] = scene(light=PANEL).replace('<integer name="max_depth" value="8"/>', '<integer name="max_depth" value="8"/><boolean name="hide_emitters" value="true"/>')
     all_["bumps"] = scene(floor=bsdf("bumpmap", bitmap("arbitrary", RAW + '<transform name="to_uv"><scale value="4"/></transform>') + number("scale", 0.03) + bsdf("roughconductor", number("alpha", 0.2))))
     light = {
         "point": '<emitter type="point"><point name="position" x="1" y="2" z="1"/>' + rgb("intensity", "6,5,4") + "</emitter>",

@@ -82,7 +82,9 @@ void PathTracer::finish(Walk& walk) const {
   // A bound on straight passes, so that coincident null surfaces cannot hold a path for ever.
   constexpr int kMaxSteps = 4096;
   for (int step = 0; step < kMaxSteps; ++step) {
-    const auto hit = world_.intersect(walk.ray);
+    const bool seen = walk.segments == 1;  // by nothing but the eye
+    const auto hit = seen ? world_.intersect_from_eye(walk.ray) : world_.intersect(walk.ray);
+    if (!hit && seen && world_.hides_emitters()) break;
     if (hit) walk.traveled += hit->hit.t;
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit) break;

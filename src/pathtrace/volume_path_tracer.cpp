@@ -75,12 +75,14 @@ Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::ui
   walk.ray.t_min *= longer, walk.ray.t_max *= longer;
   walk.hero = std::min(2, static_cast<int>(3 * walk.random.next_float()));
   for (int step = 0; step < world::kMaxPasses; ++step) {
-    const auto hit = world_.intersect(walk.ray);
+    const bool seen = walk.segments == 1;  // by nothing but the eye
+    const auto hit = seen ? world_.intersect_from_eye(walk.ray) : world_.intersect(walk.ray);
     const float distance = hit ? hit->hit.t : kInfinity;
     const Flight flight = fly(walk, distance);
     if (flight == Flight::ended) break;
     if (flight == Flight::scattered) continue;
     if (hit) walk.traveled += distance;
+    if (!hit && seen && world_.hides_emitters()) break;
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit || !scatter_on_surface(walk, *hit)) break;
   }

@@ -231,7 +231,8 @@ class Pilot {
 
 LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
                                  pathtrace::Paths paths, const Sinks& sinks) {
-  if (!world.media().empty()) return {};
+  // What the eye looks through would stop paths that arrive from lamps.
+  if (!world.media().empty() || world.hides_emitters()) return {};
   return Pilot(world, view, seed, paths, sinks).run();
 }
 

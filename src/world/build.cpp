@@ -264,6 +264,7 @@ class World::Builder {
   }
 
   void count() {
+    w_.hides_emitters = desc_.hide_emitters;
     w_.info.instances = geometry_.placements.size();
     w_.info.triangles = geometry_.triangles;
     w_.info.segments = geometry_.segments;

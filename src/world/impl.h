@@ -29,6 +29,7 @@ struct World::Impl {
   std::vector<emitters::Emitter> emitters;
   std::vector<scatter::ColorInput> radiance;  // of area emitters; unused for the others
   int environment = -1;
+  bool hides_emitters = false;
   std::vector<std::size_t> suns;  // emitters with a disc
   Bounds3f bounds;
   Units units;

@@ -48,6 +48,22 @@ std::optional<SurfaceHit> World::intersect(const geometry::Ray& ray) const {
   return impl_->surface(*hit, ray.direction);
 }
 
+std::optional<SurfaceHit> World::intersect_from_eye(geometry::Ray ray) const {
+  auto hit = intersect(ray);
+  if (!impl_->hides_emitters) return hit;
+  constexpr int kMaxSurfaces = 1024;
+  const Vec3f eye = ray.origin;
+  for (int k = 0; k < kMaxSurfaces && hit && hit->emitter >= 0; ++k) {
+    ray.t_max -= hit->hit.t, ray.t_min = 0;
+    ray.origin = offset_origin(hit->point.position, hit->point.ng, ray.direction);
+    hit = intersect(ray);
+  }
+  if (hit) hit->hit.t = length(hit->point.position - eye) / length(ray.direction);
+  return hit;
+}
+
+bool World::hides_emitters() const { return impl_->hides_emitters; }
+
 SurfaceHit World::surface(const geometry::Hit& hit, Vec3f ray_direction) const {
   return impl_->surface(hit, ray_direction);
 }

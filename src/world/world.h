@@ -85,6 +85,10 @@ class World {
   const WorldInfo& info() const;
 
   std::optional<SurfaceHit> intersect(const geometry::Ray& ray) const;
+  // The same for rays of the eye: in scenes that hide their emitters it looks through all that shines, and
+  // where nothing is hit it sees no background.
+  std::optional<SurfaceHit> intersect_from_eye(geometry::Ray ray) const;
+  bool hides_emitters() const;
   // The surface point for a known placement, triangle and barycentric coordinates. The direction matters to
   // fibers only: they are seen all around.
   SurfaceHit surface(const geometry::Hit& hit, Vec3f ray_direction) const;

@@ -109,6 +109,32 @@ TEST(Reference, HalfOpenSurfacesLoseNothingInAFurnace) {
               "paths of scenes with a medium");
 }
 
+TEST(Reference, HiddenEmittersAreSeenInMirrorsAlone) {
+  const std::string integrator =
+      "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>";
+  const std::string sky = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"2, 1, 3\"/></emitter>";
+  const std::string lamp =
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"9\"/><translate "
+      "z=\"2\"/></transform>"
+      "<emitter type=\"area\"><rgb name=\"radiance\" value=\"7\"/></emitter></shape>";
+  // Turned by 45°: it shows the sky above.
+  const std::string mirror =
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"9\"/><rotate x=\"1\" "
+      "angle=\"-45\"/>"
+      "</transform><bsdf type=\"conductor\"><float name=\"eta\" value=\"0\"/><float name=\"k\" "
+      "value=\"1\"/></bsdf>"
+      "</shape>";
+  const std::string camera = integrator + point_camera("0,0,5", "0,0,0", 16, 10);
+  RenderSettings settings;
+  ReferenceSettings how;
+  how.spp = 16;
+  expect_mean(reference(load_text(camera + sky + lamp), settings, how).picture, {0, 0, 0}, "nothing");
+  expect_mean(reference(load_text(camera + sky + lamp + mirror), settings, how).picture, {2, 1, 3}, "mirror");
+  settings.method.name = "instant-radiosity";
+  settings.lights.count = 100;
+  expect_mean(render(load_text(camera + sky + lamp + mirror), settings).picture, {2, 1, 3}, "columns");
+}
+
 TEST(Reference, DiffusePlaneUnderTheSky) {
   // A plane that reflects ρ under constant radiance L from the whole hemisphere: ρ·L.
   const Scene scene =

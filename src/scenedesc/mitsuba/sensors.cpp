@@ -232,8 +232,7 @@ void Reader::build_integrator(const Element& element) {
     throw InputError(p.where_of("max_depth"),
                      "\"max_depth\" of " + p.title() + " is " + std::to_string(scene_.max_depth),
                      "-1 means without limit");
-  if (p.has("hide_emitters") && p.flag("hide_emitters", false))
-    warn(p.where_of("hide_emitters"), "hidden emitters", "emitters that can be seen");
+  scene_.hide_emitters = p.flag("hide_emitters", false);
   // The rest tunes Mitsuba's own algorithm.
 }
 

@@ -46,6 +46,8 @@ struct SceneDesc {
   std::vector<SensorDesc> sensors;  // at least one after a successful read
   int max_depth = -1;               // Mitsuba's count; -1: unlimited
   std::string integrator;           // as named in the file
+  // The eye looks straight through what shines, into a black background; mirrors and glass show it.
+  bool hide_emitters = false;
   Motion motion;
   std::vector<Warning> warnings;
 };

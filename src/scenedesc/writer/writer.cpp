@@ -30,6 +30,7 @@ WrittenScene MitsubaWriter::write() {
   // Mitsuba's path tracer does not see media.
   xml_.open("integrator", {{"type", scene_.media.empty() ? "path" : "volpathmis"}});
   xml_.integer("max_depth", scene_.max_depth);
+  if (scene_.hide_emitters) xml_.flag("hide_emitters", true);
   xml_.close();
   if (scene_.lumens_per_unit != kLumensPerUnit)
     warn({scene_.source_file, 0}, "photometric units", "the numbers as they are, which stand for W/nm there");

@@ -189,14 +189,16 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
   for (bool from_eye = true; !pending_.empty(); from_eye = false) {
     Segment s = pending_.back();
     pending_.pop_back();
-    const auto hit = world_.intersect(s.ray);
+    const bool seen = s.depth == 1;  // by nothing but the eye
+    const auto hit = seen ? world_.intersect_from_eye(s.ray) : world_.intersect(s.ray);
     if (settings_.segments > 0 && s.medium >= 0) {
       emission +=
           cross_medium(s, hit ? hit->hit.t * lumirank::length(s.ray.direction) : kInfinity, sample, rng);
       if (is_black(s.weight)) continue;
     }
     if (!hit) {
-      add_emission(s, world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
+      if (!(seen && world_.hides_emitters()))
+        add_emission(s, world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
       continue;
     }
     const Vec3f wo = -s.ray.direction;
