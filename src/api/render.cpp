@@ -24,6 +24,7 @@
 #include "pipeline/render_run.h"
 #include "pipeline/report.h"
 #include "pipeline/view_check.h"
+#include "world/colored_glass.h"
 
 namespace lumirank {
 namespace {
@@ -60,8 +61,18 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
                     const PreviewCallback& on_preview) {
   RenderSettings chosen = settings;
   api::InShot alone;
-  if (!pipeline::paths_by_default(scene.impl().desc, settings) &&
-      pipeline::passes_by_default(scene.impl().desc, settings)) {
+  const scenedesc::SceneDesc& desc = scene.impl().desc;
+  if (pipeline::paths_by_default(desc, settings) && world::may_color_glass(desc)) {
+    validate(settings);
+    alone.timer = Timer();
+    within_memory_and_threads(settings, [&] {
+      alone.world =
+          api::build_world(scene, sinks, {.straight_panes = settings.traced.panes == Panes::straight});
+      if (!world::colors_glass(*alone.world)) alone.world = nullptr;
+    });
+  }
+  if ((alone.world || !pipeline::paths_by_default(desc, settings)) &&
+      pipeline::passes_by_default(desc, settings)) {
     chosen.method.name = pipeline::kMethodOfPasses;
     alone.why = "the default";
     alone.may_be_paths = pipeline::may_be_paths(settings) && settings.passes == 0 && !settings.view.spp &&
@@ -76,6 +87,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
   RenderResult result;
   within_memory_and_threads(settings, [&] {
     pipeline::RenderTask task;
+    if (shot.timer) task.timer = *shot.timer;
     task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
     const bool by_paths = pipeline::paths_by_default(scene.impl().desc, settings);
@@ -110,10 +122,11 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
       result = pipeline::run_exposure(instants, std::move(task), settings, sinks, on_preview);
       return;
     }
-    task.world = api::build_world(scene, sinks,
-                                  {.media = in_media,
-                                   .refit = shot.refit ? shot.refit->get() : nullptr,
-                                   .straight_panes = settings.traced.panes == Panes::straight});
+    task.world = shot.world ? shot.world
+                            : api::build_world(scene, sinks,
+                                               {.media = in_media,
+                                                .refit = shot.refit ? shot.refit->get() : nullptr,
+                                                .straight_panes = settings.traced.panes == Panes::straight});
     if (shot.refit) *shot.refit = task.world;
     task.build_seconds = task.timer.seconds();
     say_panes(task.world->info(), sinks);

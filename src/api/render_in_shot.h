@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/timer.h"
 #include "lumirank/lumirank.h"
 #include "pipeline/shot.h"
 
@@ -23,6 +25,9 @@ struct InShot {
   std::shared_ptr<const world::World>* refit = nullptr;
   std::string why = {};       // it is this method; empty: as the settings say
   bool may_be_paths = false;  // where these have less noise (paths_beside.h)
+  // Built for it already, if given; `timer` began before that.
+  std::shared_ptr<const world::World> world = nullptr;
+  std::optional<Timer> timer = {};
 };
 
 // As render(), of a frame of a shot.

@@ -39,6 +39,7 @@ struct LightTracer::Flight {
   int segments = 1;            // from the emitter, the current one included
   int non_delta_vertices = 0;  // passed
   bool after_specular = false;
+  int medium = -1;  // that colors the glass which it is in; -1: none
 };
 
 int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const {
@@ -51,6 +52,8 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat
     const auto hit = world_.intersect(flight.ray);
     ++rays;
     if (!hit) break;
+    flight.flux *= world_.left_by_glass(flight.medium, hit->hit.t);
+    if (is_black(flight.flux)) break;
     const Vec3f incoming = -flight.ray.direction;
     const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
     const bool first = flight.segments == 1;
@@ -75,6 +78,7 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat
     if (!(survival > 0) || (survival < 1 && random.next_float() >= survival)) break;
     flight.flux *= 1 / survival;
     if (!is_finite(flight.flux)) break;
+    flight.medium = world_.medium_beyond(*hit, next->wi, flight.medium);
     flight.ray = {world::World::offset_origin(hit->point.position, hit->point.ng, next->wi), next->wi};
   }
   return rays;

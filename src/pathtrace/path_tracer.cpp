@@ -30,6 +30,7 @@ struct PathTracer::Walk {
   float traveled = 0;           // since the last vertex
   float receiver_term = 0;      // π f_x·cosθx of the step away from the receiver
   const Reach* near = nullptr;  // what may come next after the receiver, see Departure
+  int medium = -1;              // that colors the glass which the path is in; -1: none
   float eta_scale = 1;          // undoes refraction's scaling for Russian roulette
   bool from_eye = false;        // the eye sees the vertex that comes next
   float light_paths = 0;        // light_path_ratio() of a first vertex that the eye sees; 0: of none
@@ -86,6 +87,10 @@ void PathTracer::finish(Walk& walk) const {
     const auto hit = seen ? world_.intersect_from_eye(walk.ray) : world_.intersect(walk.ray);
     if (!hit && seen && world_.hides_emitters()) break;
     if (hit) walk.traveled += hit->hit.t;
+    if (hit && walk.medium >= 0) {
+      walk.throughput *= world_.left_by_glass(walk.medium, hit->hit.t * length(walk.ray.direction));
+      if (is_black(walk.throughput)) break;
+    }
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit) break;
     if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
@@ -241,6 +246,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
     if (!survives(walk)) return false;
   }
   if (pass && first_of_departed) walk.counts = false;
+  walk.medium = world_.medium_beyond(hit, next->wi, walk.medium);
   walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
   return true;
 }

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/hash_text.h"
 #include "base/parallel.h"
+#include "world/colored_glass.h"
 #include "world/impl.h"
 #include "world/lights.h"
 #include "world/material_builder.h"
@@ -168,6 +169,11 @@ class World::Builder {
 
   void set_media() {
     if (desc_.media.empty()) return;
+    if (!with_media_ && may_color_glass(desc_)) {
+      w_.absorption = absorption_of_glass(desc_);
+      for (Rgb& a : w_.absorption) a *= static_cast<float>(1 / w_.units.scale());
+      return;
+    }
     if (!with_media_) return notes_.warn(desc_.media[0].where, "participating media", "empty space");
     MediaBuilder media(desc_, notes_);
     w_.media = media.build(w_.units);
@@ -181,7 +187,7 @@ class World::Builder {
     auto& materials = w_.materials.materials;
     const auto* glass = std::get_if<scatter::DielectricMaterial>(&materials[index_of(material_of_[i])]);
     if (!glass || !glass->smooth) return;
-    if ((with_media_ && geometry_.placed[i].shape->media.divides) ||
+    if ((knows_media() && geometry_.placed[i].shape->media.divides) ||
         !is_made_of_panes(geometry_.meshes[placement.mesh], placement.to_world)) {
       ++w_.info.bending_glass;
       return;
@@ -194,6 +200,7 @@ class World::Builder {
       materials.push_back(scatter::SlabFaceMaterial{glass->eta, glass->specular_reflectance,
                                                     glass->specular_transmittance, known->first});
   }
+  bool knows_media() const { return with_media_ || !w_.absorption.empty(); }
   static std::size_t index_of(int material) { return static_cast<std::size_t>(material); }
 
   void set_placement(std::size_t i) {
@@ -208,7 +215,7 @@ class World::Builder {
     w_.placements.push_back({placement.to_world.is_identity(), keeps_angles(placement.to_world),
                              w_.materials.is_hair(material_of_[i]), geometry_.flip[i], placement.to_world,
                              placement.to_world.inverse().value_or(Transform{}),
-                             with_media_ ? geometry_.placed[i].shape->media : sd::MediumInterfaceDesc{}});
+                             knows_media() ? geometry_.placed[i].shape->media : sd::MediumInterfaceDesc{}});
     const Placed& placed = geometry_.placed[i];
     std::string name = placed.shape->id;
     if (placed.instance) name += '\n' + placed.instance->id;

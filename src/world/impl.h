@@ -30,6 +30,7 @@ struct World::Impl {
   std::vector<scatter::ColorInput> radiance;  // of area emitters; unused for the others
   int environment = -1;
   bool hides_emitters = false;
+  std::vector<Rgb> absorption;    // by medium, where they are the color of glass and `media` is empty
   std::vector<std::size_t> suns;  // emitters with a disc
   Bounds3f bounds;
   Units units;

@@ -16,6 +16,15 @@ const geometry::RayScene& World::rays() const { return *impl_->rays; }
 const scatter::MaterialSet& World::materials() const { return impl_->materials; }
 const std::vector<emitters::Emitter>& World::emitters() const { return impl_->emitters; }
 const std::vector<media::Medium>& World::media() const { return impl_->media; }
+Rgb World::left_by_glass(int medium, float length) const {
+  if (medium < 0 || impl_->absorption.empty()) return Rgb(1);
+  Rgb left = impl_->absorption[static_cast<std::size_t>(medium)];
+  for (int c = 0; c < 3; ++c) left[c] = std::exp(-left[c] * length);
+  return left;
+}
+bool World::divides_media(std::uint32_t placement) const {
+  return impl_->placements[placement].media.divides;
+}
 int World::medium_beyond(const SurfaceHit& hit, Vec3f direction, int current) const {
   const scenedesc::MediumInterfaceDesc& media = impl_->placements[hit.hit.instance].media;
   if (!media.divides) return current;

@@ -27,7 +27,8 @@ struct BuildOptions {
   std::optional<Units> units = {};
   // The same scene at another moment: what has not changed since is shared with it.
   const World* before = nullptr;
-  // Participating media are there. Without them the scene is in empty space, which is warned about.
+  // Participating media are there. Without them the scene is in empty space, which is warned about; but media
+  // that may be the color of glass (colored_glass.h) are taken in by rays, see left_by_glass().
   bool media = true;
   // `before` is traced no more: see geometry::RayScene::Sharing.
   bool refit = false;
@@ -69,6 +70,11 @@ class World {
   const std::vector<emitters::Emitter>& emitters() const;
   // Participating media; empty space is none of them and has the number -1.
   const std::vector<media::Medium>& media() const;
+  // Of light that goes `length` through a medium, medium_beyond()'s, where media are the color of glass; else
+  // 1.
+  Rgb left_by_glass(int medium, float length) const;
+  // Whether a placement's surface has a medium on a side.
+  bool divides_media(std::uint32_t placement) const;
   // The medium that a ray is in which leaves the hit into `direction`, having come through `current`.
   int medium_beyond(const SurfaceHit& hit, Vec3f direction, int current) const;
   // The medium at a place, by the first surface that divides media along a ray from there; `fallback` if

@@ -98,6 +98,24 @@ TEST(MediaReference, AbsorptionIsBeerAndLamberts) {
   expect_mean(render_truth(grid, 64), gray, "absorption of a grid");
 }
 
+TEST(MediaRender, ColorOfGlassIsBeersLaw) {
+  // Glass that does not refract; a floor, out of sight, has lights. `render` knows no medium then.
+  const std::string glass =
+      "<shape type=\"cube\"><bsdf type=\"dielectric\"><float name=\"int_ior\" value=\"1.5\"/>"
+      "<float name=\"ext_ior\" value=\"1.5\"/></bsdf>" +
+      homogeneous("0.1, 0.5, 1", "0, 0, 0") + "</shape>";
+  const std::string floor =
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><translate z=\"-9\"/></transform></shape>";
+  const Scene scene = load_text(parallel_camera(0.9) + kWhiteSky + glass + floor);
+  RenderSettings settings;
+  settings.passes = 1;
+  settings.denoise = Denoise::off;
+  const double expected[3] = {std::exp(-0.2), std::exp(-1.0), std::exp(-2.0)};
+  const RenderResult result = render(scene, settings);
+  EXPECT_EQ(result.report.method, "row-guided-sampling");
+  expect_mean(result.picture, expected, "color");
+}
+
 TEST(MediaReference, NothingIsLostInAFurnace) {
   // With an albedo of 1 under an even sky every path finds the sky at last, whatever the phase function.
   const TemporaryFolder folder;

@@ -92,10 +92,11 @@ void ParticleTracer::follow(const EmissionGuide::Start& from, std::uint64_t id, 
   }
 }
 
-void ParticleTracer::step(const Branch& branch, Visit& visit) const {
+void ParticleTracer::step(Branch branch, Visit& visit) const {
   if (branch.depth >= 0xffff) return;
   const auto hit = world_.intersect(branch.ray);
   if (!hit) return;
+  if (branch.medium >= 0) branch.flux *= world_.left_by_glass(branch.medium, hit->hit.t);
   if (visit.tally && visit.first) visit.tally->first_flux += mean(branch.flux);
   visit.first = false;
   const Vec3f incoming = -branch.ray.direction;
@@ -162,6 +163,7 @@ bool ParticleTracer::scatter_on(const world::SurfaceHit& hit, const Closure& clo
   if (!(survival > 0) || (survival < 1 && rng.next_float() >= survival)) return false;
   flux *= 1 / survival;
   if (!is_finite(flux)) return false;
+  branch.medium = world_.medium_beyond(hit, next->wi, branch.medium);
   branch.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
   return true;
 }

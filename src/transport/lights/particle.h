@@ -52,12 +52,13 @@ class ParticleTracer {
     float level;  // of flux: less is paid in the chance to survive
     int depth;    // of the next vertex
     std::uint64_t id;
+    int medium = -1;  // that colors the glass which it is in; -1: none
   };
   struct Visit;
   void follow(const EmissionGuide::Start& start, std::uint64_t id, Rng& rng, LightBatch& batch,
               PathTally* tally) const;
   // One vertex of a branch: leaves its light, and pushes what goes on.
-  void step(const Branch& branch, Visit& visit) const;
+  void step(Branch branch, Visit& visit) const;
   int leave(LightRecord& light, const scatter::Closure& shining, Visit& visit) const;
   bool scatter_on(const world::SurfaceHit& hit, const scatter::Closure& closure, Vec3f incoming,
                   Branch& branch, Rng& rng) const;

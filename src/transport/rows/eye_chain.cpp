@@ -201,6 +201,10 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
         add_emission(s, world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
       continue;
     }
+    if (s.medium >= 0 && settings_.segments == 0) {
+      s.weight *= world_.left_by_glass(s.medium, hit->hit.t * lumirank::length(s.ray.direction));
+      if (is_black(s.weight)) continue;
+    }
     const Vec3f wo = -s.ray.direction;
     if (hit->emitter >= 0) add_emission(s, world_.emitted(*hit, wo));
     Closure closure = world_.materials().closure(world_.materials().seen(hit->material), hit->point, wo);
@@ -224,10 +228,11 @@ void EyeChain::follow_from(const EyeVertex& from, const geometry::Ray& ray, Rng&
   pending_.clear();
   pending_.push_back({ray, from.weight, from.depth + 1, 0, 0, from.id, 0, 0, -1});
   while (!pending_.empty()) {
-    const Segment s = pending_.back();
+    Segment s = pending_.back();
     pending_.pop_back();
     const auto hit = world_.intersect(s.ray);
     if (!hit) continue;
+    s.weight *= world_.left_by_glass(s.medium, hit->hit.t * lumirank::length(s.ray.direction));
     const Vec3f wo = -s.ray.direction;
     const Closure closure = world_.materials().closure(hit->material, hit->point, wo);
     if (closure.sides_agree(wo) && closure.has_non_delta())
