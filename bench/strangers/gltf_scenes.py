@@ -163,6 +163,7 @@ def build():
     out["glass-solid"] = base_scene(material(pbr((1, 1, 1), 0, 0), {"transmission": {"transmissionFactor": 1}, "volume": {"thicknessFactor": 1}}))
     out["glass-rough"] = base_scene(material(pbr((1, 1, 1), 0, 0.4), {"transmission": {"transmissionFactor": 1}, "volume": {"thicknessFactor": 1}}))
     out["glass-tinted"] = base_scene(material(pbr((1, 1, 1), 0, 0), {"transmission": {"transmissionFactor": 1}, "volume": {"thicknessFactor": 1, "attenuationDistance": 0.5, "attenuationColor": [0.2, 0.7, 0.5]}}))
+    out["sheet-frosted"] = base_scene(material(pbr((1, 1, 1), 0, 0.4), {"transmission": {"transmissionFactor": 1}}))
     out["glass-half"] = base_scene(material(pbr(red, 0, 0.1), {"transmission": {"transmissionFactor": 0.5}, "volume": {"thicknessFactor": 1}}))
     out["diffuse-transmission"] = base_scene(material(pbr((0.3, 0.6, 0.2), 0, 0.8), {"diffuse_transmission": {"diffuseTransmissionFactor": 0.5, "diffuseTransmissionColorFactor": [0.8, 0.9, 0.2]}}, doubleSided=True), shape=sheet((-0.8, 0.1, 0), (1.6, 0, 0), (0, 1.4, -0.3)))
     out["specular-glossiness"] = base_scene({"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.5, 0.2, 0.1, 1], "specularFactor": [0.3, 0.3, 0.2], "glossinessFactor": 0.7}}})

@@ -55,7 +55,7 @@ std::string mitsuba_file(const TemporaryFolder& folder) {
     else if (k == 3)
       xml +=
           "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"material\" value=\"none\"/>"
-          "<string name=\"distribution\" value=\"ggx\"/><float name=\"alpha\" value=\"0.25\"/></bsdf></bsdf>";
+          "<string name=\"distribution\" value=\"ggx\"/><float name=\"alpha\" value=\"0.04\"/></bsdf></bsdf>";
     else
       xml += "<emitter type=\"area\"><rgb name=\"radiance\" value=\"9, 8, 6\"/></emitter>";
     xml += "</shape>";
@@ -74,7 +74,7 @@ std::string pbrt_file(const TemporaryFolder& folder) {
     if (k < 3)
       s += "Material \"diffuse\" \"rgb reflectance\" [ " + text(kColors[k]) + " ]\n";
     else if (k == 3)
-      s += "Material \"conductor\" \"bool remaproughness\" false \"float roughness\" 0.25 \"rgb eta\" [ 0 0 "
+      s += "Material \"conductor\" \"bool remaproughness\" false \"float roughness\" 0.04 \"rgb eta\" [ 0 0 "
            "0 ] "
            "\"rgb k\" [ 1 1 1 ]\n";
     else
@@ -121,7 +121,7 @@ std::string gltf_file(const TemporaryFolder& folder) {
   };
   const std::string materials =
       matt(kColors[0]) + matt(kColors[1]) + matt(kColors[2]) +
-      "{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":1,\"roughnessFactor\":0.5}},"
+      "{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":1,\"roughnessFactor\":0.2}},"
       "{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorFactor\":[0,0,0,1]},"
       "\"emissiveFactor\":[1,0.88888889,0.66666667],\"extensions\":{\"KHR_materials_specular\":"
       "{\"specularFactor\":0},\"KHR_materials_emissive_strength\":{\"emissiveStrength\":9}}}";

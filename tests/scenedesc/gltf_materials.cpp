@@ -394,6 +394,22 @@ TEST(GltfExtensions, SpecularAndGlossiness) {
   EXPECT_EQ(std::get<BitmapTextureDesc>(kind(scale.input.texture)).channel, TextureChannel::alpha);
 }
 
+TEST(GltfExtensions, RoughSheetsAreFrosted) {
+  GltfMaker m =
+      with_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+                     {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+  SceneDesc scene = parse(m);
+  const auto* frosted = find_bsdf<PrincipledThinDesc>(scene);
+  ASSERT_NE(frosted, nullptr);
+  EXPECT_EQ(frosted->roughness.value, 0.5f);
+  EXPECT_EQ(frosted->spec_trans.value, 1);
+  EXPECT_EQ(frosted->diff_trans.value, 0);
+  m.root["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.1;
+  scene = parse(m);
+  EXPECT_EQ(find_bsdf<PrincipledThinDesc>(scene), nullptr);
+  EXPECT_NE(find_bsdf<ThinDielectricDesc>(scene), nullptr);
+}
+
 TEST(GltfExtensions, LeavesLetLightThrough) {
   GltfMaker m = with_material(
       {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},

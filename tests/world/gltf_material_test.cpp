@@ -83,11 +83,18 @@ std::string material(double metallic, double roughness) {
          std::to_string(metallic) + ",\"roughnessFactor\":" + std::to_string(roughness) + "}}";
 }
 
+// And what its example loses is given back.
 TEST(GltfBrdf, MetalsFollowTheAppendix) {
   for (const double roughness : {0.1, 0.4, 1.0}) {
     const Point p = built(scene_of(material(1, roughness)));
     for_directions(0, [&](Vec3f wo, Vec3f wi) {
-      const Rgb f = scatter::eval_f(p.world.materials().closure(p.hit.material, p.hit.point, wo), wo, wi);
+      scatter::Closure closure = p.world.materials().closure(p.hit.material, p.hit.point, wo);
+      ASSERT_EQ(closure.count, roughness > 0.2 ? 2 : 1);
+      EXPECT_EQ(closure.lobes[0].kind, scatter::LobeKind::microfacet_reflect);
+      EXPECT_EQ(closure.lobes[closure.count - 1].kind,
+                closure.count > 1 ? scatter::LobeKind::interfaced_diffuse : closure.lobes[0].kind);
+      closure.count = 1;
+      const Rgb f = scatter::eval_f(closure, wo, wi);
       const Specular s = specular(roughness * roughness, wo, wi);
       const Rgb base{0.8f, 0.5f, 0.2f};
       for (int k = 0; k < 3; ++k) {

@@ -12,6 +12,8 @@ namespace {
 bool is_constant(const FloatInput& input, float value) {
   return input.texture == kNone && input.value == value;
 }
+// Sheets of a roughness up to this are clear: shadow rays pass them.
+constexpr float kSmoothSheet = 0.1f;
 bool is_black(const ColorInput& input) { return input.texture == kNone && input.value == Rgb(0); }
 
 }  // namespace
@@ -99,9 +101,17 @@ int Reader::transmitting_bsdf(const Element& material, const Surface& s, const E
     glass.alpha_u = glass.alpha_v = s.alpha;
     clear = add_bsdf(material, glass);
   } else {
-    if (!(s.roughness.texture == kNone && s.roughness.value <= 0.1f))
-      warn(material, "rough transmission through a thin surface", "smooth transmission");
-    clear = add_bsdf(material, ThinDielectricDesc{s.ior, {Rgb(1)}, s.base});
+    const bool smooth = s.roughness.texture == kNone && s.roughness.value <= kSmoothSheet;
+    if (smooth || s.ior == 1) {
+      clear = add_bsdf(material, ThinDielectricDesc{s.ior, {Rgb(1)}, s.base});
+    } else {
+      PrincipledThinDesc frosted;
+      frosted.base_color = s.base;
+      frosted.roughness = s.roughness;
+      frosted.spec_trans = {1};
+      frosted.eta = s.ior;
+      clear = add_bsdf(material, frosted);
+    }
   }
   if (!opaque_part) return clear;
   // share · (1 - metallic) of the light is transmitted.
