@@ -31,7 +31,7 @@ MeshData moved(const MeshData& mesh, float distance) {
 std::vector<std::uint32_t> welded(const MeshData& mesh) {
   const std::size_t n = mesh.positions.size();
   const auto key = [&](std::uint32_t k) {
-    const Vec3f p = mesh.positions[k] + Vec3f(0.0f);  // -0 is 0
+    const Vec3f p = mesh.positions[k] + Vec3f{};  // -0 is 0
     return std::array{p.x, p.y, p.z};
   };
   std::vector<std::uint32_t> order(n), first(n);
