@@ -59,7 +59,7 @@ void add_output_options(CLI::App& command, OutputOptions& outputs) {
   command.add_option("--report", outputs.report, "JSON file for times, counts and settings");
   command.add_option("--preview", outputs.preview, "PNG file that is rewritten while the estimate improves");
   add_number(command, "--exposure", outputs.display.exposure, {-100, 100, false, "stops"},
-             "stops, for PNG (default 0)");
+             "stops, for PNG (default 0; else what shows a picture that would be white or black)");
   add_choice(
       command, "--tonemap", [&outputs](const std::string& name) { outputs.display.tonemap = tone_map(name); },
       {"none", "reinhard", "agx"}, "for PNG: none, reinhard or agx (default none)");
@@ -102,6 +102,15 @@ PreviewCallback preview_writer(const OutputOptions& outputs) {
 
 namespace {
 
+void say_exposure(const OutputOptions& outputs, const Picture& picture, Streams streams) {
+  const bool shown = std::any_of(outputs.images.begin(), outputs.images.end(),
+                                 [](const std::string& file) { return lower_extension(file) == ".png"; });
+  const double stops = shown && !outputs.display.exposure ? exposure_for(picture) : 0;
+  if (stops != 0)
+    std::fprintf(streams.out, "exposure: %+g stops, or the PNG would be %s (--exposure 0 leaves it so)\n",
+                 stops, stops < 0 ? "white" : "black");
+}
+
 // It was wanted where it is found, and none was.
 bool lacks_denoiser(const Report& report) {
   const auto note = report.notes.find("denoiser");
@@ -129,6 +138,7 @@ int write_outputs(const OutputOptions& outputs, const RenderResult& result, Cons
                  outputs.images.front().c_str());
   else if (!quiet) {
     for (const auto& file : written) std::fprintf(streams.out, "wrote %s\n", file.c_str());
+    say_exposure(outputs, result.picture, streams);
     if (lacks_denoiser(result.report))
       std::fprintf(
           streams.out,

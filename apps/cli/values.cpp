@@ -43,13 +43,27 @@ int read_count(const std::string& option, const std::string& text, int low, int 
   return value;
 }
 
-CLI::Option* add_number(CLI::App& command, const std::string& option, double& value, const Bounds& bounds,
-                        const std::string& help) {
+namespace {
+
+template <typename Value>
+CLI::Option* add_any_number(CLI::App& command, const std::string& option, Value& value, const Bounds& bounds,
+                            const std::string& help) {
   return command
       .add_option_function<std::string>(
           option, [&value, option, bounds](const std::string& t) { value = read_number(option, t, bounds); },
           help)
       ->type_name("NUMBER");
+}
+
+}  // namespace
+
+CLI::Option* add_number(CLI::App& command, const std::string& option, double& value, const Bounds& bounds,
+                        const std::string& help) {
+  return add_any_number(command, option, value, bounds, help);
+}
+CLI::Option* add_number(CLI::App& command, const std::string& option, std::optional<double>& value,
+                        const Bounds& bounds, const std::string& help) {
+  return add_any_number(command, option, value, bounds, help);
 }
 
 CLI::Option* add_count(CLI::App& command, const std::string& option, int& value, int low, int high,

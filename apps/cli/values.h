@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ int read_count(const std::string& option, const std::string& text, int low, int 
 
 CLI::Option* add_number(CLI::App& command, const std::string& option, double& value, const Bounds& bounds,
                         const std::string& help);
+CLI::Option* add_number(CLI::App& command, const std::string& option, std::optional<double>& value,
+                        const Bounds& bounds, const std::string& help);
 CLI::Option* add_count(CLI::App& command, const std::string& option, int& value, int low, int high,
                        const std::string& help);
 

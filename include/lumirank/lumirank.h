@@ -78,6 +78,9 @@ LUMIRANK_API RenderResult reference(const Scene& scene, const RenderSettings& se
                                     const ReferenceSettings& how, const Sinks& sinks = {},
                                     const PreviewCallback& on_preview = {});
 
+// Stops by which a PNG of the picture is developed if none are given: 0, but for a picture that would be all
+// but white or black what shows it. Frames of a shot are developed by 0.
+LUMIRANK_API double exposure_for(const Picture& picture);
 // By extension: .exr (all planes), .png, .pfm. Whole or absent.
 LUMIRANK_API void write_picture(const std::string& filename, const Picture& picture,
                                 const DisplaySettings& display = {});

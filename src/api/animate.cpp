@@ -209,8 +209,11 @@ class Shot {
   }
   void write(int frame, const Picture& picture, const Report& report) const {
     image::FilesTogether together;
+    // One exposure for all frames, which are not known beforehand.
+    DisplaySettings display = settings_.display;
+    display.exposure = display.exposure.value_or(0);
     for (const std::string& ending : settings_.endings)
-      write_picture(path(stem_of(frame) + ending), picture, settings_.display);
+      write_picture(path(stem_of(frame) + ending), picture, display);
     write_text(path(stem_of(frame) + ".json"), report.json());  // last: with it the frame is finished
     together.commit();
   }

@@ -26,9 +26,9 @@ image::LayeredImage to_layers(const Picture& picture) {
   return layers;
 }
 
-image::DisplayOptions to_display_options(const DisplaySettings& display) {
+image::DisplayOptions to_display_options(const Picture& picture, const DisplaySettings& display) {
   image::DisplayOptions options;
-  options.exposure = static_cast<float>(display.exposure);
+  options.exposure = static_cast<float>(display.exposure.value_or(exposure_for(picture)));
   if (display.tonemap == ToneMap::reinhard) options.tonemap = image::ToneMap::reinhard;
   if (display.tonemap == ToneMap::agx) options.tonemap = image::ToneMap::agx;
   return options;
@@ -37,7 +37,13 @@ image::DisplayOptions to_display_options(const DisplaySettings& display) {
 }  // namespace
 
 void write_picture(const std::string& filename, const Picture& picture, const DisplaySettings& display) {
-  image::write_image(filename, to_layers(picture), to_display_options(display));
+  image::write_image(filename, to_layers(picture), to_display_options(picture, display));
+}
+
+double exposure_for(const Picture& picture) {
+  for (const Plane& plane : picture.planes)
+    if (plane.name.empty()) return image::exposure_to_see(plane.rgb);
+  return 0;
 }
 
 void write_illuminance(const std::string& filename, const Picture& picture, const DisplaySettings& display) {

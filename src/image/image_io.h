@@ -1,6 +1,7 @@
 // Image files. Writers write to a temporary name beside the target and rename: a file is whole or absent.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "image/image.h"
@@ -36,6 +37,11 @@ LoadedImage decode_image(const std::string& bytes, const std::string& name, bool
                          std::size_t max_pixels = std::size_t{1} << 28);
 
 // 8-bit sRGB pixels of one image, row-major RGB.
+// Stops that show a picture (r, g, b for each pixel) of which else next to nothing would be seen: nine tenths
+// of what is lit are above 1, or 99 of 100 below 1/50. Then a tenth of it becomes brighter than 1/2, in half
+// stops. 0 for all others.
+double exposure_to_see(std::span<const float> rgb);
+
 std::vector<unsigned char> to_display(const Image& image, const DisplayOptions& display);
 
 }  // namespace lumirank::image

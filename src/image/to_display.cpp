@@ -1,5 +1,7 @@
 // Exposure, tone map and sRGB encoding.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "base/parallel.h"
 #include "image/image_io.h"
@@ -50,6 +52,22 @@ Rgb apply(Rgb c, ToneMap map) {
 }
 
 }  // namespace
+
+double exposure_to_see(std::span<const float> rgb) {
+  std::vector<float> lit;
+  for (std::size_t p = 0; p + 2 < rgb.size(); p += 3) {
+    const float y = luminance({rgb[p], rgb[p + 1], rgb[p + 2]});
+    if (std::isfinite(y) && y > 0) lit.push_back(y);
+  }
+  if (lit.empty()) return 0;
+  const auto at = [&](double share) {
+    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(lit.size() - 1));
+    std::nth_element(lit.begin(), lit.begin() + k, lit.end());
+    return static_cast<double>(lit[static_cast<std::size_t>(k)]);
+  };
+  if (at(0.1) <= 1 && at(0.99) >= 0.02) return 0;
+  return std::round(2 * std::log2(0.5 / at(0.9))) / 2;
+}
 
 std::vector<unsigned char> to_display(const Image& image, const DisplayOptions& display) {
   std::vector<unsigned char> bytes(image.pixels.size() * 3);

@@ -313,6 +313,24 @@ TEST_F(ImageIo, ReplacesFilesAndFollowsLinks) {
   EXPECT_EQ(files().size(), 2u);
 }
 
+// Most pictures are shown as they are; of some nothing would be seen.
+TEST(Exposure, IsForPicturesThatWouldBeWhiteOrBlack) {
+  const auto ramp = [](float from, float to) {  // of 1,000 pixels, a fifth of them black
+    std::vector<float> rgb(3000, 0.0f);
+    for (int p = 200; p < 1000; ++p)
+      for (int c = 0; c < 3; ++c)
+        rgb[static_cast<std::size_t>(3 * p + c)] = from + (to - from) * static_cast<float>(p - 200) / 799;
+    return rgb;
+  };
+  EXPECT_EQ(exposure_to_see(ramp(0.5f, 4)), 0) << "bright, and more than a tenth of it can be seen";
+  EXPECT_EQ(exposure_to_see(ramp(0, 0.03f)), 0) << "dark";
+  EXPECT_EQ(exposure_to_see(ramp(2, 2)), -2);
+  EXPECT_EQ(exposure_to_see(ramp(1000, 1024)), -11);
+  EXPECT_EQ(exposure_to_see(ramp(0.0078125f, 0.0078125f)), 6);
+  EXPECT_EQ(exposure_to_see(std::vector<float>(30, 0.0f)), 0);
+  EXPECT_EQ(exposure_to_see({}), 0);
+}
+
 TEST_F(ImageIo, BytesInMemoryGiveWhatTheFileGives) {
   for (const char* name : {"a.png", "a.jpg"}) {
     const std::string file = path(name);
