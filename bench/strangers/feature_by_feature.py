@@ -8,10 +8,7 @@ A ball on a floor, each time with another BSDF, texture, light, shape, camera, f
 
 Needs from pip: mitsuba==3.9.1, numpy, pillow, OpenEXR; and LLVM's library for Mitsuba.
 """
-import argparse
 import math
-import pathlib
-import subprocess
 
 import mitsuba
 import numpy as np
@@ -76,6 +73,10 @@ def sunsky(elevation, turbidity=3, extra=""):
     a = math.radians(elevation)
     return (f'<emitter type="sunsky">{number("turbidity", turbidity)}<vector name="sun_direction" value="{0.6 * math.cos(a)}, {math.sin(a)}, {0.8 * math.cos(a)}"/>{extra}'
             '<transform name="to_world"><rotate x="1" angle="-90"/></transform></emitter>')
+
+
+def rendered_by_mitsuba(out, name, samples):
+    return np.array(mitsuba.render(mitsuba.load_file(str(out / f"{name}.xml")), spp=samples), dtype=np.float64)[..., :3]
 
 
 def write_files(out):
@@ -152,26 +153,14 @@ def scenes():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("names", nargs="*")
-    parser.add_argument("--program", default="lumirank")
-    parser.add_argument("--paths", type=int, default=256)
-    args = parser.parse_args()
-    args.out.mkdir(parents=True, exist_ok=True)
-    write_files(args.out)
     every = scenes()
-    for name in args.names or every:
-        if name not in every:
-            parser.error(f"there is no scene {name}; there are {', '.join(every)}")
-        file, picture = args.out / f"{name}.xml", args.out / f"{name}.exr"
-        file.write_text(every[name])
-        theirs = np.array(mitsuba.render(mitsuba.load_file(str(file)), spp=2 * args.paths), dtype=np.float64)[..., :3]
-        run = subprocess.run([args.program, "reference", str(file), "-o", str(picture), "--spp", str(args.paths), "--quiet"], capture_output=True, text=True)
-        if run.returncode:
-            print(f"{name:26s} {run.stderr.strip()}")
-            continue
-        print(compare_blocks.line(name, compare_blocks.load(picture), theirs, run.stderr.strip()), flush=True)
+
+    def write(out, name):
+        write_files(out)
+        (out / f"{name}.xml").write_text(every[name])
+        return out / f"{name}.xml"
+
+    compare_blocks.go_through(__doc__, every, write, rendered_by_mitsuba)
 
 
 if __name__ == "__main__":

@@ -7,10 +7,6 @@ The scenes are those of gltf_scenes.py, under an even dim sky. Printed: as by fe
 
 Needs from pip: bpy==4.5.15 (Python 3.11), numpy, pillow, OpenEXR.
 """
-import argparse
-import pathlib
-import subprocess
-
 import bpy
 import numpy as np
 import OpenEXR
@@ -47,29 +43,18 @@ def render_by_cycles(scene_file, picture, samples):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("names", nargs="*")
-    parser.add_argument("--program", default="lumirank")
-    parser.add_argument("--paths", type=int, default=128)
-    args = parser.parse_args()
-    out = args.out.resolve()
-    every = gltf_scenes.write_scenes(out)
-    sky = np.full((16, 32, 3), SKY, np.float32)
-    OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}, {"RGB": sky}).write(str(out / "sky.exr"))
-    lines = []
-    for name in args.names or every:
-        if name not in every:
-            parser.error(f"there is no scene {name}; there are {', '.join(every)}")
-        file, ours, theirs = out / f"{name}.gltf", out / f"{name}.exr", out / f"{name}_cycles.exr"
-        run = subprocess.run([args.program, "reference", str(file), "--environment", str(out / "sky.exr"), "--size", "96x64", "-o", str(ours), "--spp", str(args.paths), "--quiet"], capture_output=True, text=True)
-        if run.returncode:
-            lines.append(f"{name:26s} {run.stderr.strip()}")
-            continue
-        render_by_cycles(file, theirs, 2 * args.paths)
-        lines.append(compare_blocks.line(name, compare_blocks.load(ours), compare_blocks.load(theirs), run.stderr.strip()))
-    # Blender writes to standard output as well.
-    print("\n".join(lines))
+    def theirs(out, name, samples):
+        picture = out / f"{name}_cycles.exr"
+        render_by_cycles(out / f"{name}.gltf", picture, samples)
+        return compare_blocks.load(picture)
+
+    def write(out, name):
+        gltf_scenes.write_scenes(out)
+        sky = np.full((16, 32, 3), SKY, np.float32)
+        OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}, {"RGB": sky}).write(str(out / "sky.exr"))
+        return out / f"{name}.gltf"
+
+    compare_blocks.go_through(__doc__, list(gltf_scenes.build()), write, theirs, lambda out: ["--environment", str(out / "sky.exr"), "--size", "96x64"], paths=128)
 
 
 if __name__ == "__main__":

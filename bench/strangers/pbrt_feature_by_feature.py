@@ -7,19 +7,11 @@ pbrt itself comes in no package, so what its documentation says is written down 
 
 Needs from pip: mitsuba==3.9.1, numpy, pillow, OpenEXR; and LLVM's library for Mitsuba.
 """
-import argparse
 import math
-import pathlib
-import subprocess
-
-import mitsuba
-import numpy as np
 
 import compare_blocks
-from feature_by_feature import DIM, RAW, ball, bitmap, bsdf, number, rgb, write_files
+from feature_by_feature import DIM, RAW, ball, bitmap, bsdf, number, rendered_by_mitsuba, rgb, write_files
 from feature_by_feature import scene as mitsuba_scene
-
-mitsuba.set_variant("llvm_ad_rgb")
 
 # The panel and the sky of `scene`, in pbrt's words.
 PANEL = 'AttributeBegin\nAreaLightSource "diffuse" "rgb L" [12 11 9]\nShape "trianglemesh" "point3 P" [0 2.5 0.3  1 2.5 0.3  1 2.5 1.3  0 2.5 1.3] "integer indices" [0 1 2 0 2 3]\nAttributeEnd\nLightSource "infinite" "rgb L" [.3 .35 .4]\n'
@@ -132,27 +124,15 @@ def scenes():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("names", nargs="*")
-    parser.add_argument("--program", default="lumirank")
-    parser.add_argument("--paths", type=int, default=256)
-    args = parser.parse_args()
-    args.out.mkdir(parents=True, exist_ok=True)
-    write_files(args.out)
     every = scenes()
-    for name in args.names or every:
-        if name not in every:
-            parser.error(f"there is no scene {name}; there are {', '.join(every)}")
-        file, same, picture = args.out / f"{name}.pbrt", args.out / f"{name}.xml", args.out / f"{name}.exr"
-        file.write_text(every[name][0])
-        same.write_text(every[name][1])
-        theirs = np.array(mitsuba.render(mitsuba.load_file(str(same)), spp=2 * args.paths), dtype=np.float64)[..., :3]
-        run = subprocess.run([args.program, "reference", str(file), "-o", str(picture), "--spp", str(args.paths), "--quiet"], capture_output=True, text=True)
-        if run.returncode:
-            print(f"{name:26s} {run.stderr.strip()}")
-            continue
-        print(compare_blocks.line(name, compare_blocks.load(picture), theirs, run.stderr.strip()), flush=True)
+
+    def write(out, name):
+        write_files(out)
+        (out / f"{name}.pbrt").write_text(every[name][0])
+        (out / f"{name}.xml").write_text(every[name][1])
+        return out / f"{name}.pbrt"
+
+    compare_blocks.go_through(__doc__, every, write, rendered_by_mitsuba)
 
 
 if __name__ == "__main__":

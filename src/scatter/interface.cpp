@@ -13,20 +13,32 @@ InterfaceCoefficients interface_coefficients(NormalDistribution distribution, fl
   return smooth;
 }
 
+namespace {
+
+// Of color 1, with the terms of its transmittance and their mean over diffuse light.
+Lobe lobe_under(NormalDistribution distribution, float alpha, float eta, const float (&terms)[6],
+                float mean) {
+  Lobe lobe;
+  lobe.kind = LobeKind::interfaced_diffuse;
+  lobe.distribution = distribution;
+  lobe.alpha_u = alpha;
+  lobe.alpha_v = mean;
+  lobe.eta = eta;
+  lobe.conductor_eta = {terms[0], terms[1], terms[2]};
+  lobe.conductor_k = {terms[3], terms[4], terms[5]};
+  lobe.color = Rgb(1);
+  return lobe;
+}
+
+}  // namespace
+
 Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha,
                              bool nonlinear, bool as_mitsuba_3) {
   const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
   const float returned = as_mitsuba_3 && alpha > 0
                              ? (63 * k.internal_reflectance + fresnel_dielectric(1, 1 / eta)) / 64
                              : k.internal_reflectance;
-  Lobe lobe;
-  lobe.kind = LobeKind::interfaced_diffuse;
-  lobe.distribution = distribution;
-  lobe.alpha_u = alpha;
-  lobe.alpha_v = k.diffuse_transmittance;
-  lobe.eta = eta;
-  lobe.conductor_eta = {k.c[0], k.c[1], k.c[2]};
-  lobe.conductor_k = {k.c[3], k.c[4], k.c[5]};
+  Lobe lobe = lobe_under(distribution, alpha, eta, k.c, k.diffuse_transmittance);
   const Rgb trapped = nonlinear ? color * returned : Rgb(returned);
   lobe.color = color / ((Rgb(1) - trapped) * (eta * eta));
   return lobe;
@@ -34,28 +46,17 @@ Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distributi
 
 Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha) {
   const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
-  Lobe lobe;
-  lobe.kind = LobeKind::interfaced_diffuse;
-  lobe.distribution = distribution;
-  lobe.alpha_u = alpha;
-  lobe.alpha_v = k.diffuse_left;
-  lobe.eta = eta;
-  lobe.conductor_eta = {k.left[0], k.left[1], k.left[2]};
-  lobe.conductor_k = {k.left[3], k.left[4], k.left[5]};
+  Lobe lobe = lobe_under(distribution, alpha, eta, k.left, k.diffuse_left);
   lobe.color = color / k.diffuse_left;
   return lobe;
 }
 Lobe masked_reflection_lobe(Rgb f0, NormalDistribution distribution, float alpha) {
-  Lobe lobe;
-  lobe.kind = LobeKind::interfaced_diffuse;
   const MaskedCoefficients k = interface_table(distribution).masked(alpha);
-  if (k.diffuse_left < 0.005f) return lobe;
-  lobe.distribution = distribution;
-  lobe.alpha_u = alpha;
-  lobe.alpha_v = k.diffuse_left;
-  lobe.eta = kMaskedEta;
-  lobe.conductor_eta = {k.left[0], k.left[1], k.left[2]};
-  lobe.conductor_k = {k.left[3], k.left[4], k.left[5]};
+  Lobe lobe = lobe_under(distribution, alpha, kMaskedEta, k.left, k.diffuse_left);
+  if (k.diffuse_left < 0.005f) {
+    lobe.color = Rgb(0);
+    return lobe;
+  }
   const Rgb fresnel = f0 + (Rgb(1) - f0) / 21.0f;
   for (int c = 0; c < 3; ++c) {
     const float f = fresnel[c], kept = 1 - k.diffuse_left;
