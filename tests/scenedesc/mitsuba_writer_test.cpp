@@ -199,6 +199,9 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
   PlasticDesc rough;
   rough.alpha.value = 0.25f, rough.lossless = true;
   expect("loses nothing", bsdf(rough));
+  PrincipledDesc metal;
+  metal.lossless = true;
+  expect("gives back", bsdf(metal));
   CoatingDesc coat;
   coat.nested = 0;
   expect("coating", bsdf(coat));

@@ -104,6 +104,10 @@ void MitsubaWriter::write(const Desc& d, const BsdfDesc& desc, const std::string
                     d.distribution;
                   })
       if (!is_smooth(d.alpha_u, d.alpha_v)) name = "rough" + name;
+    if constexpr (std::is_same_v<Desc, PrincipledDesc>)
+      if (d.lossless)
+        warn(desc.where, "metal that gives back what its facets mask",
+             "metal that loses it, darker if it is rough");
     open_bsdf(name.c_str(), id);
     fields(d);
     if constexpr (std::is_same_v<Desc, PrincipledDesc> || std::is_same_v<Desc, PrincipledThinDesc>)
