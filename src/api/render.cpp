@@ -66,9 +66,16 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Si
     validate(settings);
     alone.timer = Timer();
     within_memory_and_threads(settings, [&] {
-      alone.world =
-          api::build_world(scene, sinks, {.straight_panes = settings.traced.panes == Panes::straight});
-      if (!world::colors_glass(*alone.world)) alone.world = nullptr;
+      // What there is to say of it is said once, of the world that is rendered.
+      Sinks quiet = sinks;
+      quiet.info = quiet.warning = {};
+      std::vector<scenedesc::Warning> warnings;
+      alone.world = api::build_world(
+          scene, quiet, {.warnings = &warnings, .straight_panes = settings.traced.panes == Panes::straight});
+      if (world::colors_glass(*alone.world))
+        api::report_warnings(sinks, warnings);
+      else
+        alone.world = nullptr;
     });
   }
   if ((alone.world || !pipeline::paths_by_default(desc, settings)) &&

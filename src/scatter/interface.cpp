@@ -16,8 +16,8 @@ InterfaceCoefficients interface_coefficients(NormalDistribution distribution, fl
 namespace {
 
 // Of color 1, with the terms of its transmittance and their mean over diffuse light.
-Lobe lobe_under(NormalDistribution distribution, float alpha, float eta, const float (&terms)[6],
-                float mean) {
+Lobe lobe_of_terms(NormalDistribution distribution, float alpha, float eta, const float (&terms)[6],
+                   float mean) {
   Lobe lobe;
   lobe.kind = LobeKind::interfaced_diffuse;
   lobe.distribution = distribution;
@@ -38,7 +38,7 @@ Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distributi
   const float returned = as_mitsuba_3 && alpha > 0
                              ? (63 * k.internal_reflectance + fresnel_dielectric(1, 1 / eta)) / 64
                              : k.internal_reflectance;
-  Lobe lobe = lobe_under(distribution, alpha, eta, k.c, k.diffuse_transmittance);
+  Lobe lobe = lobe_of_terms(distribution, alpha, eta, k.c, k.diffuse_transmittance);
   const Rgb trapped = nonlinear ? color * returned : Rgb(returned);
   lobe.color = color / ((Rgb(1) - trapped) * (eta * eta));
   return lobe;
@@ -46,13 +46,13 @@ Lobe interfaced_diffuse_lobe(Rgb color, float eta, NormalDistribution distributi
 
 Lobe lossless_diffuse_lobe(Rgb color, float eta, NormalDistribution distribution, float alpha) {
   const InterfaceCoefficients k = interface_coefficients(distribution, alpha, eta);
-  Lobe lobe = lobe_under(distribution, alpha, eta, k.left, k.diffuse_left);
+  Lobe lobe = lobe_of_terms(distribution, alpha, eta, k.left, k.diffuse_left);
   lobe.color = color / k.diffuse_left;
   return lobe;
 }
 Lobe masked_reflection_lobe(Rgb f0, NormalDistribution distribution, float alpha) {
   const MaskedCoefficients k = interface_table(distribution).masked(alpha);
-  Lobe lobe = lobe_under(distribution, alpha, kMaskedEta, k.left, k.diffuse_left);
+  Lobe lobe = lobe_of_terms(distribution, alpha, kMaskedEta, k.left, k.diffuse_left);
   if (k.diffuse_left < 0.005f) {
     lobe.color = Rgb(0);
     return lobe;

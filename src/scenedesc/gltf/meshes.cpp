@@ -191,6 +191,19 @@ void Reader::build_shapes(const Node& node, const Element& mesh_index) {
   }
 }
 
+// Of the shape that was built last; what is the same for all places of a mesh is found once.
+void Reader::build_back(const std::shared_ptr<const MeshData>& mesh) {
+  const ShapeDesc& front = scene_.shapes.back();
+  const auto [back, fresh] = built_backs_.try_emplace(mesh);
+  if (fresh && mesh->triangle_count() > 0 && !is_closed_outwards(*mesh)) back->second = back_of(front).kind;
+  if (!back->second) return;
+  ShapeDesc shape = front;
+  shape.flip_normals = !front.flip_normals;
+  std::swap(shape.media.inside, shape.media.outside);
+  shape.kind = *back->second;
+  scene_.shapes.push_back(std::move(shape));
+}
+
 void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
   const Element& mesh = meshes_[index_of(mesh_index, meshes_.size(), "mesh")];
   const std::vector<Element> primitives = mesh.list("primitives");
@@ -225,8 +238,7 @@ void Reader::build_present_shapes(const Node& node, const Element& mesh_index) {
       shape.kind = InlineMeshDesc{data, primitive.path()};
       if (built.emission) shape.emitter = AreaEmitterDesc{*built.emission, shape.id, primitive.where()};
       scene_.shapes.push_back(std::move(shape));
-      if (built.emits_both_ways && data->triangle_count() > 0 && !is_closed_outwards(*data))
-        scene_.shapes.push_back(back_of(scene_.shapes.back()));
+      if (built.emits_both_ways) build_back(data);
     }
   }
 }

@@ -54,6 +54,7 @@ class Reader : public SceneReader {
   // meshes.cpp
   void build_shapes(const Node& node, const Element& mesh_index);
   void build_present_shapes(const Node& node, const Element& mesh_index);
+  void build_back(const std::shared_ptr<const MeshData>& mesh);
   std::vector<Transform> instances(const Node& node);  // EXT_mesh_gpu_instancing, or the node alone
   // Null if there is nothing to show. `weights`: of the morph targets; `joints`: a matrix for each joint of
   // the skin, or empty.
@@ -137,6 +138,8 @@ class Reader : public SceneReader {
   std::map<std::size_t, BitmapTextureDesc> built_images_;
   std::map<std::pair<std::string, int>, std::shared_ptr<const MeshData>> built_meshes_;
   std::map<std::array<float, 3>, int> built_media_;  // by extinction
+  // Of double-sided lamps, by the mesh of their front; none where nobody sees it.
+  std::map<std::shared_ptr<const MeshData>, std::optional<decltype(ShapeDesc::kind)>> built_backs_;
 };
 
 // Lumens that are one unit of power in the file as it stands, whatever moves (lights.cpp).
