@@ -24,13 +24,13 @@ struct LUMIRANK_API Report {
     std::uint64_t shadow_rays = 0;
     double sampling_rate = 0;  // share of all entries, or as the method itself counts
   };
-  std::optional<Cost> cost;
+  std::optional<Cost> cost = {};
 
   struct Sizes {
     std::uint64_t pixels = 0, receivers = 0, lights = 0;
     std::uint64_t lights_asked = 0, direct_lights = 0, light_paths = 0;
   };
-  std::optional<Sizes> sizes;
+  std::optional<Sizes> sizes = {};
 
   // Bytes.
   struct Memory {

@@ -148,7 +148,7 @@ struct ReferenceSettings {
 };
 
 struct DisplaySettings {
-  std::optional<double> exposure;  // stops; if not given, exposure_for()
+  std::optional<double> exposure = {};  // stops; if not given, exposure_for()
   ToneMap tonemap = ToneMap::none;
   // Ends of the scale of false-color pictures of the illuminance, in lux; high 0: from 0 to a round number.
   double lux_low = 0, lux_high = 0;
