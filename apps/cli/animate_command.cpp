@@ -152,13 +152,16 @@ void add_animate(CLI::App& app, Action& action) {
   add_setting_options(*command, options->common, {});
   CLI::Option* const method = command->get_option("--method");
   method->description(method->get_description() +
-                      "; also tensor-clustering, which is auto's choice where something moves");
+                      "; also tensor-clustering, which computes columns for many frames");
   command->add_option("--frames", options->frames,
                       "FIRST:LAST, counted from 0 at second 0 (default: the whole motion)");
   add_number(*command, "--fps", options->common.fps, {0, 1000, true, "frames per second"},
              "frames per second (default 24)");
   add_count(*command, "--chunk", options->chunk, 1, 1000,
             "frames that tensor clustering makes together, as --set chunk=… (default 40)");
+  add_count(*command, "--temporal-filter", options->settings.temporal_filter, 0, 100,
+            "frames before and after that each one is averaged with, where frames are rendered one by one "
+            "(default 3, with a named --method 0)");
   command->add_flag("--refit", options->settings.refit,
                     "for previews of large meshes that deform, frame by frame: the structures that rays are "
                     "traced in follow the vertices, which is faster to build and slower to trace");

@@ -17,6 +17,17 @@ std::string plain_text(double value) {
   return out.str();
 }
 
+template <typename T>
+CLI::Option* add_any_count(CLI::App& command, const std::string& option, T& value, int low, int high,
+                           const std::string& help) {
+  return command
+      .add_option_function<std::string>(
+          option,
+          [&value, option, low, high](const std::string& t) { value = read_count(option, t, low, high); },
+          help)
+      ->type_name("N");
+}
+
 }  // namespace
 
 double read_number(const std::string& option, const std::string& text, const Bounds& bounds) {
@@ -68,12 +79,11 @@ CLI::Option* add_number(CLI::App& command, const std::string& option, std::optio
 
 CLI::Option* add_count(CLI::App& command, const std::string& option, int& value, int low, int high,
                        const std::string& help) {
-  return command
-      .add_option_function<std::string>(
-          option,
-          [&value, option, low, high](const std::string& t) { value = read_count(option, t, low, high); },
-          help)
-      ->type_name("N");
+  return add_any_count(command, option, value, low, high, help);
+}
+CLI::Option* add_count(CLI::App& command, const std::string& option, std::optional<int>& value, int low,
+                       int high, const std::string& help) {
+  return add_any_count(command, option, value, low, high, help);
 }
 
 CLI::Option* add_choice(CLI::App& command, const std::string& option,

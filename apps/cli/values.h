@@ -25,6 +25,8 @@ CLI::Option* add_number(CLI::App& command, const std::string& option, std::optio
                         const Bounds& bounds, const std::string& help);
 CLI::Option* add_count(CLI::App& command, const std::string& option, int& value, int low, int high,
                        const std::string& help);
+CLI::Option* add_count(CLI::App& command, const std::string& option, std::optional<int>& value, int low,
+                       int high, const std::string& help);
 
 // `take` gets one of the choices.
 CLI::Option* add_choice(CLI::App& command, const std::string& option,

@@ -60,12 +60,18 @@ LUMIRANK_API TensorSettings tensor_settings(const std::map<std::string, std::str
 LUMIRANK_API std::map<std::string, std::string> parameters_of(const TensorSettings& settings);
 
 struct AnimateSettings {
-  RenderSettings render;  // of every frame: with the same seed, so the same random numbers, in each
+  // Of every frame: with the same seed, so the same random numbers, in each, unless they are averaged.
+  RenderSettings render;
   double frames_per_second = 24;
   // Frame k is the moment k / frames_per_second; -1: the first one and the last one of the motion.
   int first = -1, last = -1;
   std::vector<std::string> endings = {".exr", ".png"};  // of each frame's pictures
   DisplaySettings display;
+  // Frames that are rendered one by one are averaged with so many before and as many after, place by place,
+  // where light changes by no more than noise explains: what a denoiser leaves of noise boils otherwise.
+  // Every frame has a seed of its own then: that of `render` and its number. 0, or not given: none. Not with
+  // `tensor`, which has a filter of its own, or an open shutter.
+  std::optional<int> temporal_filter = {};
   // Instead of the method of `render`, for columns.
   std::optional<TensorSettings> tensor = {};
   // For previews of large meshes that deform, frame by frame: where only vertices have moved since the frame
@@ -76,15 +82,12 @@ struct AnimateSettings {
   bool refit = false;
 };
 
-inline constexpr int kShotColumns = 500;     // for each frame: as long as a still by default, about
-inline constexpr double kShotMemory = 6000;  // MB, on every machine, so that all make the same frames
+inline constexpr int kShotFilter = 3;  // frames on either side
 
-// What `lumirank animate` does where no method is named, that is, where it is "auto" without parameters:
-// tensor clustering with kShotColumns (or as many as the error takes that is asked for) and chunks that fit
-// into kShotMemory, if the scene moves and nothing is asked for that it refuses (a time budget, layers, an
-// open shutter, compensation). Else frames are rendered one by one. Whatever the method, lights whose
-// placement is automatic stand on gather samples where something moves, the same in every frame (not with a
-// time budget or an open shutter, where frames or instants have lights of their own).
+// What `lumirank animate` does where it is not told, if the scene moves. Where the method is "auto" and a
+// still would be rendered in passes or by paths, each frame is, and is averaged with kShotFilter frames
+// before and after. Otherwise lights whose placement is automatic stand on gather samples, the same in every
+// frame (not with a time budget or an open shutter, where frames or instants have lights of their own).
 LUMIRANK_API void choose_shot_method(const Scene& scene, AnimateSettings& settings);
 
 struct AnimationResult {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,14 +12,19 @@
 #include <string_view>
 #include <utility>
 
+#include "api/build_world.h"
 #include "api/render_in_shot.h"
 #include "api/render_tensor.h"
 #include "api/scene.h"
 #include "api/shot_chunks.h"
 #include "base/error.h"
 #include "base/hash_text.h"
+#include "base/parallel.h"
 #include "base/timer.h"
 #include "image/atomic_file.h"
+#include "pipeline/develop.h"
+#include "pipeline/pass_run.h"
+#include "pipeline/path_run.h"
 
 namespace lumirank {
 namespace {
@@ -76,6 +82,11 @@ std::string fingerprint(const Scene& scene) {
   return text;
 }
 
+// A shot of so many frames at least has a pilot of as much time as so many of them have. Of paths a denoiser
+// needs some to know the noise, and of passes there have to be a few.
+constexpr std::size_t kFramesForPilot = 12;
+constexpr double kPilotFrames = 3, kPassesOfFrame = 1.8, kPathsOfFrame = 8;
+
 class Shot {
  public:
   Shot(const Scene& scene, const AnimateSettings& settings, std::string folder)
@@ -92,6 +103,7 @@ class Shot {
                  {"defines", load.defines},
                  {"settings", Json::parse(to_json(settings_.render))},
                  {"tensor", tensor_json()},
+                 {"temporal_filter", settings_.temporal_filter.value_or(0)},
                  {"refit", settings_.refit}};
     const std::string name = path("shot.json");
     std::error_code error;
@@ -127,11 +139,101 @@ class Shot {
 
   // False if it was interrupted.
   bool render_frame(int frame, const api::InShot& shot, const Sinks& sinks) const {
-    const Scene now = scene_.at(frame / settings_.frames_per_second, sinks);
-    const RenderResult result = api::render_in_shot(now, settings_.render, shot, sinks);
+    const RenderResult result = rendered(frame, settings_.render, shot, sinks);
     if (result.interrupted) return false;
     write(frame, result.picture, result.report);
     return true;
+  }
+
+  // Before it is averaged with its neighbors. Without a result it was interrupted.
+  struct FrameAlone {
+    int frame = 0;
+    pipeline::ShotFrame filmed;
+    std::optional<RenderResult> result = {};
+  };
+  FrameAlone render_alone(int frame, const api::InShot& shot, const Sinks& sinks) {
+    FrameAlone alone{frame, {}};
+    RenderSettings settings = settings_.render;
+    settings.seed += static_cast<std::uint64_t>(frame);
+    api::InShot own = shot;
+    own.filmed = &alone.filmed;
+    RenderResult result = repeating_choices(frame, settings, own, sinks);
+    if (!result.interrupted) alone.result = std::move(result);
+    return alone;
+  }
+
+  // The world at the beginning of the motion, whichever frames are asked for.
+  std::shared_ptr<const world::World> first_world(const Sinks& sinks) const {
+    Sinks silent;
+    silent.cancel = sinks.cancel;
+    std::shared_ptr<const world::World> world;
+    with_threads(settings_.render.threads, [&] {
+      const Scene first = scene_.at(scene_.impl().desc.motion.begin, silent);
+      world = api::build_world(first, silent,
+                               {.media = pipeline::paths_by_default(first.impl().desc, settings_.render),
+                                .straight_panes = settings_.render.traced.panes == Panes::straight});
+    });
+    return world;
+  }
+
+  // What the clock chose for a frame that is finished, if there is one.
+  void find_choices(const Range& frames) {
+    for (int frame = frames.first_key; frame <= frames.last_key && choices_.empty(); ++frame) {
+      if (!is_finished(frame)) continue;
+      std::ifstream in(path(stem_of(frame) + ".json"), std::ios::binary);
+      const Json report = Json::parse(in, nullptr, false);
+      if (!report.is_object() || !report.contains("choices")) continue;
+      report["choices"].get_to(choices_);
+      kind_ = report["method"] == pipeline::kByPaths ? api::InShot::Kind::paths : api::InShot::Kind::passes;
+    }
+  }
+
+  // Whether passes or paths have less noise takes longer to find out than a frame may have, and is found once
+  // for a shot of some length: of its middle, in as much time as some frames have.
+  void pilot(int frame, const api::InShot& shot, const Sinks& sinks) {
+    RenderSettings settings = settings_.render;
+    settings.time *= kPilotFrames;
+    Sinks silent;
+    silent.cancel = sinks.cancel;
+    const RenderResult result = rendered(frame, settings, shot, silent);
+    if (result.interrupted) return;
+    const auto number = [](const std::map<std::string, double>& of, const char* key) {
+      const auto found = of.find(key);
+      return found == of.end() ? 0.0 : found->second;
+    };
+    const auto seconds = [&](const char* key) { return number(result.report.seconds, key); };
+    const auto counted = [&](const char* key) { return number(result.report.numbers, key); };
+    // Of a frame: what it takes whatever it is made of, and how much of either fits into the rest.
+    const double fixed = seconds("build") + seconds("features") + seconds("denoise"),
+                 left = settings_.render.time - fixed;
+    const auto fit = [left](double count, double took) {
+      return count > 0 && took > 0 ? left * count / took : 0;
+    };
+    const double passes = fit(counted("passes"), seconds("total") - fixed - seconds("paths")),
+                 paths = fit(std::max(counted("paths"), counted("spp")), seconds("paths"));
+    if (result.report.method == pipeline::kByPaths && paths >= kPathsOfFrame)
+      kind_ = api::InShot::Kind::paths;
+    else if (passes >= kPassesOfFrame)
+      kind_ = api::InShot::Kind::passes;
+  }
+  bool leaves_kind_open() const {
+    return settings_.render.time > 0 && kind_ == api::InShot::Kind::open &&
+           pipeline::passes_by_default(scene_.impl().desc, settings_.render) &&
+           pipeline::may_be_paths(settings_.render) &&
+           !pipeline::paths_by_default(scene_.impl().desc, settings_.render);
+  }
+
+  void write_averaged(FrameAlone& alone, const std::deque<pipeline::ShotFrame>& frames,
+                      std::size_t own) const {
+    const Timer timer;
+    RenderResult& result = *alone.result;
+    with_threads(settings_.render.threads, [&] {
+      Picture picture = pipeline::to_picture(pipeline::filtered_in_time(frames, own));
+      result.picture.planes[0] = std::move(picture.planes[0]);
+    });
+    result.report.numbers["shot.averaged"] = static_cast<double>(frames.size());
+    result.report.seconds["filter"] = timer.seconds();
+    write(alone.frame, result.picture, result.report);
   }
 
   // What its frames share if they are rendered one by one.
@@ -193,6 +295,31 @@ class Shot {
     parameters.erase("clusters");
     return parameters;
   }
+  using Choices = decltype(RenderSettings::choices);
+
+  // Under a time budget the first frame chooses for all: how many passes or paths, and of which size. Where
+  // each chooses by its own clock they differ in what they look like, and flicker. A frame that is of another
+  // kind chooses anew.
+  RenderResult repeating_choices(int frame, RenderSettings settings, api::InShot shot, const Sinks& sinks) {
+    shot.kind = kind_;
+    if (kind_ != api::InShot::Kind::open) shot.why = "less noise in the shot's pilot";
+    if (settings.time > 0 && !choices_.empty()) {
+      settings.choices = choices_;
+      try {
+        return rendered(frame, settings, shot, sinks);
+      } catch (const InputError&) {
+        settings.choices.clear();
+      }
+    }
+    RenderResult result = rendered(frame, settings, shot, sinks);
+    if (!result.interrupted && settings.time > 0) choices_ = result.report.choices;
+    return result;
+  }
+  RenderResult rendered(int frame, const RenderSettings& settings, const api::InShot& shot,
+                        const Sinks& sinks) const {
+    const Scene now = scene_.at(frame / settings_.frames_per_second, sinks);
+    return api::render_by_choice(now, settings, shot, sinks);
+  }
   void write_clusters(const api::Chunk& chunk, const api::TensorFrames& made) const {
     Json rectangles = Json::array();
     for (const auto& r : made.rectangles)
@@ -222,6 +349,8 @@ class Shot {
   const Scene& scene_;
   const AnimateSettings& settings_;
   std::string folder_;
+  Choices choices_;
+  api::InShot::Kind kind_ = api::InShot::Kind::open;
   Json manifest_;
 };
 
@@ -238,10 +367,30 @@ Sinks part_of_progress(const Sinks& sinks, double begin, double share) {
   return own;
 }
 
+// Says no warning again that differs from an earlier one in its numbers alone, as one of a short budget does
+// from frame to frame. Must outlive the sinks that it makes.
+class WarnsOnce {
+ public:
+  Sinks sinks(const Sinks& asked) {
+    Sinks own = asked;
+    own.progress = [](const char*, double) {};
+    if (asked.warning)
+      own.warning = [this, &asked](const std::string& text) {
+        std::string words = text;
+        std::erase_if(words, [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+        if (said_.insert(words).second) asked.warning(text);
+      };
+    return own;
+  }
+
+ private:
+  std::set<std::string> said_;
+};
+
 void render_frames(const Shot& shot, bool refit, const std::vector<int>& missing, AnimationResult& result,
                    const Sinks& sinks) {
-  Sinks own = sinks;
-  own.progress = [](const char*, double) {};
+  WarnsOnce once;
+  const Sinks own = once.sinks(sinks);
   std::shared_ptr<const world::World> before;
   api::InShot in_shot;
   if (refit) in_shot.refit = &before;
@@ -258,6 +407,44 @@ void render_frames(const Shot& shot, bool refit, const std::vector<int>& missing
       return;
     }
     ++result.rendered;
+  }
+}
+
+// The same, averaged with neighbors, which are rendered for it where they are finished already, or belong to
+// another process: a frame has the same bits whichever are asked for.
+void render_averaged(Shot& shot, int reach, const Range& frames, const std::vector<int>& missing,
+                     AnimationResult& result, const Sinks& sinks) {
+  WarnsOnce once;
+  const Sinks own = once.sinks(sinks);
+  if (missing.empty()) return;
+  try {
+    shot.find_choices(frames);
+    const api::InShot in_shot{.before = shot.first_world(sinks)};
+    if (missing.size() >= kFramesForPilot && shot.leaves_kind_open())
+      shot.pilot(missing[missing.size() / 2], in_shot, sinks);
+    std::deque<Shot::FrameAlone> alone;
+    std::deque<pipeline::ShotFrame> filmed;
+    for (std::size_t k = 0; k < missing.size(); ++k) {
+      const int first = std::max(frames.first_key, missing[k] - reach),
+                last = std::min(std::max(frames.last_key, frames.last), missing[k] + reach);
+      while (!alone.empty() && alone.front().frame < first) alone.pop_front(), filmed.pop_front();
+      for (int frame = alone.empty() ? first : alone.back().frame + 1; frame <= last; ++frame) {
+        sinks.report("frames", (static_cast<double>(k) +
+                                static_cast<double>(frame - first) / static_cast<double>(last - first + 1)) /
+                                   static_cast<double>(missing.size()));
+        if (!sinks.cancelled()) alone.push_back(shot.render_alone(frame, in_shot, own));
+        if (sinks.cancelled() || !alone.back().result) {
+          result.interrupted = true;
+          return;
+        }
+        filmed.push_back(std::move(alone.back().filmed));
+      }
+      const auto at = static_cast<std::size_t>(missing[k] - first);
+      shot.write_averaged(alone[at], filmed, at);
+      ++result.rendered;
+    }
+  } catch (const Cancelled&) {
+    result.interrupted = true;
   }
 }
 
@@ -291,23 +478,18 @@ void render_chunks(const Shot& shot, const AnimateSettings& settings, const Rang
 }  // namespace
 
 void choose_shot_method(const Scene& scene, AnimateSettings& settings) {
-  const scenedesc::Motion& motion = scene.impl().desc.motion;
+  const scenedesc::SceneDesc& desc = scene.impl().desc;
   RenderSettings& render = settings.render;
-  // Not where every frame or instant has lights of its own (api/render_in_shot.h).
-  if (motion.end > motion.begin && render.lights.placement == LightPlacement::automatic && render.time == 0 &&
-      !render.view.is_open())
-    render.lights.placement = LightPlacement::gather;
-  if (settings.tensor || settings.refit || render.method.name != "auto" ||
-      !render.method.parameters.empty() || !(motion.end > motion.begin))
-    return;
-  TensorSettings tensor;
-  tensor.columns = kShotColumns, tensor.memory = kShotMemory;
-  try {
-    api::check(tensor, render);
-  } catch (const InputError&) {  // something that it refuses is asked for
+  if (!(desc.motion.end > desc.motion.begin)) return;
+  const bool fresh_lights = !settings.tensor && (pipeline::passes_by_default(desc, render) ||
+                                                 pipeline::paths_by_default(desc, render));
+  if (fresh_lights) {
+    if (!settings.temporal_filter && !settings.refit) settings.temporal_filter = kShotFilter;
     return;
   }
-  settings.tensor = tensor;
+  // Not where every frame or instant has lights of its own (api/render_in_shot.h).
+  if (render.lights.placement == LightPlacement::automatic && render.time == 0 && !render.view.is_open())
+    render.lights.placement = LightPlacement::gather;
 }
 
 AnimationResult animate(const Scene& scene, const AnimateSettings& settings, const std::string& folder,
@@ -323,6 +505,16 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
     throw InputError("the shutter counts in other frames than the shot: the scene was read at " +
                          Json(scene.impl().options.frames_per_second).dump() + " per second",
                      "read it with the same LoadOptions::frames_per_second");
+  const int filter = settings.temporal_filter.value_or(0);
+  if (filter < 0 || filter > 100)
+    throw InputError("frames cannot be averaged with " + std::to_string(filter) + " on either side",
+                     "give 0 to 100");
+  if (filter > 0 && (settings.tensor || settings.refit || settings.render.view.is_open()))
+    throw InputError(std::string("frames cannot be averaged with their neighbors: ") +
+                         (settings.tensor  ? "tensor clustering has a filter of its own"
+                          : settings.refit ? "structures that are refitted are those of one moment"
+                                           : "those of an open shutter show many moments"),
+                     "leave one of both out");
   if (settings.endings.empty()) throw InputError("the frames have no format", "give --format exr,png");
   const Range frames = frames_of(scene.impl().desc, settings);
   Shot shot(scene, settings, folder);
@@ -337,7 +529,8 @@ AnimationResult animate(const Scene& scene, const AnimateSettings& settings, con
   if (settings.tensor)
     render_chunks(shot, settings, frames, missing, result, sinks);
   else
-    render_frames(shot, settings.refit, missing, result, sinks);
+    filter > 0 ? render_averaged(shot, filter, frames, missing, result, sinks)
+               : render_frames(shot, settings.refit, missing, result, sinks);
   return result;
 }
 

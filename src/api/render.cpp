@@ -59,33 +59,40 @@ std::string version() { return program_version(); }
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                     const PreviewCallback& on_preview) {
+  return api::render_by_choice(scene, settings, {}, sinks, on_preview);
+}
+
+RenderResult api::render_by_choice(const Scene& scene, const RenderSettings& settings, InShot shot,
+                                   const Sinks& sinks, const PreviewCallback& on_preview) {
   RenderSettings chosen = settings;
-  api::InShot alone;
   const scenedesc::SceneDesc& desc = scene.impl().desc;
   if (pipeline::paths_by_default(desc, settings) && world::may_color_glass(desc)) {
     validate(settings);
-    alone.timer = Timer();
+    shot.timer = Timer();
     within_memory_and_threads(settings, [&] {
       // What there is to say of it is said once, of the world that is rendered.
       Sinks quiet = sinks;
       quiet.info = quiet.warning = {};
       std::vector<scenedesc::Warning> warnings;
-      alone.world = api::build_world(
-          scene, quiet, {.warnings = &warnings, .straight_panes = settings.traced.panes == Panes::straight});
-      if (world::colors_glass(*alone.world))
+      shot.world = api::build_world(scene, quiet,
+                                    {.warnings = &warnings,
+                                     .before = shot.before.get(),
+                                     .straight_panes = settings.traced.panes == Panes::straight});
+      if (world::colors_glass(*shot.world))
         api::report_warnings(sinks, warnings);
       else
-        alone.world = nullptr;
+        shot.world = nullptr;
     });
   }
-  if ((alone.world || !pipeline::paths_by_default(desc, settings)) &&
+  if (!pipeline::may_be_paths(settings)) shot.kind = InShot::Kind::open;
+  if (shot.kind != InShot::Kind::paths && (shot.world || !pipeline::paths_by_default(desc, settings)) &&
       pipeline::passes_by_default(desc, settings)) {
     chosen.method.name = pipeline::kMethodOfPasses;
-    alone.why = "the default";
-    alone.may_be_paths = pipeline::may_be_paths(settings) && settings.passes == 0 && !settings.view.spp &&
-                         settings.view.only == LightPart::all;
+    if (shot.why.empty()) shot.why = "the default";
+    shot.may_be_paths = shot.kind == InShot::Kind::open && pipeline::may_be_paths(settings) &&
+                        settings.passes == 0 && !settings.view.spp && settings.view.only == LightPart::all;
   }
-  return api::render_in_shot(scene, chosen, alone, sinks, on_preview);
+  return api::render_in_shot(scene, chosen, shot, sinks, on_preview);
 }
 
 RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& settings, const InShot& shot,
@@ -97,7 +104,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     if (shot.timer) task.timer = *shot.timer;
     task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
-    const bool by_paths = pipeline::paths_by_default(scene.impl().desc, settings);
+    const bool by_paths =
+        shot.kind == InShot::Kind::paths || pipeline::paths_by_default(scene.impl().desc, settings);
     const bool in_media = by_paths || (pipeline::some_scatter(scene.impl().desc) && !settings.view.is_open());
     task.info = in_media ? &pipeline::chosen_method_in_media(settings, &task.why)
                          : &pipeline::chosen_method(settings, &task.why);
@@ -131,7 +139,8 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     }
     task.world = shot.world ? shot.world
                             : api::build_world(scene, sinks,
-                                               {.media = in_media,
+                                               {.before = shot.before.get(),
+                                                .media = in_media,
                                                 .refit = shot.refit ? shot.refit->get() : nullptr,
                                                 .straight_panes = settings.traced.panes == Panes::straight});
     if (shot.refit) *shot.refit = task.world;
@@ -143,10 +152,16 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
     if (sinks.cancelled()) throw Cancelled();
     pipeline::check_lights(*task.world, settings, pipeline::make_recipe(settings, task.view));
     task.lumens_per_unit = scene.impl().desc.lumens_per_unit;
+    pipeline::PictureFeatures features;
+    if (shot.filmed) task.features = &features;
+    const auto world = task.world;
+    const pipeline::View view = task.view;
     result = by_paths   ? pipeline::run_by_paths(std::move(task), settings, sinks, on_preview)
              : in_media ? pipeline::run_in_media(std::move(task), settings, sinks, on_preview)
              : passes   ? pipeline::run_in_passes(std::move(task), settings, sinks, on_preview)
                         : pipeline::run_render(std::move(task), settings, sinks, on_preview);
+    if (shot.filmed && !result.interrupted)
+      *shot.filmed = pipeline::shot_frame(world, view, pipeline::image_of(result.picture), features);
   });
   return result;
 }

@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "lumirank/lumirank.h"
 #include "pipeline/shot.h"
+#include "pipeline/shot_filter.h"
 
 namespace lumirank::api {
 
@@ -23,14 +24,24 @@ struct InShot {
   // If given: the world of a frame before (nullptr: none), whose structures are refitted and which nobody
   // else may trace; becomes this frame's. Not with an open shutter.
   std::shared_ptr<const world::World>* refit = nullptr;
-  std::string why = {};       // it is this method; empty: as the settings say
-  bool may_be_paths = false;  // where these have less noise (paths_beside.h)
+  // Of another moment, with which its world shares what does not change, and whose units it has.
+  std::shared_ptr<const world::World> before = nullptr;
+  std::string why = {};  // it is this method; empty: as the settings say
+  // As a longer look at the shot found that it is best, if the settings leave it open.
+  enum class Kind { open, passes, paths };
+  Kind kind = Kind::open;
+  bool may_be_paths = false;              // where these have less noise (paths_beside.h)
+  pipeline::ShotFrame* filmed = nullptr;  // if given: becomes what its neighbors need of it (shot_filter.h)
   // Built for it already, if given; `timer` began before that.
   std::shared_ptr<const world::World> world = nullptr;
   std::optional<Timer> timer = {};
 };
 
 // As render(), of a frame of a shot.
+RenderResult render_by_choice(const Scene& scene, const RenderSettings& settings, InShot shot,
+                              const Sinks& sinks, const PreviewCallback& on_preview = {});
+
+// The same by the method that the settings name, "auto" being that of chosen_method().
 RenderResult render_in_shot(const Scene& scene, const RenderSettings& settings, const InShot& shot,
                             const Sinks& sinks, const PreviewCallback& on_preview = {});
 

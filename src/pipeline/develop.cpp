@@ -167,4 +167,12 @@ Picture to_picture(const image::Image& image) {
   return picture;
 }
 
+image::Image image_of(const Picture& picture) {
+  image::Image image(picture.width, picture.height);
+  const auto& rgb = picture.planes[0].rgb;
+  for (std::size_t p = 0; p < image.pixels.size(); ++p)
+    image.pixels[p] = {rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2]};
+  return image;
+}
+
 }  // namespace lumirank::pipeline

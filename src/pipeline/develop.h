@@ -51,5 +51,7 @@ std::vector<Rgb> sample_values(const transport::Receivers& rows, const TracedLig
 image::Image develop(const View& view, const transport::Receivers& rows, std::span<const Rgb> values);
 // InputError if a value is infinite or not a number (sound_pixels.h).
 Picture to_picture(const image::Image& image);
+// The colors of a picture.
+image::Image image_of(const Picture& picture);
 
 }  // namespace lumirank::pipeline

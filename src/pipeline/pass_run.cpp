@@ -422,11 +422,17 @@ class PassRun {
     return picture_->with_mirrored_as_noise(paths_->sent_difference());
   }
 
+  image::Image noise_of_passes() const {
+    return passes_ > 1 ? picture_->with_noise(*rest_).difference : image::Image{};
+  }
+
   RenderResult picture() {
     result_.interrupted = sinks_.cancelled();
     if (timed()) choices_.record("passes", passes_);
     const image::Image all = with_all_noise();
     result_.picture = finished(all);
+    if (task_.features && picture_->denoising().traced())
+      *task_.features = {picture_->denoising().features(), by_paths_ ? difference() : noise_of_passes()};
     if (!result_.interrupted) {
       const Timer timer;
       if (const auto denoised = picture_->denoising().denoised(to_denoise(), difference())) {

@@ -170,6 +170,7 @@ class PathRun {
     const image::Image difference = paths() < PictureDenoising::kPathsForNoise ? image::Image{}
                                     : apart                                    ? film_->sent_difference()
                                                                                : film_->halves_difference();
+    if (task_.features && denoising_.traced()) *task_.features = {denoising_.features(), difference};
     if (const auto denoised = denoising_.denoised(traced, difference)) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       image::Image whole = denoising_.enlarged(denoised->picture);

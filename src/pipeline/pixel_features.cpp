@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/rgb_range.h"
 #include "media/tracking.h"
 #include "scatter/closure.h"
 #include "transport/rows/film_samples.h"
@@ -27,8 +28,6 @@ constexpr float kOverNeighbors = 4, kOverUsual = 16;
 constexpr int kMediumParts = 4;
 constexpr float kUsualAlbedo = 0.8f;
 
-Rgb min_of(Rgb a, Rgb b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
-Rgb max_of(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
 float distance(Rgb a, Rgb b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }

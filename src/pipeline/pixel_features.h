@@ -22,6 +22,12 @@ struct PixelFeatures {
   image::Image albedo, normal;
 };
 
+// What is told of a picture by who rendered it, beside its colors. Empty where it is not known.
+struct PictureFeatures {
+  PixelFeatures means;
+  image::Image difference;  // twice the noise before a denoiser, of the picture's size or smaller
+};
+
 class PixelFeatureTracing {
  public:
   // Must outlive it: the world. Random numbers are by the recipe's seed.

@@ -7,6 +7,7 @@
 #include "base/timer.h"
 #include "lumirank/lumirank.h"
 #include "methods/method.h"
+#include "pipeline/pixel_features.h"
 #include "pipeline/prepared.h"
 
 namespace lumirank::pipeline {
@@ -23,6 +24,7 @@ struct RenderTask {
   double lumens_per_unit = 1;
   Timer timer;  // since the scene was loaded
   double build_seconds = 0;
+  PictureFeatures* features = nullptr;  // told by passes and paths to who gives it
   double denoiser_pixel_seconds = 0;  // where it was tried out
 };
 

@@ -152,8 +152,9 @@ TEST(Animate, TensorClusteringSaysWhatItDoesNot) {
   EXPECT_FALSE(fs::exists(folder / "none"));
 }
 
-// By default a shot is made by tensor clustering, unless that cannot be or another method is named.
-TEST(Animate, ByDefaultTensorClusteringWhereSomethingMoves) {
+// By default frames are what stills are, averaged with their neighbors; lights are shared where nothing makes
+// them anew for each frame.
+TEST(Animate, ByDefaultFramesAreStillsAveragedWithTheirNeighbors) {
   const TemporaryFolder folder;
   const Scene moving = Scene::load(moving_scene(folder));
   const auto chosen = [](const Scene& scene, const auto& change) {
@@ -163,20 +164,70 @@ TEST(Animate, ByDefaultTensorClusteringWhereSomethingMoves) {
     choose_shot_method(scene, settings);
     return settings;
   };
+  const auto is_averaged = [](const AnimateSettings& s) { return s.temporal_filter == kShotFilter; };
+  const auto shares_lights = [](const AnimateSettings& s) {
+    return s.render.lights.placement == LightPlacement::gather;
+  };
   const AnimateSettings usual = chosen(moving, [](auto&) {});
-  ASSERT_TRUE(usual.tensor);
-  EXPECT_EQ(usual.tensor->columns, kShotColumns);
-  EXPECT_EQ(usual.tensor->memory, kShotMemory);
-  EXPECT_EQ(usual.render.method.target_error, 0);
-  EXPECT_TRUE(chosen(moving, [](auto& s) { s.render.method.target_error = 0.1; }).tensor);
-  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.method.name = "slice-cuts"; }).tensor);
-  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.method.parameters["columns"] = "300"; }).tensor);
-  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.time = 1; }).tensor);
-  EXPECT_FALSE(chosen(moving, [](auto& s) { s.render.layers = {"direct"}; }).tensor);
+  EXPECT_TRUE(is_averaged(usual));
+  EXPECT_FALSE(usual.tensor);
+  EXPECT_FALSE(shares_lights(usual));
+  EXPECT_TRUE(is_averaged(chosen(moving, [](auto& s) { s.render.time = 1; })));
+  EXPECT_TRUE(is_averaged(chosen(moving, [](auto& s) { s.render.method.target_error = 0.1; })));
+  EXPECT_EQ(chosen(moving, [](auto& s) { s.temporal_filter = 0; }).temporal_filter, 0);
+  for (const auto& settings : {chosen(moving, [](auto& s) { s.render.method.name = "slice-cuts"; }),
+                               chosen(moving, [](auto& s) { s.tensor = TensorSettings{}; }),
+                               chosen(moving, [](auto& s) { s.render.layers = {"direct"}; })}) {
+    EXPECT_FALSE(settings.temporal_filter);
+    EXPECT_TRUE(shares_lights(settings));
+  }
   const std::string still = folder / "still.xml";
   std::ofstream(still) << "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><shape type=\"rectangle\"/>"
                        << kLamp << "</scene>";
-  EXPECT_FALSE(chosen(Scene::load(still), [](auto&) {}).tensor);
+  EXPECT_FALSE(chosen(Scene::load(still), [](auto&) {}).temporal_filter);
+}
+
+// What fills space is there in frames as in stills.
+TEST(Animate, ByDefaultFramesHaveTheMediaOfTheScene) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder, true,
+                                               "<bsdf type=\"null\"/><medium name=\"interior\" "
+                                               "type=\"homogeneous\"><rgb name=\"sigma_t\" value=\"3\"/>"
+                                               "<rgb name=\"albedo\" value=\"0.9\"/></medium>"));
+  AnimateSettings settings = small_shot(1, 2);
+  settings.render = {};
+  settings.render.view.spp = 4;
+  settings.render.denoise = Denoise::off;
+  choose_shot_method(scene, settings);
+  animate(scene, settings, folder / "shot");
+  const auto report = nlohmann::json::parse(bytes_of(folder / "shot/frame_0001.json"));
+  EXPECT_EQ(report["method"], "path-tracing");
+  EXPECT_EQ(report["shot.averaged"], 5);  // all: one before, and three of four after
+}
+
+TEST(Animate, AveragedFramesHaveTheSameBitsWhoeverMakesThem) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  AnimateSettings settings = small_shot(0, 4);
+  settings.render.method.name = "auto";
+  settings.render.denoise = Denoise::off;
+  settings.render.passes = 2;
+  settings.temporal_filter = 1;
+  EXPECT_EQ(animate(scene, settings, folder / "whole").rendered, 5);
+  for (const auto& [first, last] : {std::pair{3, 3}, {0, 1}, {2, 4}}) {
+    settings.first = first, settings.last = last;
+    animate(scene, settings, folder / "parts");
+  }
+  settings.temporal_filter = 0, settings.first = 0, settings.last = 4;
+  animate(scene, settings, folder / "alone");
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(bytes_of(frame(folder / "parts", k)), bytes_of(frame(folder / "whole", k))) << k;
+    EXPECT_NE(bytes_of(frame(folder / "alone", k)), bytes_of(frame(folder / "whole", k))) << k;
+  }
+  settings.temporal_filter = 1;
+  settings.tensor = TensorSettings{};
+  EXPECT_NE(refused([&] { animate(scene, settings, folder / "none"); }).find("a filter of its own"),
+            std::string::npos);
 }
 
 // Light that columns cannot carry (here a mirror's caustics) is traced beside them, and is what a still has.

@@ -25,8 +25,8 @@ class AnimateCommand : public testing::Test {
                  "<transform time=\"0.1\"><translate x=\"0.1\"/></transform></animation></shape>"));
 };
 
-TEST_F(AnimateCommand, ByDefaultTensorClusteringAndItsReportsAreReplayed) {
-  EXPECT_SUCCESS(lumirank(shot_of("a")));
+TEST_F(AnimateCommand, ReportsOfTensorClusteringAreReplayed) {
+  EXPECT_SUCCESS(lumirank(shot_of("a", {"--method", "tensor-clustering", "--set", "columns=500"})));
   const auto report = read_json(folder_ / "a/frame_0001.json");
   EXPECT_EQ(report["method"], "tensor-clustering");
   EXPECT_EQ(report["parameters"]["method"], "tensor-clustering");
@@ -38,10 +38,20 @@ TEST_F(AnimateCommand, ByDefaultTensorClusteringAndItsReportsAreReplayed) {
       shot_of("few", {"--replay", folder_ / "a/frame_0001.json", "--set", "columns=3", "--set", "rows=5"})));
   const auto set = read_json(few + "/frame_0001.json")["parameters"]["set"];
   EXPECT_EQ(set["columns"], "3");
-  EXPECT_EQ(set["memory"], "6000");
+  EXPECT_EQ(set["chunk"], "40");
   EXPECT_SUCCESS(lumirank(shot_of("again", {"--replay", few + "/frame_0001.json"})));
   EXPECT_EQ(read_text(again + "/frame_0001.pfm"), read_text(few + "/frame_0001.pfm"));
   EXPECT_NE(read_text(again + "/frame_0001.pfm"), read_text(folder_ / "a/frame_0001.pfm"));
+}
+
+TEST_F(AnimateCommand, ByDefaultFramesAreAveragedWithTheirNeighbors) {
+  const Arguments quick{"--denoise", "off", "--passes", "2"};
+  EXPECT_SUCCESS(lumirank(shot_of("a", quick)));
+  EXPECT_EQ(read_json(folder_ / "a/frame_0001.json")["shot.averaged"], 3);
+  EXPECT_SUCCESS(lumirank(shot_of("b", quick + Arguments{"--temporal-filter", "0"})));
+  EXPECT_FALSE(read_json(folder_ / "b/frame_0001.json").contains("shot.averaged"));
+  expect_refused(lumirank(shot_of("no", {"--temporal-filter", "1", "--method", "tensor-clustering"})),
+                 "tensor clustering has a filter of its own");
 }
 
 TEST_F(AnimateCommand, OneByOneWhereAMethodIsNamed) {
@@ -109,7 +119,7 @@ TEST_F(AnimateCommand, RefusesFramesOfAnotherMesh) {
 }
 
 TEST_F(AnimateCommand, ChunkIsAParameterOfTensorClustering) {
-  EXPECT_SUCCESS(lumirank(shot_of("a", {"--chunk", "2"})));
+  EXPECT_SUCCESS(lumirank(shot_of("a", {"--chunk", "2", "--method", "tensor-clustering"})));
   EXPECT_EQ(read_json(folder_ / "a/frame_0001.json")["parameters"]["set"]["chunk"], "2");
   expect_refused(lumirank(shot_of("b", {"--chunk", "2", "--method", "slice-cuts"})),
                  "--chunk is of tensor clustering alone");

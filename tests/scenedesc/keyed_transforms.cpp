@@ -10,6 +10,7 @@
 #include "scenedesc/pbrt_scene.h"
 #include "scenedesc/schema/frame_files.h"
 #include "scenedesc/schema/keyed_transform.h"
+#include "scenedesc/writer/mitsuba_writer.h"
 #include "support/refused.h"
 #include "support/scene_file.h"
 
@@ -200,6 +201,24 @@ TEST(FrameFiles, MeshesOfASceneMoveByThem) {
   options.frames_per_second = 10;
   EXPECT_EQ(file_at(options), "m_01.ply");
   EXPECT_EQ(file_at({}), "m_00.ply");
+}
+
+TEST(FrameFiles, VolumesOfASceneMoveByThem) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"puff.0.vol", "puff.1.vol", "puff.2.vol"}) std::ofstream(folder / name) << "VOL";
+  ReadOptions options = moment(0.1);
+  options.frames_per_second = 10;
+  const SceneDesc scene = parse_mitsuba(
+      "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><shape type=\"cube\"><medium name=\"interior\" "
+      "type=\"heterogeneous\"><volume type=\"gridvolume\" name=\"sigma_t\"><string name=\"filename\" "
+      "value=\"puff.#.vol\"/></volume></medium></shape></scene>",
+      folder / "a.xml", options);
+  const auto& grid = std::get<GridFileDesc>(scene.volumes.at(0).kind);
+  EXPECT_EQ(grid.filename, folder / "puff.1.vol");
+  EXPECT_EQ(grid.sequence.size(), 3u);
+  EXPECT_NEAR(scene.motion.end, 0.2, 1e-12);
+  const std::vector<std::string> files = files_of(scene);
+  EXPECT_EQ(std::count(files.begin(), files.end(), folder / "puff.2.vol"), 1);
 }
 
 // A square of `vertices` corners around its middle.

@@ -67,6 +67,19 @@ TEST(PbrtSparseMedium, GridsHaveNames) {
   EXPECT_EQ(std::get<GridFileDesc>(volume(scene, scene.media.at(0).scattering).kind).grid, "soot");
 }
 
+TEST(PbrtSparseMedium, MovesByNumberedFiles) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"puff.10.nvdb", "puff.11.nvdb"}) write_nvdb(folder / name, {some_density()});
+  ReadOptions options;
+  options.frames_per_second = 10, options.time = 1.1;
+  const SceneDesc scene = pbrt_world(nanovdb_text(folder / "puff.##.nvdb"), "", options);
+  const auto& grid = std::get<GridFileDesc>(volume(scene, scene.media.at(0).scattering).kind);
+  EXPECT_EQ(grid.filename, folder / "puff.11.nvdb");
+  EXPECT_EQ(grid.sequence.size(), 2u);
+  EXPECT_NEAR(scene.motion.begin, 1, 1e-12);
+  EXPECT_NEAR(scene.motion.end, 1.1, 1e-12);
+}
+
 TEST(PbrtSparseMedium, GlowsWithItsTemperature) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "fire.nvdb";

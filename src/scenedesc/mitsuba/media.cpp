@@ -3,6 +3,7 @@
 
 #include "scenedesc/data/media.h"
 #include "scenedesc/mitsuba/plugin.h"
+#include "scenedesc/schema/files.h"
 
 namespace lumirank::scenedesc::mitsuba {
 
@@ -70,11 +71,15 @@ VolumeInput Reader::volume_input(const Element& element) {
   out.id = p.id(), out.where = p.where();
   out.to_world = p.regular_transform();
   GridFileDesc grid;
-  const auto file = this->file(p.required_text("filename"), p.where_of("filename"), "volume", "1 everywhere");
+  const std::string name = p.required_text("filename");
+  const SourceLocation where = p.where_of("filename");
+  const std::string path = resolve_path(name, where.file);
+  const auto file = named_file(path_at_time(path), where, "volume", "1 everywhere");
   // In 0.6 a grid is where its file says, and the first and the last number lie on the faces of its box.
   // Sparse grids, which Mitsuba does not have, are where their files say in 3.x as well.
   const bool old = dialect().camel_case();
   grid.filename = file.name;
+  grid.sequence = sequence(path);
   grid.use_grid_box = p.flag("use_grid_bbox", old || grid.sparse());
   if (grid.sparse()) grid.grid = p.text("grid").value_or("");
   out.sampling = old || grid.sparse() ? GridSampling::corners : GridSampling::centers;

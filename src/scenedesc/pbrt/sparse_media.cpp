@@ -5,6 +5,7 @@
 
 #include "scenedesc/pbrt/glow.h"
 #include "scenedesc/pbrt/media_parts.h"
+#include "scenedesc/schema/files.h"
 #include "scenedesc/volumes/grid_file.h"
 
 namespace lumirank::scenedesc::pbrt {
@@ -63,7 +64,10 @@ void one_channel(const GridFile& file, Params& p, const char* parameter, const s
 }  // namespace
 
 bool add_sparse_grids(Reader& reader, Params& p, const Transform& to_world, MediumDesc& out) {
-  const auto file = reader.file(p.required_text("filename"), p.where_of("filename"), "volume", "empty space");
+  const std::string name = p.required_text("filename");
+  const std::string path = resolve_path(name, SourceLocation(p.where_of("filename")).file);
+  const std::string now = reader.path_at_time(path);
+  const auto file = reader.file(now == path ? name : now, p.where_of("filename"), "volume", "empty space");
   const std::string grid = p.text("gridname", "density"), hot = p.text("temperaturename", "temperature");
   coefficients(reader, p, out);
   const float shine = not_negative(p, "Lescale", 1);
@@ -84,7 +88,7 @@ bool add_sparse_grids(Reader& reader, Params& p, const Transform& to_world, Medi
     volumes.push_back(std::move(volume));
     return static_cast<int>(volumes.size()) - 1;
   };
-  const GridFileDesc desc{file.name, true, grid};
+  const GridFileDesc desc{file.name, true, grid, Reader::sequence(path)};
   if (!desc.sparse())
     p.fail("filename", "names a file of another kind", "files in .nvdb and .vdb can be read");
   out.absorption.volume = out.scattering.volume = add(desc, to_world);

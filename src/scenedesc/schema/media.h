@@ -38,6 +38,8 @@ struct GridFileDesc {
   std::string filename;       // Mitsuba's .vol, OpenVDB's .vdb or NanoVDB's .nvdb
   bool use_grid_box = false;  // the file's box is where the grid is; false: the unit cube
   std::string grid = {};      // which of several in a sparse file; "": "density", or the only one
+  // Of a numbered sequence (frame_files.h) all files, the first one first. Their boxes may differ.
+  std::vector<std::string> sequence = {};
 
   // By the name of the file. Numbers of sparse grids belong to whole indices: their volumes are sampled at
   // corners.

@@ -92,7 +92,10 @@ std::vector<std::string> files_of(const SceneDesc& scene) {
   for (const BsdfDesc& b : scene.bsdfs)
     for_each_file(b.kind, [&](const FileInput& file) { files.push_back(file.name); });
   for (const VolumeDesc& v : scene.volumes)
-    if (const auto* grid = std::get_if<GridFileDesc>(&v.kind)) files.push_back(grid->filename);
+    if (const auto* grid = std::get_if<GridFileDesc>(&v.kind)) {
+      files.push_back(grid->filename);
+      files.insert(files.end(), grid->sequence.begin(), grid->sequence.end());
+    }
   for (const ShapeDesc& s : scene.shapes) {
     if (const auto* mesh = std::get_if<MeshFileDesc>(&s.kind)) {
       files.push_back(mesh->filename);
