@@ -25,7 +25,7 @@ struct RenderTask {
   Timer timer;  // since the scene was loaded
   double build_seconds = 0;
   PictureFeatures* features = nullptr;  // told by passes and paths to who gives it
-  double denoiser_pixel_seconds = 0;  // where it was tried out
+  double denoiser_pixel_seconds = 0;    // where it was tried out
 };
 
 RenderResult run_render(RenderTask task, const RenderSettings& settings, const Sinks& sinks,

@@ -242,6 +242,7 @@ image::Image filtered_in_time(const std::deque<ShotFrame>& frames, std::size_t o
   const ShotFrame& frame = frames[own];
   const Shown here(frame, frame);
   std::vector<Shown> shown;
+  shown.reserve(frames.size());
   for (const ShotFrame& other : frames) shown.emplace_back(other, frame);
   image::Image out = frame.picture;
   const float least = unseen(frame.picture);
