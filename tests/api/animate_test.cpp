@@ -230,6 +230,27 @@ TEST(Animate, AveragedFramesHaveTheSameBitsWhoeverMakesThem) {
             std::string::npos);
 }
 
+// Whatever the clock says in the first of them, and in a process that goes on with the shot.
+TEST(Animate, AveragedFramesOfABudgetRepeatWhatTheFirstChose) {
+  const TemporaryFolder folder;
+  const Scene scene = Scene::load(moving_scene(folder));
+  AnimateSettings settings = small_shot(0, 2);
+  settings.render.method.name = "auto";
+  settings.render.denoise = Denoise::off;
+  settings.render.view.spp.reset();
+  settings.render.time = 0.05;
+  settings.temporal_filter = 1;
+  animate(scene, settings, folder / "shot");
+  settings.first = 3, settings.last = 4;
+  animate(scene, settings, folder / "shot");
+  const auto choices = [&](int k) {
+    return nlohmann::json::parse(
+        bytes_of(folder / "shot/frame_000" + std::to_string(k) + ".json"))["choices"];
+  };
+  EXPECT_FALSE(choices(0).empty());
+  for (int k = 1; k < 5; ++k) EXPECT_EQ(choices(k), choices(0)) << k;
+}
+
 // Light that columns cannot carry (here a mirror's caustics) is traced beside them, and is what a still has.
 TEST(Animate, TensorClusteringTracesTheRestOfTheLight) {
   const TemporaryFolder folder;
