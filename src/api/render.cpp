@@ -102,6 +102,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
   within_memory_and_threads(settings, [&] {
     pipeline::RenderTask task;
     if (shot.timer) task.timer = *shot.timer;
+    task.part_of_usual = shot.part_of_usual;
     task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);
     const bool by_paths =

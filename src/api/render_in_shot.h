@@ -20,7 +20,7 @@ std::shared_ptr<const pipeline::ShotLights> plan_lights_of_motion(const Scene& s
 
 // What a frame has from others of its shot.
 struct InShot {
-  std::shared_ptr<const pipeline::ShotLights> lights;  // nullptr: its own
+  std::shared_ptr<const pipeline::ShotLights> lights = nullptr;  // nullptr: its own
   // If given: the world of a frame before (nullptr: none), whose structures are refitted and which nobody
   // else may trace; becomes this frame's. Not with an open shutter.
   std::shared_ptr<const world::World>* refit = nullptr;
@@ -31,6 +31,7 @@ struct InShot {
   enum class Kind { open, passes, paths };
   Kind kind = Kind::open;
   bool may_be_paths = false;              // where these have less noise (paths_beside.h)
+  double part_of_usual = 1;               // RenderTask
   pipeline::ShotFrame* filmed = nullptr;  // if given: becomes what its neighbors need of it (shot_filter.h)
   // Built for it already, if given; `timer` began before that.
   std::shared_ptr<const world::World> world = nullptr;

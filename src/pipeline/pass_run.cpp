@@ -134,7 +134,10 @@ class PassRun {
     }
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
     as_asked_ = by_hand > 0;
-    wanted_ = as_asked_ ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPasses : kDefaultPasses;
+    wanted_ = as_asked_ ? by_hand
+              : timed() || asked_.method.target_error > 0
+                  ? kMaxPasses
+                  : static_cast<int>(std::lround(kDefaultPasses * task_.part_of_usual));
     if (timed()) {
       if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
     }

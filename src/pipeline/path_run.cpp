@@ -71,7 +71,10 @@ class PathRun {
 
   void plan() {
     const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
-    wanted_ = by_hand > 0 ? by_hand : timed() || asked_.method.target_error > 0 ? kMaxPaths : kUsualPaths;
+    wanted_ = by_hand > 0 ? by_hand
+              : timed() || asked_.method.target_error > 0
+                  ? kMaxPaths
+                  : static_cast<int>(std::lround(kUsualPaths * task_.part_of_usual));
     if (!timed()) return;
     if (const auto earlier = choices_.earlier(kChoiceOfPaths, kMaxPaths))
       wanted_ = static_cast<int>(*earlier);

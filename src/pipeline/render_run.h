@@ -24,6 +24,8 @@ struct RenderTask {
   double lumens_per_unit = 1;
   Timer timer;  // since the scene was loaded
   double build_seconds = 0;
+  // Of the passes or paths that a picture has by default, where neither time nor error says how many.
+  double part_of_usual = 1;
   PictureFeatures* features = nullptr;  // told by passes and paths to who gives it
   double denoiser_pixel_seconds = 0;    // where it was tried out
 };
