@@ -115,8 +115,6 @@ bool PassTracer::trace(std::uint64_t number, const View& view, image::Image& ima
   estimate_ = method_->run(metered, run);
   if (estimate_.interrupted) return false;
   cost_ += metered.total();
-  const double records = estimate_.trace.numbers["seconds.records"];
-  took.fixed += records, took.by_pixel -= records;
   lap("method", took.by_pixel);
   image = develop({*world_, view, recipe, *rows, traced}, estimate_.sums, sent_);
   if (settings_.traced.compensate > 0) {

@@ -15,7 +15,8 @@
 
 namespace lumirank::pipeline {
 
-// What a pass takes whatever the number of its pixels, and what in proportion to it.
+// What a pass takes for its lights, and what in proportion to its pixels: the records of a method too, since
+// both they and the lights of each grow with the root of these.
 struct PassSeconds {
   double fixed = 0, by_pixel = 0;
   double total() const { return fixed + by_pixel; }

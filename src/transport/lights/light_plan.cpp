@@ -38,15 +38,21 @@ ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey
 
 struct Pilot {
   double lights_per_path = 0;
-  double direct_share = 1;  // of the power: what arrives from emitters over that plus what surfaces send on
+  // Of the power, if asked for: what arrives from emitters over that plus what surfaces send on.
+  double direct_share = 1;
   // Per light, if asked for: its power times the number of paths and its reflectance; of how much use light
   // is there, negative where no receiver sees it.
   std::vector<double> powers;
   std::vector<float> importances;
 };
 
+struct PilotAsks {
+  bool direct_share = false;
+  const LightImportance* importance = nullptr;
+};
+
 Pilot run_pilot(const world::World& world, const world::EmitterChoice& choice,
-                const ParticleSettings& settings, const LightImportance* importance) {
+                const ParticleSettings& settings, const PilotAsks& asks) {
   struct Piece {
     double lights = 0, first = 0, scattered = 0;
     std::vector<double> powers;
@@ -59,9 +65,11 @@ Pilot run_pilot(const world::World& world, const world::EmitterChoice& choice,
     Piece& piece = pieces[begin / kPathsAtOnce];
     LightBatch batch;
     PathTally tally;
-    for (std::size_t path = begin; path < end; ++path) tracer.trace(path, batch, &tally);
+    for (std::size_t path = begin; path < end; ++path)
+      tracer.trace(path, batch, asks.direct_share ? &tally : nullptr);
     piece.lights = static_cast<double>(batch.lights.size());
     piece.first = tally.first_flux, piece.scattered = tally.scattered_flux;
+    const LightImportance* importance = asks.importance;
     if (!importance) return;
     for (const LightRecord& light : batch.lights) {
       const double power = static_cast<double>(max_component(light.power)) * rough_reflectance(light) *
@@ -209,35 +217,34 @@ LightSurvey survey_lights(const world::World& world, const world::EmitterChoice&
   if (survey.parts.indirect) {
     if (survey.aimed) survey.aim = learn_aim(world, choice, settings, survey.parts.deepest);
     pilot = run_pilot(world, choice, pilot_settings(settings, survey),
-                      survey.aimed ? &survey.aim.importance : nullptr);
+                      {!survey.aimed, survey.aimed ? &survey.aim.importance : nullptr});
     // Nothing that the emitters reach scatters: all lights may go to them.
     if (pilot.lights_per_path == 0 && survey.parts.direct) survey.parts.indirect = false;
   }
   survey.lights_per_path = pilot.lights_per_path;
   survey.emitter_share = emitter_share(pilot, settings, survey.aim);
   if (!survey.parts.indirect || !survey.aimed) return survey;
-  if (const auto range = bounded_uses(pilot, survey.uses)) survey.aim.importance.set_range(*range);
+  std::vector<double> uses;
+  const auto range = bounded_uses(pilot, uses);
+  if (!range) return survey;
+  survey.aim.importance.set_range(*range);
+  if (settings.on_gather_samples) return survey;
+  survey.level = plan_roulette(std::move(uses), kRoulettePaths, 1).level;
+  if (!(survey.level > 0)) return survey;
+  // Paths in parts leave more lights than the uses tell: counted.
+  const LightRoulette roulette(survey.aim.importance, survey.level);
+  ParticleSettings ps = pilot_settings(settings, survey);
+  ps.roulette = &roulette, ps.first_id = 1ull << 50;
+  survey.lights_per_path = run_pilot(world, choice, ps, {}).lights_per_path;
   return survey;
 }
 
-LightPlan plan_lights(const world::World& world, const world::EmitterChoice& choice,
-                      const LightSettings& settings, const LightSurvey& survey) {
+LightPlan plan_lights(std::size_t count, const LightSurvey& survey) {
   LightPlan plan;
-  plan.emitter_samples = emitter_sample_count(settings.count, survey);
+  plan.emitter_samples = emitter_sample_count(count, survey);
   if (!survey.parts.indirect) return plan;
-  const double wanted =
-      std::max(1.0, static_cast<double>(settings.count) - static_cast<double>(plan.emitter_samples));
+  const double wanted = std::max(1.0, static_cast<double>(count) - static_cast<double>(plan.emitter_samples));
   plan.paths = natural_paths(wanted, survey.lights_per_path);
-  if (survey.uses.empty()) return plan;
-  const RoulettePlan roulette = plan_roulette(survey.uses, kRoulettePaths, wanted);
-  if (!(roulette.level > 0)) return plan;
-  // Paths in parts leave more lights than the uses tell: counted.
-  plan.level = roulette.level;
-  const LightRoulette chosen(survey.aim.importance, plan.level);
-  ParticleSettings ps = pilot_settings(settings, survey);
-  ps.roulette = &chosen, ps.first_id = 1ull << 50;
-  const double kept = run_pilot(world, choice, ps, nullptr).lights_per_path;
-  plan.paths = natural_paths(wanted, kept);
   return plan;
 }
 

@@ -24,12 +24,15 @@ struct LightSurvey {
   LightParts parts;
   DirectNeed need;
   bool aimed = false;
-  Aim aim;  // where particles start, and where their lights are of use
-  double lights_per_path = 0;
+  Aim aim;                   // where particles start, and where their lights are of use
   double emitter_share = 0;  // of all lights
-  // Of the pilot's lights, times the number of its paths; empty where none is of any use.
-  std::vector<double> uses;
+  double level = 0;          // LightRoulette's
+  double lights_per_path = 0;
 };
+// With receivers, `level` is that at which lights of unequal use are worth most of as many equal ones:
+// (Σ use)²/Σ use² after roulette. Where the guide knows well where light comes in that is about one path for
+// each few lights; where it does not, up to sixteen paths for each light are traced so that none stands for
+// much more light than the others.
 LightSurvey survey_lights(const world::World& world, const world::EmitterChoice& choice,
                           const LightSettings& settings);
 
@@ -39,18 +42,11 @@ std::size_t emitter_sample_count(std::size_t count, const LightSurvey& survey);
 struct LightPlan {
   std::size_t emitter_samples = 0;
   std::size_t paths = 0;  // of particles
-  double level = 0;       // LightRoulette's
 };
-
-// With receivers, the number of paths is that from which on lights of unequal use are worth most of
-// settings.count equal ones: (Σ use)²/Σ use² after roulette. Where the guide knows well where light comes in
-// that is about one path for each few lights; where it does not, up to sixteen paths for each light are
-// traced so that none stands for much more light than the others.
-LightPlan plan_lights(const world::World& world, const world::EmitterChoice& choice,
-                      const LightSettings& settings, const LightSurvey& survey);
+LightPlan plan_lights(std::size_t count, const LightSurvey& survey);
 
 // Paths and level for lights of the given uses (times the number of paths), met on `pilot_paths`, so that
-// `wanted` are kept. In any order.
+// `wanted` are kept: the level is the same for any number of them. In any order.
 struct RoulettePlan {
   double paths = 0, level = 0;
 };

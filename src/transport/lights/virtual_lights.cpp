@@ -72,12 +72,12 @@ VirtualLights trace_virtual_lights(const world::World& world, const LightSetting
       settings.survey ? nullptr : std::make_unique<LightSurvey>(survey_lights(world, choice, settings));
   const LightSurvey& survey = settings.survey ? *settings.survey : *made;
   if (settings.on_gather_samples) return light_gather_samples(world, survey, settings, sinks);
-  const LightPlan plan = plan_lights(world, choice, settings, survey);
+  const LightPlan plan = plan_lights(settings.count, survey);
   std::vector<LightBatch> batches(1 + (plan.paths + kPathsPerPiece - 1) / kPathsPerPiece);
   batches[0] = emitter_lights(world, choice, settings.seed, plan.emitter_samples);
   const std::size_t direct_count = batches[0].lights.size();
   if (plan.paths > 0) {
-    const LightRoulette roulette(survey.aim.importance, plan.level);
+    const LightRoulette roulette(survey.aim.importance, survey.level);
     trace_particles(world, choice,
                     {settings.seed, Stage::particles, plan.paths, survey.parts.deepest, 0, &survey.aim.guide,
                      settings.lobes, &roulette},

@@ -55,8 +55,8 @@ struct LightSettings {
   // Lobes of receivers with a roughness below this get their direct light elsewhere: emitters then get fewer
   // of the lights (if receivers are given; above 1: all lobes).
   float traced_direct_below = 0;
-  // If given, that of the same settings but for the count (light_plan.h); else it is made in the call. Read
-  // during the call only.
+  // If given, that of the same settings but for count and seed (light_plan.h); else it is made in the call.
+  // Read during the call only.
   const LightSurvey* survey = nullptr;
   // Indirect light from gather samples instead of particles (gather_lights.h); `gather`, if given, is what
   // several moments of the scene share, else it is made in the call. Read during the call only.
