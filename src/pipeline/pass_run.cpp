@@ -31,22 +31,25 @@ constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
 // seconds they will take, before that is known, and how noisy a pass is.
 constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8;
 constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
+// What is compared of a small film. Its passes have fewer lights, whose noise they share, and look worse than
+// those of the whole one: of eighteen scenes paths were better in six of the seven where they look so much
+// worse, and passes in ten of eleven where they do not.
+constexpr int kTrialPasses = 2, kMaxTrialPaths = 32;
+constexpr double kSmallPassesLookWorse = 1.9;
 // After so many passes paths for all light are tried for this part of the passes' seconds, if so many passes
 // more would fit.
 constexpr int kPassesBeforePaths = 2;
-constexpr double kPartOfTrial = 0.4, kWorthATrial = 3;
+constexpr double kPartOfTrial = 0.4, kWorthATrial = 3, kUnsure = 1.25;
 constexpr int kMaxBeside = 1 << 16;
-// Paths go alone where the rest is more of the light than this; and where so few passes would fit that they
-// cannot be compared, if a pass takes as long as so many paths for each pixel. Of twenty scenes the paths had
-// less noise in all five where it does. Where not even one pass fits, they are better than a smaller film.
-constexpr double kRestForPaths = 0.2, kPathsOfPass = 5, kPathsOfOnlyPass = 2;
+// Paths go alone where the rest is more of the light than this.
+constexpr double kRestForPaths = 0.2;
 // What a pass counts for beside a path for each pixel, where it is asked whether all pixels are worth it.
 constexpr double kPathsWorthAPass = 2.5;
-constexpr double kPassesOfHalf = 3;  // that are better than paths
+// Passes of half the film that are better than paths, or than few whole ones that take as long as so many
+// paths for each pixel; than the only one.
+constexpr double kPassesOfHalf = 3, kPathsOfPass = 5, kPathsOfOnlyPass = 2;
 // Of the picture's light that passes show and paths have not found: above that it is none of their noise.
-// Paths for each pixel of a small film that it is asked of.
 constexpr double kMissed = 0.03;
-constexpr int kPathsOfMissed = 2;
 // Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
 // takes two of these at least, which was a third of ten seconds among thousands of lamps.
 constexpr double kDearPath = 0.75;
@@ -86,7 +89,7 @@ class PassRun {
     tracer_.aim(survey(task_.world, view_, tracer_.recipe_of(0, view_), sinks_));
     seconds_["survey"] = survey_timer.seconds();
     plan();
-    if (paths_alone_) return by_paths_alone("few passes would fit, and paths are cheap beside them");
+    if (paths_alone_) return by_paths_alone("few passes would fit, and on a small film paths had less noise");
     while (wants_more()) {
       set_size();
       if (!pass(passes_)) break;
@@ -123,9 +126,10 @@ class PassRun {
                        static_cast<double>(tracer_.lights_of(small)),
                    took.by_pixel / shrunk};
       features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
-      const bool few = too_few_fit(), half = few && may_be_half(eye_rays / shrunk);
-      paths_alone_ = few && !half && !paths_miss(small, image);
+      const bool few = too_few_fit();
+      paths_alone_ = few && small_paths_are_better(small, image, shrunk);
       if (paths_alone_) return;
+      const bool half = few && is_dear() && may_be_half(eye_rays / shrunk);
       choose_size(half ? 2 : 1);
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
@@ -270,12 +274,15 @@ class PassRun {
     return rest_->plan().pilot.whole_path_seconds * static_cast<double>(view_.width) *
            static_cast<double>(view_.height);
   }
-  // There is no time to find out whether paths have less noise, and they are likely to.
+  // There is no time to find out of the whole film whether paths have less noise.
   bool too_few_fit() const {
-    const double path = path_seconds();
-    const double pass = expected_.total() * (1 + rest_share()), passes = kPassesBeforePaths + kWorthATrial;
-    return may_be_paths_alone() && rest_->plan().piloted && passes * pass > left() &&
-           pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path;
+    const double pass = expected_.total() * (1 + rest_share());
+    const double passes = kUnsure * (kPassesBeforePaths + kWorthATrial);
+    return may_be_paths_alone() && rest_->plan().piloted && passes * pass > left();
+  }
+  bool is_dear() const {
+    const double pass = expected_.total() * (1 + rest_share());
+    return pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path_seconds();
   }
   // Where paths alone would be of a smaller film as well, passes of that one are tried if some fit.
   bool may_be_half(double one_feature) {
@@ -291,14 +298,29 @@ class PassRun {
     features_expected_ = before;
     return false;
   }
-  // Light that a pass of a small film shows, and paths do not. Only with light paths is there reason to ask:
-  // lamps that paths from the eye hardly find, and what is seen through glass is not found from these either.
-  bool paths_miss(const View& small, const image::Image& by_pass) {
-    if (rest_->plan().light_paths == 0) return false;
+  // Asked of a film of this part of the pixels, where there is no time to ask the whole one: with paths of
+  // the same seconds, since what is rarely found has no less noise in twice as many. Light that passes show
+  // and paths do not is found out as well.
+  bool small_paths_are_better(const View& small, const image::Image& first, double shrunk) {
+    const double seconds = kTrialPasses * expected_.total() * (1 + rest_share());
+    image::Image second;
+    PassSeconds took;
+    const auto before = seconds_;
+    if (!tracer_.trace(kMaxPasses + 1, small, second, took)) throw Cancelled();
+    seconds_ = before, tracer_.forget_cost();
+    NoisyPicture by_passes{first, first};
+    for (std::size_t p = 0; p < first.pixels.size(); ++p) {
+      by_passes.picture.pixels[p] = 0.5f * (first.pixels[p] + second.pixels[p]);
+      by_passes.difference.pixels[p] = first.pixels[p] - second.pixels[p];
+    }
     PathsBeside paths(*task_.world, small, asked_, sinks_);
-    if (!paths.add(kPathsOfMissed, sinks_)) throw Cancelled();
-    const double missed = missed_by_paths({by_pass, {}}, {paths.sent(), paths.sent_difference()});
-    return missed > kMissed;
+    do {
+      if (!paths.add(2, sinks_)) throw Cancelled();
+    } while (paths.seconds() < shrunk * seconds && paths.paths() < kMaxTrialPaths);
+    const NoisyPicture by_paths{paths.sent(), paths.sent_difference()};
+    if (missed_by_paths(by_passes, by_paths) > kMissed) return false;
+    return passes_over_paths(by_passes, seconds, by_paths, paths.seconds() / shrunk,
+                             paths.light_paths() > 0) > kSmallPassesLookWorse;
   }
   RenderResult by_paths_alone(const char* why) {
     task_.why = why;
