@@ -1,7 +1,6 @@
 #include "denoise/shrinkage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -12,9 +11,9 @@
 namespace lumirank::denoise {
 namespace {
 
-constexpr int kReach = 6;          // pixels, three deviations
-constexpr float kDeviation = 2;    // pixels
-constexpr float kNoiseCounts = 3;  // see shrink()
+constexpr float kDeviation = 2, kWideDeviation = 8;  // pixels
+constexpr float kNoiseCounts = 3;                    // see shrink()
+constexpr float kAroundCounts = 0.125f;
 constexpr float kOfUsual = 0.01f;  // brightness that counts at least, of the mean
 constexpr std::size_t kLinesAtOnce = 16;
 constexpr float kDarkest = 1e-30f;  // black pictures
@@ -22,11 +21,12 @@ constexpr float kDarkest = 1e-30f;  // black pictures
 using Plane = std::vector<float>;
 
 // Over the pixels that are there.
-Plane blurred(const Plane& plane, int width, int height) {
-  std::array<float, 2 * kReach + 1> weight{};
-  for (int k = -kReach; k <= kReach; ++k)
-    weight[static_cast<std::size_t>(k + kReach)] =
-        std::exp(-0.5f * static_cast<float>(k * k) / (kDeviation * kDeviation));
+Plane blurred(const Plane& plane, int width, int height, float deviation) {
+  const int reach = static_cast<int>(3 * deviation);
+  std::vector<float> weight(static_cast<std::size_t>(2 * reach + 1));
+  for (int k = -reach; k <= reach; ++k)
+    weight[static_cast<std::size_t>(k + reach)] =
+        std::exp(-0.5f * static_cast<float>(k * k) / (deviation * deviation));
   const auto along = [&](const Plane& from, std::size_t lines, int length, std::size_t step,
                          std::size_t next) {
     Plane to(from.size());
@@ -34,8 +34,8 @@ Plane blurred(const Plane& plane, int width, int height) {
       for (std::size_t line = begin; line < end; ++line)
         for (int i = 0; i < length; ++i) {
           float sum = 0, weights = 0;
-          for (int k = std::max(-kReach, -i); k <= std::min(kReach, length - 1 - i); ++k) {
-            const float w = weight[static_cast<std::size_t>(k + kReach)];
+          for (int k = std::max(-reach, -i); k <= std::min(reach, length - 1 - i); ++k) {
+            const float w = weight[static_cast<std::size_t>(k + reach)];
             sum += w * from[line * next + static_cast<std::size_t>(i + k) * step];
             weights += w;
           }
@@ -65,14 +65,16 @@ Shrunk shrink(const image::Image& noisy, const image::Image& denoised, const ima
     sum += static_cast<double>(brightness[p]);
   }
   const float least = std::max(kDarkest, kOfUsual * static_cast<float>(sum / static_cast<double>(pixels)));
-  brightness = blurred(brightness, noisy.width, noisy.height);
+  brightness = blurred(brightness, noisy.width, noisy.height, kDeviation);
   for (std::size_t p = 0; p < pixels; ++p) {
     const float scale = 1 / (brightness[p] + least);
     noise[p] = square_sum(difference.pixels[p] * (0.5f * scale));
     distance[p] = square_sum((noisy.pixels[p] - denoised.pixels[p]) * scale);
   }
-  noise = blurred(noise, noisy.width, noisy.height);
-  distance = blurred(distance, noisy.width, noisy.height);
+  const Plane around = blurred(noise, noisy.width, noisy.height, kWideDeviation);
+  noise = blurred(noise, noisy.width, noisy.height, kDeviation);
+  distance = blurred(distance, noisy.width, noisy.height, kDeviation);
+  for (std::size_t p = 0; p < pixels; ++p) noise[p] = std::max(noise[p], kAroundCounts * around[p]);
   double kept = 0;
   for (std::size_t p = 0; p < pixels; ++p) {
     // Written so that what is not finite keeps nothing.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -75,6 +76,21 @@ TEST(Shrinkage, AnEdgeThatWasLostComesBack) {
   EXPECT_LT(rms(shrunk.picture, truth), 0.6 * rms(noisy.mean, truth)) << "and no noise with it elsewhere";
   EXPECT_GT(shrunk.kept, 0.05);
   EXPECT_LT(shrunk.kept, 0.3);
+}
+
+// One pixel in 150 of one half holds nearly all light, as of a lamp that few paths find: most windows are dark
+// in both halves, which is no sign that the picture is.
+TEST(Shrinkage, RareLightLeavesNoHoles) {
+  const Image truth(kWidth, kHeight, Rgb(1));
+  Image mean(kWidth, kHeight, Rgb(0.05f)), difference(kWidth, kHeight);
+  Rng random(5, Stage::projection, 7);
+  for (std::size_t p = 0; p < mean.pixels.size(); ++p)
+    for (const float sign : {1.0f, -1.0f})
+      if (random.next_below(150) == 0) mean.pixels[p] += Rgb(71), difference.pixels[p] += Rgb(142 * sign);
+  const Shrunk shrunk = shrink(mean, truth, difference);
+  float darkest = 1;
+  for (const Rgb& p : shrunk.picture.pixels) darkest = std::min(darkest, p.r);
+  EXPECT_GT(darkest, 0.8f);
 }
 
 // The longer a render takes, the less a denoiser's mistake counts: in the end it is gone.
