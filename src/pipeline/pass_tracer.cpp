@@ -22,6 +22,8 @@ constexpr int kDirectOfPass = 1, kLocalOfPass = 1;
 constexpr double kClampOfPass = 16;
 // Light from places around which fewer lights than these lie is traced.
 constexpr float kNearOfPass = 10;
+// Seconds of a budget below which the survey of lights is brief.
+constexpr double kTimeOfBriefSurvey = 5;
 // What a receiver draws in a whole pass.
 constexpr int kSamplesOfPass = 8;
 
@@ -67,6 +69,7 @@ Recipe PassTracer::recipe_of(std::uint64_t number, const View& view) const {
   recipe.seed = hash_ids(settings_.seed, Stage::passes);
   recipe.pass = number;
   recipe.light_seed = hash_ids(settings_.seed, Stage::passes, ~number);
+  recipe.brief_survey = settings_.time > 0 && settings_.time < kTimeOfBriefSurvey;
   recipe.spp = 1;
   recipe.film_samples = settings_.view.film_samples.value_or(0);
   recipe.first_hits = false;

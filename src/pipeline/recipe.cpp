@@ -100,6 +100,7 @@ transport::LightSettings light_settings(const Recipe& recipe) {
   ls.lobes.least_roughness = least_roughness(recipe);
   ls.traced_direct_below = recipe.traced_below;
   ls.on_gather_samples = recipe.lights.placement == LightPlacement::gather;
+  ls.brief_survey = recipe.brief_survey;
   return ls;
 }
 

@@ -46,6 +46,7 @@ struct Recipe {
   bool first_hits = false;  // what the eye's first hits know is kept, for layers
   bool group_by_emitter = false;  // clusters may not cross emitters, for layers by light
   bool row_albedo = false;        // rows know their albedo, for methods that carry light between frames
+  bool brief_survey = false;      // of lights, by half of the paths
   bool compensated = false;       // what clamping takes is given back by tracing
   int instants = 1, instant = 0;  // of an open shutter: rows are those of one instant of so many
   // Of a shot whose frames have the same lights (shot.h); nullptr: each picture has lights of its own.

@@ -121,7 +121,7 @@ Aim learn_aim(const world::World& world, const world::EmitterChoice& choice, con
   for (int round = 0; round < kRounds; ++round) {
     ParticleSettings settings;
     settings.seed = asked.seed, settings.stage = Stage::pilot;
-    settings.paths = kPathsPerRound, settings.deepest = deepest;
+    settings.paths = asked.brief_survey ? kPathsPerRound / 2 : kPathsPerRound, settings.deepest = deepest;
     settings.first_id = static_cast<std::uint64_t>(round + 1) << 40;  // numbers of its own
     settings.guide = &aim.guide, settings.lobes = asked.lobes;
     const Round found = run_round(world, choice, settings, relevance);

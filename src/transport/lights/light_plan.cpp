@@ -31,8 +31,9 @@ constexpr double kMinUse = 0.7, kMaxUse = 3, kLowShare = 0.25, kUnseenShare = 0.
                  kStrongUnseen = 16;
 
 ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey& survey) {
+  const std::size_t paths = survey.aimed ? kRoulettePaths : kPilotPaths;
   return {
-      settings.seed,     Stage::pilot,  survey.aimed ? kRoulettePaths : kPilotPaths, survey.parts.deepest, 0,
+      settings.seed,     Stage::pilot,  settings.brief_survey ? paths / 2 : paths, survey.parts.deepest, 0,
       &survey.aim.guide, settings.lobes};
 }
 
@@ -229,7 +230,7 @@ LightSurvey survey_lights(const world::World& world, const world::EmitterChoice&
   if (!range) return survey;
   survey.aim.importance.set_range(*range);
   if (settings.on_gather_samples) return survey;
-  survey.level = plan_roulette(std::move(uses), kRoulettePaths, 1).level;
+  survey.level = plan_roulette(std::move(uses), pilot_settings(settings, survey).paths, 1).level;
   if (!(survey.level > 0)) return survey;
   // Paths in parts leave more lights than the uses tell: counted.
   const LightRoulette roulette(survey.aim.importance, survey.level);

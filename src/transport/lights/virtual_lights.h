@@ -52,6 +52,7 @@ struct LightSettings {
   // and lights are kept or left out at random so that all are of about equal use to them: see light_plan.h.
   // The result is unbiased for every receiver either way. Read during the call only.
   const Receivers* receivers = nullptr;
+  bool brief_survey = false;  // by half of the paths
   // Lobes of receivers with a roughness below this get their direct light elsewhere: emitters then get fewer
   // of the lights (if receivers are given; above 1: all lobes).
   float traced_direct_below = 0;
