@@ -165,8 +165,12 @@ class PathRun {
     if (result_.interrupted) choices_ = {};
     result_.picture = sized_for(film_->result().image, task_.view);
     if (result_.interrupted) return;
-    // What is seen straight comes by features of the larger film.
-    const bool apart = view_.width < task_.view.width && options_.emission && denoising_.traced();
+    // What is seen straight comes by features: always of a larger film, else where these have less noise.
+    const bool smaller = view_.width < task_.view.width;
+    const bool apart =
+        options_.emission && denoising_.traced() &&
+        (smaller || (paths() > 1 && own_emission_over_apart(film_->result().image, film_->halves_difference(),
+                                                            film_->sent_difference(), paths(), paths()) > 1));
     const Timer timer;
     image::Image traced = without_fireflies(*film_, options_.emission && !apart);
     if (apart) image::add_to(traced, denoising_.mirrored(traced));

@@ -24,6 +24,8 @@ constexpr float kShines = 0.02f;
 constexpr float kLeastAlbedo = 0.02f;
 // Of the mean light of a frame: what differs by less is not seen.
 constexpr float kUnseenPart = 0.02f;
+// Part of what is interpolated from which on a pixel counts for how much they differ.
+constexpr float kCountsForDetail = 0.02f;
 // Two places are one where they are this near, in distances between pixels, above the surface and along it.
 constexpr float kAbove = 0.7f, kAlong = 2.5f, kSameNormal = 0.9f;
 
@@ -159,6 +161,8 @@ class Shown {
             (1 - std::abs(x - static_cast<float>(u))) * (1 - std::abs(y - static_cast<float>(v)));
         const Rgb here = light_of(q);
         light.value += weight * here, weights += weight;
+        // Where nothing moves a place is in the middle of a pixel, and what lies beside that is no matter.
+        if (weight < kCountsForDetail) continue;
         lowest = min_of(lowest, here), highest = max_of(highest, here);
       }
     // A little of one pixel at the edge of what is hidden says nothing.
