@@ -32,10 +32,10 @@ constexpr int kFewPasses = 4, kDefaultPasses = 16, kMaxPasses = 65536;
 constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8;
 constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
 // What is compared of a small film. Its passes have fewer lights, whose noise they share, and look worse than
-// those of the whole one: of eighteen scenes paths were better in six of the seven where they look so much
-// worse, and passes in ten of eleven where they do not.
+// those of the whole one: of seventeen scenes paths were better in the nine where they look 1.8 times worse
+// and more, and not in the eight where they look up to 1.5 times worse (docs/decisions.md).
 constexpr int kTrialPasses = 2, kMaxTrialPaths = 32;
-constexpr double kSmallPassesLookWorse = 1.9;
+constexpr double kSmallPassesLookWorse = 1.6;
 // After so many passes paths for all light are tried for this part of the passes' seconds, if so many passes
 // more would fit.
 constexpr int kPassesBeforePaths = 2;
