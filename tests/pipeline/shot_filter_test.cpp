@@ -74,6 +74,20 @@ TEST(ShotFilter, NoiseOfStillLightIsAveraged) {
   EXPECT_LT(at_end, 1.6 * after);
 }
 
+// A highlight: each pixel differs much from the next one, but nothing moves.
+TEST(ShotFilter, NoiseIsAveragedBesideOtherLight) {
+  const OfWall steep = [](float x, float) { return std::exp(6 * x); };
+  std::deque<ShotFrame> frames;
+  for (std::uint64_t k = 0; k < 7; ++k) {
+    frames.push_back(frame_of(0, steep));
+    Rng rng(1, Stage::test, k, 0);
+    for (Rgb& color : frames.back().picture.pixels) color *= 1 + 0.1f * (rng.next_float() - 0.5f);
+  }
+  const image::Image clean = frame_of(0, steep).picture;
+  EXPECT_LT(difference(filtered_in_time(frames, 3), clean),
+            difference(frames[3].picture, clean) * 1.15 / std::sqrt(7.0));
+}
+
 TEST(ShotFilter, LightThatChangesEvenlyStays) {
   std::deque<ShotFrame> frames;
   for (int k = 0; k < 7; ++k) frames.push_back(frame_of(0, even(1 + 0.05f * static_cast<float>(k))));
