@@ -126,10 +126,10 @@ class PassRun {
                        static_cast<double>(tracer_.lights_of(small)),
                    took.by_pixel / shrunk};
       features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
-      const bool few = too_few_fit();
+      const bool few = too_few_fit(kUnsure);
       paths_alone_ = few && small_paths_are_better(small, image, shrunk);
       if (paths_alone_) return;
-      const bool half = few && is_dear() && may_be_half(eye_rays / shrunk);
+      const bool half = too_few_fit() && is_dear() && may_be_half(eye_rays / shrunk);
       choose_size(half ? 2 : 1);
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);
@@ -275,10 +275,9 @@ class PassRun {
            static_cast<double>(view_.height);
   }
   // There is no time to find out of the whole film whether paths have less noise.
-  bool too_few_fit() const {
-    const double pass = expected_.total() * (1 + rest_share());
-    const double passes = kUnsure * (kPassesBeforePaths + kWorthATrial);
-    return may_be_paths_alone() && rest_->plan().piloted && passes * pass > left();
+  bool too_few_fit(double times = 1) const {
+    const double pass = expected_.total() * (1 + rest_share()), passes = kPassesBeforePaths + kWorthATrial;
+    return may_be_paths_alone() && rest_->plan().piloted && times * passes * pass > left();
   }
   bool is_dear() const {
     const double pass = expected_.total() * (1 + rest_share());
