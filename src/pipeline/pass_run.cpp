@@ -159,6 +159,7 @@ class PassRun {
   // A film of half the width and height, enlarged, is better than none.
   void choose_size(int at_least) {
     const double whole = expected_.total() * (1 + rest_share());  // a pass of the whole film
+    const double enough = asked_.time - left() + kFewPasses * whole;
     const double passes =
         picture_->denoising().wanted() ? std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass) : 1;
     if (passes * expected_.total() > left()) at_least = 2;
@@ -172,7 +173,6 @@ class PassRun {
     choices_.record("film_divisor", divisor);
     const double left_now = left();
     if (divisor == 1 && expected_.total() <= left_now) return;
-    const double enough = task_.build_seconds + picture_->denoising().seconds() + kFewPasses * whole;
     shortage_ = said({asked_.time, task_.build_seconds, asked_.time < task_.build_seconds, enough},
                      said_of_smaller(divisor));
     sinks_.warn(shortage_);
@@ -281,7 +281,8 @@ class PassRun {
   }
   bool is_dear() const {
     const double pass = expected_.total() * (1 + rest_share());
-    return pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path_seconds();
+    return kFewPasses * pass > left() &&
+           pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path_seconds();
   }
   // Where paths alone would be of a smaller film as well, passes of that one are tried if some fit.
   bool may_be_half(double one_feature) {
