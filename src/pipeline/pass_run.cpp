@@ -37,7 +37,7 @@ constexpr double kRestOfPass = 0.3, kNoiseOfPass = 0.5;
 constexpr int kTrialPasses = 2, kMaxTrialPaths = 32;
 constexpr double kSmallPassesLookWorse = 1.6;
 // After so many passes paths for all light are tried for this part of the passes' seconds, if so many passes
-// more would fit.
+// more would fit; what a pass takes is foretold to this factor.
 constexpr int kPassesBeforePaths = 2;
 constexpr double kPartOfTrial = 0.4, kWorthATrial = 3, kUnsure = 1.25;
 constexpr int kMaxBeside = 1 << 16;
@@ -279,6 +279,7 @@ class PassRun {
     const double pass = expected_.total() * (1 + rest_share()), passes = kPassesBeforePaths + kWorthATrial;
     return may_be_paths_alone() && rest_->plan().piloted && times * passes * pass > left();
   }
+  // Passes are few, and each takes as long as many paths.
   bool is_dear() const {
     const double pass = expected_.total() * (1 + rest_share());
     return kFewPasses * pass > left() &&
