@@ -78,8 +78,8 @@ TEST(Shrinkage, AnEdgeThatWasLostComesBack) {
   EXPECT_LT(shrunk.kept, 0.3);
 }
 
-// One pixel in 150 of one half holds nearly all light, as of a lamp that few paths find: most windows are dark
-// in both halves, which is no sign that the picture is.
+// One pixel in 150 of one half holds nearly all light, as of a lamp that few paths find: most windows are
+// dark in both halves, which is no sign that the picture is.
 TEST(Shrinkage, RareLightLeavesNoHoles) {
   const Image truth(kWidth, kHeight, Rgb(1));
   Image mean(kWidth, kHeight, Rgb(0.05f)), difference(kWidth, kHeight);
