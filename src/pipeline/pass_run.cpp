@@ -354,7 +354,18 @@ class PassRun {
     const int before = paths_->paths();
     const bool whole = !by_paths_ || go_on_by_paths(more);
     choices_.record("more_paths", paths_->paths() - before);
+    if (by_paths_) choose_share();
     return whole;
+  }
+
+  // Passes that are done count too, though paths go on.
+  void choose_share() {
+    constexpr int kParts = 1000;
+    const double share = share_of_passes(passes_over_paths_, passes_seconds_, paths_->seconds());
+    const auto earlier = choices_.earlier("share_of_passes", kParts);
+    const std::int64_t parts = earlier ? *earlier : std::lround(kParts * share);
+    choices_.record("share_of_passes", parts);
+    share_of_passes_ = static_cast<float>(parts) / kParts;
   }
 
   // Theirs, or film samples apart, which go on with them then.
@@ -416,25 +427,53 @@ class PassRun {
 
   // ------------------------------------------------------------ the picture
 
-  // Of what goes on, as the metric of the target for the error counts it.
+  // Of the picture, as the metric of the target for the error counts it.
   double noise() const {
     const ErrorMetric metric = asked_.method.error_metric;
-    if (metric == ErrorMetric::l1) return by_paths_ ? paths_->error() : picture_->noise();
-    if (by_paths_) return noise_by(metric, paths_->picture(), paths_->difference());
+    if (metric == ErrorMetric::l1) return l1_noise();
+    if (by_paths_)
+      return noise_by(metric, with_share_and_emission(paths_->picture()),
+                      with_share_of_noise(paths_->difference()));
     const NoisyPicture passes = picture_->with_noise(*rest_);
     return noise_by(metric, passes.picture, passes.difference);
   }
+  double l1_noise() const {
+    const double of_passes = picture_->noise(), share = share_of_passes_;
+    return by_paths_ ? std::hypot((1 - share) * paths_->error(), share * of_passes) : of_passes;
+  }
   image::Image sent() const {
-    return picture_->with_mirrored(by_paths_ ? paths_->sent() : picture_->sent(*rest_));
+    return picture_->with_mirrored(by_paths_ ? with_share(paths_->sent()) : picture_->sent(*rest_));
+  }
+  // The mean of paths and passes: without emission, with it, and of differences.
+  image::Image with_share(image::Image of_paths) const {
+    if (share_of_passes_ == 0) return of_paths;
+    return shared(std::move(of_paths), picture_->sent(*rest_));
+  }
+  image::Image with_share_and_emission(image::Image of_paths) const {
+    if (share_of_passes_ == 0) return of_paths;
+    return shared(std::move(of_paths),
+                  picture_->with_emission(picture_->with_mirrored(picture_->sent(*rest_))));
+  }
+  image::Image with_share_of_noise(image::Image of_paths) const {
+    if (share_of_passes_ == 0) return of_paths;
+    return shared(std::move(of_paths), picture_->with_noise(*rest_).difference);
+  }
+  image::Image shared(image::Image of_paths, const image::Image& of_passes) const {
+    for (std::size_t p = 0; p < of_paths.pixels.size(); ++p)
+      of_paths.pixels[p] += share_of_passes_ * (of_passes.pixels[p] - of_paths.pixels[p]);
+    return of_paths;
   }
   bool is_smaller() const { return view_.width < whole_.width || view_.height < whole_.height; }
   bool has_own_emission() const { return by_paths_ && own_emission_; }
   // What has noise; and a picture of that kind with all that it lacks.
-  image::Image with_all_noise() const { return has_own_emission() ? paths_->picture() : sent(); }
+  image::Image with_all_noise() const {
+    return has_own_emission() ? with_share_and_emission(paths_->picture()) : sent();
+  }
   image::Image to_denoise() const {
     if (!by_paths_) return with_all_noise();
     image::Image clean = pipeline::without_fireflies(paths_->film(), has_own_emission());
-    return has_own_emission() ? clean : picture_->with_mirrored(std::move(clean));
+    return has_own_emission() ? with_share_and_emission(std::move(clean))
+                              : picture_->with_mirrored(with_share(std::move(clean)));
   }
   Picture finished(const image::Image& image) const {
     return sized_for(has_own_emission() ? image : picture_->with_emission(image), task_.view);
@@ -444,8 +483,8 @@ class PassRun {
   // a speck, which would stay.
   image::Image difference() const {
     if (!by_paths_ || paths_->paths() < PictureDenoising::kPathsForNoise) return {};
-    if (has_own_emission()) return paths_->difference();
-    return picture_->with_mirrored_as_noise(paths_->sent_difference());
+    if (has_own_emission()) return with_share_of_noise(paths_->difference());
+    return picture_->with_mirrored_as_noise(with_share_of_noise(paths_->sent_difference()));
   }
 
   image::Image noise_of_passes() const {
@@ -481,6 +520,7 @@ class PassRun {
       tracer_.estimate().trace.numbers["paths"] = paths_->paths();
       tracer_.estimate().trace.numbers["paths.light_paths"] = paths_->light_paths();
       tracer_.estimate().trace.numbers["passes_over_paths"] = passes_over_paths_;
+      tracer_.estimate().trace.numbers["share_of_passes"] = share_of_passes_;
     }
     auto& numbers = tracer_.estimate().trace.numbers;
     if (result_.interrupted) choices_ = {};
@@ -491,7 +531,7 @@ class PassRun {
     numbers["receivers_per_pixel"] = passes_;
     numbers.erase("sampling_rate");
     if (passes_ > 1) {
-      numbers["error.noise"] = by_paths_ ? paths_->error() : picture_->noise();
+      numbers["error.noise"] = l1_noise();
       numbers["error.estimate"] = noise();
     }
     if (view_.width < task_.view.width)
@@ -545,6 +585,7 @@ class PassRun {
   bool paths_alone_ = false;
   bool by_paths_ = false;      // after the first passes
   bool own_emission_ = false;  // of paths that go on
+  float share_of_passes_ = 0;  // in the mean with paths that go on
   int features_of_paths_ = 0;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   std::string shortage_;

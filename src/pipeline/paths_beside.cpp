@@ -132,4 +132,9 @@ double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, c
   return by_paths > 0 ? worse * by_passes / by_paths : 0;
 }
 
+double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths) {
+  const double of_paths = ratio * ratio * seconds_of_paths;
+  return seconds_of_passes > 0 ? seconds_of_passes / (seconds_of_passes + of_paths) : 0;
+}
+
 }  // namespace lumirank::pipeline

@@ -60,6 +60,10 @@ double missed_by_paths(const NoisyPicture& passes, const NoisyPicture& paths);
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
                          double seconds_of_paths, bool light_paths);
 
+// What passes count in the mean with paths, in 0 … 1, where it has the least variance: both by 1/variance.
+// `ratio`: passes_over_paths().
+double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths);
+
 // Noise of a picture with the emission that its own paths see over that with emission by film samples apart,
 // both once there are `paths` for each pixel, as eyes see it. By its own paths, what a surface and the sky
 // behind it send to a pixel is more when the other is less; a lamp's edge is no better for that, and film

@@ -24,6 +24,19 @@ TEST(PathsBeside, WhatIsComparedIsNoiseForTheSameSeconds) {
   EXPECT_NEAR(passes_over_paths(noise, 1, noise, 10, false), even / std::sqrt(10), 1e-6);
 }
 
+TEST(PathsBeside, PassesCountByOneOverVariance) {
+  EXPECT_DOUBLE_EQ(share_of_passes(1, 3, 3), 0.5);
+  EXPECT_DOUBLE_EQ(share_of_passes(2, 1, 1), 0.2);
+  EXPECT_EQ(share_of_passes(2, 0, 1), 0);
+  // No other share has less variance.
+  const double ratio = 1.3, passes = 2, paths = 5, best = share_of_passes(ratio, passes, paths);
+  const auto variance = [&](double share) {
+    return share * share * ratio * ratio / passes + (1 - share) * (1 - share) / paths;
+  };
+  EXPECT_LT(variance(best), variance(best + 0.01));
+  EXPECT_LT(variance(best), variance(best - 0.01));
+}
+
 // A thousandth of the picture is a window, and the noise of all else is what is seen.
 TEST(PathsBeside, NoiseInTheDarkCounts) {
   NoisyPicture a = even_noise(1, 0.1f), b = a;
