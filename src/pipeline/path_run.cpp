@@ -97,8 +97,8 @@ class PathRun {
     const double worth = denoising_.wanted() ? paths_worth_a_pixel(view_) : kFewPaths;
     const double features = denoising_.seconds_of_feature(*task_.world, small, feature_recipe(), sinks_) *
                             pixels(view_) / pixels(small);
-    const double enough = task_.build_seconds + denoising_.seconds() +
-                          denoising_.feature_seconds(features, asked_.time) + worth * path;
+    // With what pilots took; so it is more than the budget wherever fewer fit.
+    const double enough = asked_.time - left() + denoising_.feature_seconds(features, left()) + worth * path;
     const auto fit = [&] { return (left() - denoising_.feature_seconds(features, left())) / path; };
     int divisor = 1;
     if (is_whole_film(task_.view) && fit() < worth) {

@@ -15,13 +15,6 @@ namespace {
 constexpr double kPilotPixels = 2048;
 constexpr int kRestPaths = 4, kAllPaths = 2;  // of each pixel
 
-struct PilotSums {
-  double rest = 0, deviation = 0, all = 0, brightest = 0;
-  PilotSums operator+(const PilotSums& o) const {
-    return {rest + o.rest, deviation + o.deviation, all + o.all, std::max(brightest, o.brightest)};
-  }
-};
-
 double wanted_light(const pathtrace::Radiance& r, LightPart only) {
   double y = 0;
   if (only != LightPart::indirect) y += static_cast<double>(luminance(r.direct));
@@ -30,6 +23,27 @@ double wanted_light(const pathtrace::Radiance& r, LightPart only) {
 }
 
 }  // namespace
+
+double seen_share(const std::vector<PilotPixel>& rest, const std::vector<PilotPixel>& all,
+                  std::size_t width) {
+  constexpr std::size_t kBlock = 4;
+  double usual = 0, seen = 0;
+  for (const PilotPixel& p : all) usual += p.mean / static_cast<double>(all.size());
+  const std::size_t height = all.size() / width;
+  for (std::size_t y0 = 0; y0 < height; y0 += kBlock)
+    for (std::size_t x0 = 0; x0 < width; x0 += kBlock) {
+      double of_rest = 0, of_all = 0, brightest = 0, pixels = 0;
+      for (std::size_t y = y0; y < std::min(height, y0 + kBlock); ++y)
+        for (std::size_t x = x0; x < std::min(width, x0 + kBlock); ++x, ++pixels) {
+          const PilotPixel& r = rest[y * width + x];
+          of_rest += r.mean, of_all += all[y * width + x].mean;
+          brightest = std::max(brightest, r.brightest);
+        }
+      const double light = std::max(of_all, of_rest) + 0.1 * usual * pixels;
+      if (light > 0) seen += (of_rest - brightest) / light * pixels;
+    }
+  return seen / static_cast<double>(all.size());
+}
 
 int RestPilot::paths() const {
   // E|mean of N − truth| is √(2/π) of its deviation where N is not small.
@@ -46,12 +60,12 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
   const world::Camera camera(whole_film(view, kPilotPixels), world.units());
   const auto width = static_cast<std::size_t>(camera.width());
   const std::size_t pixels = width * static_cast<std::size_t>(camera.height());
-  const auto trace = [&](const pathtrace::PathTracer& tracer, int paths, bool is_rest) {
-    return parallel_sum(pixels, 64, PilotSums{}, [&](std::size_t begin, std::size_t end) {
-      PilotSums sums;
-      if (sinks.cancelled()) return sums;
+  const auto trace = [&](const pathtrace::PathTracer& tracer, int paths) {
+    std::vector<PilotPixel> found(pixels);
+    parallel_for(pixels, 64, [&](std::size_t begin, std::size_t end) {
+      if (sinks.cancelled()) return;
       for (std::size_t p = begin; p < end; ++p) {
-        double sum = 0, squares = 0;
+        double sum = 0, squares = 0, brightest = 0;
         for (int k = 0; k < paths; ++k) {
           const auto number = static_cast<std::uint64_t>(k);
           Rng random(seed, Stage::reference, ~static_cast<std::uint64_t>(p), number);
@@ -60,35 +74,37 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
                            static_cast<float>(p / width) + jitter.y};
           const double y =
               wanted_light(tracer.trace(camera.ray(film, random.next_2d()), p, number), settings.view.only);
-          sum += y, squares += y * y;
-          if (is_rest) sums.brightest = std::max(sums.brightest, y / paths);
+          sum += y, squares += y * y, brightest = std::max(brightest, y / paths);
         }
         const double mean = sum / paths;
-        if (is_rest)
-          sums.rest += mean,
-              sums.deviation += std::sqrt(std::max(0.0, squares - sum * mean) / std::max(1, paths - 1));
-        else
-          sums.all += mean;
+        found[p] = {mean, std::sqrt(std::max(0.0, squares - sum * mean) / std::max(1, paths - 1)), brightest};
       }
-      return sums;
     });
+    return found;
   };
   const Timer timer;
-  const PilotSums found = trace(rest, kRestPaths, true);
+  const std::vector<PilotPixel> rest_found = trace(rest, kRestPaths);
   const double of_rest = timer.seconds() / static_cast<double>(pixels * kRestPaths);
   const Timer all_timer;
-  const double light = trace(all, kAllPaths, false).all;
+  const std::vector<PilotPixel> all_found = trace(all, kAllPaths);
   const double of_all = all_timer.seconds() / static_cast<double>(pixels * kAllPaths);
+  PilotPixel found;
+  double light = 0;
+  for (const PilotPixel& p : rest_found)
+    found.mean += p.mean, found.deviation += p.deviation,
+        found.brightest = std::max(found.brightest, p.brightest);
+  for (const PilotPixel& p : all_found) light += p.mean;
   if (sinks.cancelled()) throw Cancelled();
   RestPilot pilot;
   // The first paths warm the caches; others, which are longer, bound what they take.
   pilot.path_seconds = std::min(of_rest, of_all);
   pilot.whole_path_seconds = of_all;
   // Where only the rest was met, all of the light is rest.
-  const double base = std::max(light, found.rest);
+  const double base = std::max(light, found.mean);
   if (base > 0)
-    pilot.share = found.rest / base, pilot.without_brightest = (found.rest - found.brightest) / base,
+    pilot.share = found.mean / base, pilot.without_brightest = (found.mean - found.brightest) / base,
     pilot.deviation = found.deviation / base;
+  pilot.seen = seen_share(rest_found, all_found, width);
   return pilot;
 }
 

@@ -114,10 +114,11 @@ void add_traced_rows(std::vector<Row>& t) {
   t.push_back(number({"local-near", "", "4", "0 … 1000", "radii",
                       "with local-paths, of spherical lights: places nearer than this are traced"},
                      At<&S::traced, &TracedLightSettings::local_near>{}, 0, 1000));
-  t.push_back(choice({"rest", "", "auto", "", "",
-                      "paths that columns cannot carry: leave out, add by path tracing (noisy), or add "
-                      "where a pilot finds that they bring more than 0.5 % of the light"},
-                     At<&S::traced, &TracedLightSettings::rest>{}));
+  t.push_back(
+      choice({"rest", "", "auto", "", "",
+              "paths that columns cannot carry: leave out, add by path tracing (noisy), or add "
+              "where a pilot finds that they bring more than 0.5 % of the light, or shapes that are seen"},
+             At<&S::traced, &TracedLightSettings::rest>{}));
   t.push_back(
       choice({"panes", "", "straight", "", "",
               "flat, thin sheets of smooth glass: let light go straight on, also towards what it lights, "

@@ -64,17 +64,21 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
   truth.view = s.view;
   truth.seed = 5;
   const double expected = mean_of(reference(scene, truth, {.spp = 256}).picture);
-  for (const std::int64_t own_emission : {0, 1}) {
-    s.choices = {{"film_divisor", {1}}, {"eighths_of_pass", {8, 8}}, {"passes", {2}},
-                 {"trial_paths", {2}},  {"by_paths", {1}},           {"own_emission", {own_emission}},
-                 {"more_paths", {126}}};
+  using Case = std::pair<std::int64_t, std::int64_t>;
+  for (const auto& [own_emission, share_of_passes] : {Case{0, 0}, Case{1, 0}, Case{0, 400}, Case{1, 400}}) {
+    SCOPED_TRACE(testing::Message() << own_emission << ", " << share_of_passes);
+    s.choices = {{"film_divisor", {1}}, {"eighths_of_pass", {8, 8}},
+                 {"passes", {2}},       {"trial_paths", {2}},
+                 {"by_paths", {1}},     {"own_emission", {own_emission}},
+                 {"more_paths", {126}}, {"share_of_passes", {share_of_passes}}};
     const RenderResult result = render(scene, s);
     EXPECT_EQ(said(result)["method"], "path-tracing");
     EXPECT_EQ(said(result)["paths"], 128);
     EXPECT_EQ(said(result)["choices"]["by_paths"][0], 1);
-    EXPECT_NEAR(mean_of(result.picture), expected, 0.03 * expected) << own_emission;
+    EXPECT_FLOAT_EQ(said(result)["share_of_passes"].get<float>(), static_cast<float>(share_of_passes) / 1000);
+    EXPECT_NEAR(mean_of(result.picture), expected, 0.03 * expected);
     const RenderSettings again = render_settings_from_report(result.report.json());
-    EXPECT_EQ(result.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb) << own_emission;
+    EXPECT_EQ(result.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb);
   }
 }
 

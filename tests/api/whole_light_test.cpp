@@ -115,5 +115,28 @@ TEST(WholeLight, PathsByTheNoiseThatTheyAdd) {
   EXPECT_TRUE(pilot.matters());
 }
 
+// A caustic on a hundredth of the film doubles its light there, in two paths of each of its blocks.
+TEST(WholeLight, ASmallCausticIsSeen) {
+  using pipeline::PilotPixel;
+  constexpr std::size_t kWidth = 64, kHeight = 32;
+  const std::vector<PilotPixel> all(kWidth * kHeight, {1, 0, 0.5});
+  std::vector<PilotPixel> rest(kWidth * kHeight);
+  for (std::size_t y = 8; y < 12; ++y)
+    for (std::size_t x = 20; x < 24; ++x) rest[y * kWidth + x] = {0.5, 0, 0.25};
+  const double block = 16, pixels = kWidth * kHeight;
+  const double of_block = (0.5 * block - 0.25) / (1.1 * block);
+  EXPECT_NEAR(pipeline::seen_share(rest, all, kWidth), of_block * block / pixels, 1e-12);
+  // One path of each hundred pixels, as bright: noise, of which no place is known.
+  std::vector<PilotPixel> spread(kWidth * kHeight);
+  for (std::size_t y = 0; y < kHeight; y += 8)
+    for (std::size_t x = 0; x < kWidth; x += 8) spread[y * kWidth + x] = {0.25, 0.5, 0.25};
+  EXPECT_EQ(pipeline::seen_share(spread, all, kWidth), 0);
+  pipeline::RestPilot pilot;
+  pilot.share = pilot.without_brightest = 0.003;
+  EXPECT_FALSE(pilot.matters());
+  pilot.seen = 0.002;
+  EXPECT_TRUE(pilot.matters());
+}
+
 }  // namespace
 }  // namespace lumirank
