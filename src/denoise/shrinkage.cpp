@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kDeviation = 2, kWideDeviation = 8;  // pixels
 constexpr float kNoiseCounts = 3;                    // see shrink()
-constexpr float kAroundCounts = 0.125f;              // the same
+constexpr float kAroundCounts = 0.125f;              // see shrink()
 constexpr float kOfUsual = 0.01f;                    // brightness that counts at least, of the mean
 constexpr std::size_t kLinesAtOnce = 16;
 constexpr float kDarkest = 1e-30f;  // black pictures
