@@ -117,7 +117,6 @@ class PassRun {
       PassSeconds took;
       const auto before = seconds_;
       if (!tracer_.trace(kMaxPasses, small, image, took)) throw Cancelled();
-      const double eye_rays = seconds_["receivers"];
       seconds_ = before, tracer_.forget_cost();
       seconds_["pilot"] = took.total();
       const double shrunk = static_cast<double>(small.width) * static_cast<double>(small.height) /
@@ -125,11 +124,13 @@ class PassRun {
       expected_ = {took.fixed * static_cast<double>(tracer_.lights_of(view_)) /
                        static_cast<double>(tracer_.lights_of(small)),
                    took.by_pixel / shrunk};
-      features_expected_ = picture_->denoising().feature_seconds(eye_rays / shrunk, left());
+      const double one_feature = picture_->denoising().seconds_of_feature(
+          *task_.world, small, tracer_.recipe_of(kMaxPasses, small), sinks_);
+      features_expected_ = picture_->denoising().feature_seconds(one_feature / shrunk, left());
       const bool few = too_few_fit(kUnsure);
       paths_alone_ = few && small_paths_are_better(small, image, shrunk);
       if (paths_alone_) return;
-      const bool half = too_few_fit() && is_dear() && may_be_half(eye_rays / shrunk);
+      const bool half = too_few_fit() && is_dear() && may_be_half(one_feature / shrunk);
       choose_size(half ? 2 : 1);
     } else if (timed()) {
       const auto divisor = choices_.earlier("film_divisor", kMaxDivisorOfPasses).value_or(1);

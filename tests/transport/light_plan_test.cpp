@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -121,6 +122,30 @@ TEST(LightRoulette, KeepsTheEnergyBalanceOfAFurnace) {
     const double bound = test::student_quantile(kAlpha, kDepths, kSeeds - 1) * m.standard_error;
     EXPECT_NEAR(m.mean, expected, bound + 1e-5 * expected) << "depth " << k;
   }
+}
+
+// Some models of white surfaces give back more than they receive, so that between two of them light has no
+// sum and a path that is split where it is heavy never ends.
+TEST(LightRoulette, PathsEndBetweenWallsThatGiveBackMoreThanTheyReceive) {
+  constexpr float kReflectance = 1.1f;
+  constexpr std::size_t kPaths = 20, kMaxLights = 20000;
+  const auto world = lit_furnace(kReflectance).build();
+  const world::EmitterChoice choice(world);
+  std::vector<LightImportance::Site> sites;
+  for (const Vec3f axis : {Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}})
+    for (const float side : {-1.0f, 1.0f}) sites.push_back({axis * side, axis * -side, 1, true});
+  const LightImportance importance(sites);
+  const LightRoulette roulette(importance, kReflectance * 4 * kPi);  // the use of a path's first light
+  const ParticleTracer tracer(world, choice, {1, Stage::particles, kPaths, -1, 0, nullptr, {}, &roulette});
+  LightBatch batch;
+  for (std::size_t path = 0; path < kPaths; ++path) {
+    tracer.trace(path, batch);
+    ASSERT_LT(batch.lights.size(), kMaxLights) << "path " << path;
+  }
+  EXPECT_GT(batch.lights.size(), 20 * kPaths);  // they do go on
+  // No gain but eight times, and what roulette by depth pays back.
+  for (const LightRecord& light : batch.lights)
+    EXPECT_LT(light.power.r * kPaths, 9 * 4 * kPi * std::pow(0.9, -std::max(0, light.depth - 32)));
 }
 
 // A closed room under a sky and a low sun; both come in by an opening of a hundredth of one wall.

@@ -17,6 +17,10 @@ using scatter::LobeKind;
 // nothing.
 constexpr int kDeep = 32;
 constexpr float kDeepSurvival = 0.9f;
+// Of the level at which a path started, or was split: more is not believed. White surfaces of some models
+// give back more than they receive (Mitsuba's principled up to a twentieth and more), and between two of them
+// a path would gain flux without end, and split without end.
+constexpr float kMaxGain = 8;
 // A path that waits in this many parts is split no further.
 constexpr std::size_t kMaxPending = 256;
 
@@ -136,7 +140,7 @@ int ParticleTracer::leave(LightRecord& light, const Closure& shining, Visit& vis
       if (visit.rng.next_double() >= keep) return 1;
       light.power *= static_cast<float>(1 / keep);
     }
-    if (visit.pending.size() < kMaxPending) copies = settings_.roulette->parts(use);
+    if (visit.pending.size() < kMaxPending && light.depth < kDeep) copies = settings_.roulette->parts(use);
   }
   if (!is_finite(light.power)) return copies;
   if (!shining.is_lambertian()) light.closure = visit.batch.closures.add(shining, light.normal);
@@ -158,8 +162,13 @@ bool ParticleTracer::scatter_on(const world::SurfaceHit& hit, const Closure& clo
   if (settings_.deepest >= 0 && branch.depth > settings_.deepest) return false;
   // Whatever is left above or below the starting level is paid back in the chance to survive, so that all
   // lights of an emitter have about the same power.
-  float survival = std::min(1.0f, max_component(flux) / branch.level);
-  if (branch.depth > kDeep) survival = std::min(survival, kDeepSurvival);
+  const float gain = max_component(flux) / branch.level;
+  if (gain > kMaxGain) flux *= kMaxGain / gain;
+  float survival = std::min(1.0f, gain);
+  if (branch.depth > kDeep && survival > kDeepSurvival) {
+    branch.level *= survival / kDeepSurvival;  // what is paid back for depth is no gain
+    survival = kDeepSurvival;
+  }
   if (!(survival > 0) || (survival < 1 && rng.next_float() >= survival)) return false;
   flux *= 1 / survival;
   if (!is_finite(flux)) return false;
