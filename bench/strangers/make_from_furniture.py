@@ -24,7 +24,7 @@ from make_in_blender import box, glow, material, plane  # noqa: E402
 
 
 class Catalog:
-    """What SketchUp-like programs offer: models with their sizes in centimeters."""
+    """Models by name, with their sizes in meters."""
 
     def __init__(self, root, scratch):
         self.models = {}
