@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.h"
 #include "film/filter.h"
@@ -90,16 +91,20 @@ FilmInput film_input(const Prepared& prepared) {
 image::Image develop(const FilmInput& film, std::span<const Rgb> sums, FilmParts parts, FilmFits* fits) {
   if (film.recipe.film_samples == 0)
     return develop(film.view, film.rows, sample_values(film.rows, film.traced, sums, parts));
-  const std::vector<Rgb> light = light_of_receivers(film, sums, parts);
-  const auto window = receiver_settings(film.recipe, film.view);
-  const ReceiverFinder finder(seen_rows(film.rows, film.traced), {window.crop_x, window.crop_y});
+  const bool lit = parts.matrix || parts.traced_direct || parts.traced_indirect;
+  std::vector<Rgb> light;
+  std::optional<ReceiverFinder> finder;
+  if (lit) {
+    light = light_of_receivers(film, sums, parts);
+    const auto window = receiver_settings(film.recipe, film.view);
+    finder.emplace(seen_rows(film.rows, film.traced), Vec2i{window.crop_x, window.crop_y});
+  }
   film::TiledSplat splat = tiled_splat(film.view);
   struct OfTile {
     FilmFits fits;
     std::vector<ReceiverFinder::Near> near;
   };
   std::vector<OfTile> of_tile(splat.tiles());
-  const bool lit = parts.matrix || parts.traced_direct || parts.traced_indirect;
   image::Image image = develop_samples(
       film, splat, false,
       [&](std::size_t tile, FilmEye& eye, Vec2i pixel, const transport::FilmSample& sample, const auto&) {
@@ -108,9 +113,9 @@ image::Image develop(const FilmInput& film, std::span<const Rgb> sums, FilmParts
         auto& [counted, near] = of_tile[tile];
         for (const transport::EyeVertex& v : eye.vertices()) {
           if (is_black(v.weight * v.albedo)) continue;
-          const FilmFit fit = finder.find(pixel, sample.film, v, eye.footprint(v), near);
+          const FilmFit fit = finder->find(pixel, sample.film, v, eye.footprint(v), near);
           ++counted.count[static_cast<std::size_t>(fit)];
-          value += v.weight * finder.light(v, near, light);
+          value += v.weight * finder->light(v, near, light);
         }
         return value;
       });

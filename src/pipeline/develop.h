@@ -20,7 +20,8 @@ struct FilmParts {
 // What `only` leaves of the picture.
 FilmParts wanted_parts(LightPart only);
 
-// What a picture is made of beside row sums. Must outlive the call.
+// What a picture is made of beside row sums, rows and traced light only where some of it is wanted. Must
+// outlive the call.
 struct FilmInput {
   const world::World& world;
   const View& view;

@@ -26,11 +26,17 @@ class PassPicture {
   const PictureDenoising& denoising() const { return denoising_; }
   void make_smaller(int divisor) { denoising_.make_smaller(divisor); }
 
-  // Pass `number` of `wanted`; `sent`: what surfaces send; `weight` in their mean. `film`: as the pass had
-  // it, with a recipe whose seeds are for film samples; `left`: seconds of the budget, 0 without one. False
-  // if it was cancelled.
-  bool add(int number, int wanted, const image::Image& sent, double weight, const FilmInput& film,
-           double left, const Sinks& sinks);
+  struct Pass {
+    int number;     // how often all pixels have been shown before
+    int wanted;     // so many numbers
+    double weight;  // in the mean
+    film::PixelLattice pixels;
+    bool begins;  // showing all pixels once more
+  };
+  // `sent`: what surfaces send. `film`: as the pass had it, with a recipe whose seeds are for film samples;
+  // `left`: seconds of the budget, 0 without one. False if it was cancelled.
+  bool add(const Pass& pass, const image::Image& sent, const FilmInput& film, double left,
+           const Sinks& sinks);
 
   // Features of one sample more, for who adds paths.
   bool trace_another(int number, const Sinks& sinks) { return denoising_.trace_another(number, sinks); }

@@ -7,10 +7,12 @@ namespace lumirank::pipeline {
 namespace {
 
 // Sizes of passes in eighths: a smaller one is not worth its receivers, a larger one not its lights.
+// Of interleaved pixels, neighbors do not share lights, and a large pass for each is as good as two small
+// ones.
 constexpr int kMinOfFirst = 3, kMin = 2, kMax = 12;
-// Passes that there shall be: their halves tell the noise. But two that are larger are better than three
-// below this size.
-constexpr int kWantedPasses = 3, kMinOfThree = 4;
+// How often all pixels shall be shown: halves tell the noise. But two passes that are larger are better than
+// three below this size, and one of interleaved pixels is better than two.
+constexpr int kWantedFilms = 3, kMinOfThree = 4, kMinInterleaved = 6;
 // Of what is left a pass is planned for, since no two take the same time.
 constexpr double kPlanned = 0.98;
 constexpr double kLeastSeconds = 1e-3;
@@ -30,21 +32,31 @@ void PassPlan::took(int eighths, double seconds, double drawing) {
   expect((seconds_ - drawing_) / weight_, drawing_ / eighths_);
 }
 
+int PassPlan::eighths_of(int passes, double seconds) const {
+  const double most = parts_ > 1 ? kMost : kMax;
+  return static_cast<int>(std::floor(std::clamp((seconds / passes - fixed_) / per_eighth_, 0.0, most)));
+}
+
+int PassPlan::passes_wanted(double left) const {
+  const int fitting = static_cast<int>(std::clamp(std::round(left / whole()), 1.0, 65536.0));
+  if (passes_ + fitting >= kWantedFilms * parts_) return fitting;
+  for (int films = kWantedFilms; films > 1; --films) {
+    const int passes = films * parts_ - passes_;
+    int least = parts_ > 1 ? kMinInterleaved : films == kWantedFilms ? kMinOfThree : kMinOfFirst;
+    if (films < kWantedFilms && whole_film_is_shown()) least = kMin;
+    if (passes > 0 && eighths_of(passes, left) >= least) return passes;
+  }
+  return whole_film_is_shown() ? fitting : parts_ - passes_;
+}
+
 int PassPlan::next(double left) const {
-  const bool first = passes_ == 0;
-  if (!resizes_) return first || whole() < left ? kWhole : 0;
+  if (!resizes_) return !whole_film_is_shown() || whole() < left ? kWhole : 0;
   const double planned = kPlanned * left;
-  const auto in_one_of = [&](int passes) {
-    return static_cast<int>(
-        std::floor(std::clamp((planned / passes - fixed_) / per_eighth_, 0.0, 1.0 * kMax)));
-  };
-  const int least = first ? kMinOfFirst : kMin;
-  int passes = static_cast<int>(std::clamp(std::round(planned / whole()), 1.0, 65536.0));
-  passes = std::max(passes, kWantedPasses - passes_);
-  while (passes > 1 && in_one_of(passes) < (passes_ + passes < kWantedPasses ? least : kMinOfThree)) --passes;
-  const int eighths = in_one_of(passes);
-  if (eighths >= least) return eighths;
-  return first ? kMinOfFirst : 0;
+  int passes = passes_wanted(planned);
+  while (whole_film_is_shown() && passes > 1 && eighths_of(passes, planned) < kMin) --passes;
+  const int eighths = eighths_of(passes, planned);
+  if (!whole_film_is_shown()) return std::max(kMinOfFirst, eighths);
+  return eighths >= kMin ? eighths : 0;
 }
 
 }  // namespace lumirank::pipeline

@@ -53,6 +53,13 @@ constexpr double kMissed = 0.03;
 // Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
 // takes two of these at least, which was a third of ten seconds among thousands of lamps.
 constexpr double kDearPath = 0.75;
+// Films below which passes are of interleaved pixels.
+constexpr int kMaxSide = 2;
+constexpr double kManyFilms = 4;
+constexpr double kLeastLeft = 1e-3;  // seconds
+// Whole films by passes of interleaved pixels that are worth more than films of half the size: one for so
+// many pixels. The least that counts as one.
+constexpr double kPixelsOfFilm = 300000, kLeastFilm = 0.75, kMostFilms = 3;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
@@ -94,9 +101,9 @@ class PassRun {
       set_size();
       if (!pass(passes_)) break;
       ++passes_;
-      if (passes_ == kPassesBeforePaths && !compare_with_paths()) break;
+      if (passes_ == kPassesBeforePaths * tracer_.parts() && !compare_with_paths()) break;
     }
-    if (passes_ == 0) throw Cancelled();
+    if (films() == 0) throw Cancelled();
     return picture();
   }
 
@@ -104,12 +111,17 @@ class PassRun {
   bool timed() const { return asked_.time > 0; }
   bool replays() const { return !asked_.choices.empty(); }
 
+  // How often every pixel has been shown.
+  int films() const { return passes_ / tracer_.parts(); }
+
   // What takes longer the larger a pass is.
   double seconds_drawing() { return seconds_["method"] + seconds_["lights"]; }
 
   // ------------------------------------------------------------ how many
 
   void plan() {
+    const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
+    as_asked_ = by_hand > 0;
     if (timed() && !replays()) {
       // Not kept: its pixels are too large.
       const View small = smaller(view_, kTrialDivisor);
@@ -137,8 +149,7 @@ class PassRun {
       choices_.record("film_divisor", divisor);
       make_smaller(static_cast<int>(divisor));
     }
-    const int by_hand = asked_.passes > 0 ? asked_.passes : asked_.view.spp.value_or(0);
-    as_asked_ = by_hand > 0;
+    if (timed()) interleave();
     wanted_ = as_asked_ ? by_hand
               : timed() || asked_.method.target_error > 0
                   ? kMaxPasses
@@ -146,10 +157,11 @@ class PassRun {
     if (timed()) {
       if (const auto earlier = choices_.earlier("passes", kMaxPasses)) wanted_ = static_cast<int>(*earlier);
     }
-    plan_ = PassPlan(resizes());
+    plan_ = PassPlan(resizes(), tracer_.parts());
     const double with_rest = 1 + rest_share();
-    plan_.expect((1 - kDrawingShare) * expected_.by_pixel * with_rest,
-                 (expected_.fixed + kDrawingShare * expected_.by_pixel) * with_rest / PassPlan::kWhole);
+    const double by_pixel = with_rest * expected_.by_pixel / tracer_.parts();
+    const double fixed = with_rest * expected_.fixed / std::sqrt(tracer_.parts());
+    plan_.expect((1 - kDrawingShare) * by_pixel, (fixed + kDrawingShare * by_pixel) / PassPlan::kWhole);
   }
 
   void make_smaller(int divisor) {
@@ -157,27 +169,48 @@ class PassRun {
     picture_->make_smaller(divisor);
   }
 
+  // Few passes are each of some of the pixels, so that what these share by their lights is noise among
+  // neighbors; a film of them takes twice as many lights.
+  void interleave() {
+    int side = may_interleave() && left() < kManyFilms * (2 * expected_.fixed + expected_.by_pixel) ? 2 : 1;
+    if (const auto earlier = choices_.earlier("interleaved", kMaxSide); earlier && may_interleave())
+      side = static_cast<int>(*earlier);
+    choices_.record("interleaved", side);
+    tracer_.interleave(side);
+  }
+  // Pixels have filters of their own then, and film samples the light of their receivers.
+  bool may_interleave() const {
+    return resizes() && picture_->denoising().wanted() && !asked_.view.film_samples;
+  }
+
   // A film of half the width and height, enlarged, is better than none.
   void choose_size(int at_least) {
     const double whole = expected_.total() * (1 + rest_share());  // a pass of the whole film
     const double enough = asked_.time - left() + kFewPasses * whole;
-    const double passes =
-        picture_->denoising().wanted() ? std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass) : 1;
-    if (passes * expected_.total() > left()) at_least = 2;
+    if (films_worth_a_pixel() * expected_.total() > left()) at_least = 2;
     int divisor = 1;
     const bool may = is_whole_film(task_.view);
-    while (may && divisor < kMaxDivisorOfPasses && (divisor < at_least || expected_.total() > left())) {
+    while (may && divisor < kMaxDivisorOfPasses && (divisor < at_least || least_film() > left())) {
       divisor *= 2;
       make_smaller(divisor);
       expected_.by_pixel /= 4;
     }
     choices_.record("film_divisor", divisor);
     const double left_now = left();
-    if (divisor == 1 && expected_.total() <= left_now) return;
+    if (divisor == 1 && least_film() <= left_now) return;
     shortage_ = said({asked_.time, task_.build_seconds, asked_.time < task_.build_seconds, enough},
                      said_of_smaller(divisor));
     sinks_.warn(shortage_);
   }
+  // How often every pixel shall be shown; less often, half the film is better.
+  double films_worth_a_pixel() const {
+    if (!picture_->denoising().wanted()) return 1;
+    if (!may_interleave()) return std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass);
+    const double pixels = static_cast<double>(whole_.width) * static_cast<double>(whole_.height);
+    return std::clamp(pixels / kPixelsOfFilm, kLeastFilm, kMostFilms);
+  }
+  // Seconds, by passes with fewer lights where they may have these.
+  double least_film() const { return (may_interleave() ? kLeastFilm : 1) * expected_.total(); }
 
   // Passes may have other numbers of lights, of which receivers draw as many fewer or more.
   bool resizes() const {
@@ -187,7 +220,7 @@ class PassRun {
   void set_size() {
     int eighths = next_eighths_;
     if (timed()) {
-      if (const auto earlier = choices_.earlier("eighths_of_pass", 2 * PassPlan::kWhole))
+      if (const auto earlier = choices_.earlier("eighths_of_pass", PassPlan::kMost))
         eighths = static_cast<int>(*earlier);
       choices_.record("eighths_of_pass", eighths);
     }
@@ -203,8 +236,9 @@ class PassRun {
     next_eighths_ = timed() && !as_asked_ ? plan_.next(left()) : PassPlan::kWhole;
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
-    if (passes_ == 0) return true;
-    if (asked_.method.target_error > 0 && passes_ >= 4 && noise() < asked_.method.target_error) return false;
+    if (films() == 0) return true;
+    if (asked_.method.target_error > 0 && films() >= kFewPasses && noise() < asked_.method.target_error)
+      return false;
     return !timed() || replays() || as_asked_ || next_eighths_ > 0;
   }
 
@@ -218,16 +252,22 @@ class PassRun {
     plan_.took(tracer_.eighths(), clock_() - begin, seconds_drawing() - drawn_before);
     Recipe of_film = tracer_.recipe_of(static_cast<std::uint64_t>(number), view_);
     of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
-    const Timer timer;
     // A pass has as many samples as its size.
     const double weight = static_cast<double>(tracer_.eighths()) / PassPlan::kWhole;
-    if (!picture_->add(number, wanted_, image, weight,
+    const PassPicture::Pass shown{number / tracer_.parts(), wanted_, weight,
+                                  of_film.pixels.in_window(view_.crop_x, view_.crop_y),
+                                  number % tracer_.parts() == 0};
+    of_film.pixels = {};
+    const double rest_of_film = (tracer_.parts() - 1) * passes_seconds_;
+    const Timer timer;
+    if (!picture_->add(shown, image,
                        {*task_.world, view_, of_film, *tracer_.prepared()->rows, tracer_.traced()},
-                       timed() ? left() : 0, sinks_))
+                       timed() ? std::max(kLeastLeft, left() - rest_of_film) : 0, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     report_progress(number + 1);
-    if (previews_ && throttle_.due()) throttle_.show(sized_for(picture_->with_emission(sent()), task_.view));
+    if (previews_ && number + 1 >= tracer_.parts() && throttle_.due())
+      throttle_.show(sized_for(picture_->with_emission(sent()), task_.view));
     return true;
   }
 
@@ -243,13 +283,13 @@ class PassRun {
     const double all = static_cast<double>(view_.width) * static_cast<double>(view_.height) *
                        rest_->plan().pilot.path_seconds;
     if (!timed() || !(all > 0)) return kRestUntimed;
-    const double of_pass = passes_ >= kFewPasses ? picture_->noise() * std::sqrt(passes_) : kNoiseOfPass;
+    const double of_pass = films() >= kFewPasses ? picture_->noise() * std::sqrt(films()) : kNoiseOfPass;
     return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kMinRest,
                       kMaxRest);
   }
   bool add_rest(double pass_seconds) {
     if (rest_->plan().paths == 0) return true;
-    rest_due_ += rest_per_pass(pass_seconds);
+    rest_due_ += rest_per_pass(tracer_.parts() * pass_seconds) / tracer_.parts();
     int paths = std::max(passes_ == 0 ? 1 : 0, static_cast<int>(rest_due_));
     if (timed()) {
       if (const auto earlier = choices_.earlier("rest_of_pass", static_cast<int>(kMaxRest) + 1))
@@ -283,8 +323,9 @@ class PassRun {
   // Passes are few, and each takes as long as many paths.
   bool is_dear() const {
     const double pass = expected_.total() * (1 + rest_share());
+    const bool is_only_one = least_film() * (1 + rest_share()) > left();
     return kFewPasses * pass > left() &&
-           pass > (pass > left() ? kPathsOfOnlyPass : kPathsOfPass) * path_seconds();
+           pass > (is_only_one ? kPathsOfOnlyPass : kPathsOfPass) * path_seconds();
   }
   // Where paths alone would be of a smaller film as well, passes of that one are tried if some fit.
   bool may_be_half(double one_feature) {
@@ -381,7 +422,7 @@ class PassRun {
 
   bool try_paths() {
     const auto earlier = choices_.earlier("trial_paths", kMaxBeside);
-    const double pass = passes_seconds_ / passes_;
+    const double pass = passes_seconds_ / films();
     if (earlier ? *earlier == 0 : left() < kWorthATrial * pass || path_seconds() > kDearPath * pass)
       return true;
     paths_.emplace(*task_.world, view_, asked_, sinks_);
@@ -489,7 +530,7 @@ class PassRun {
   }
 
   image::Image noise_of_passes() const {
-    return passes_ > 1 ? picture_->with_noise(*rest_).difference : image::Image{};
+    return films() > 1 ? picture_->with_noise(*rest_).difference : image::Image{};
   }
 
   RenderResult picture() {
@@ -528,10 +569,9 @@ class PassRun {
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
     numbers["rest.paths"] = rest_->paths();
     numbers["rest.light_paths"] = rest_->light_paths();
-    numbers["passes"] = passes_;
-    numbers["receivers_per_pixel"] = passes_;
+    numbers["passes"] = numbers["receivers_per_pixel"] = static_cast<double>(passes_) / tracer_.parts();
     numbers.erase("sampling_rate");
-    if (passes_ > 1) {
+    if (films() > 1) {
       numbers["error.noise"] = l1_noise();
       numbers["error.estimate"] = noise();
     }
@@ -544,7 +584,7 @@ class PassRun {
     if (!shortage_.empty()) tracer_.estimate().trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*tracer_.prepared(), tracer_.traced(), asked_, *task_.info,
                                  tracer_.estimate(), tracer_.cost(), choices_.made());
-    if (passes_ > 1)
+    if (films() > 1)
       result_.report.notes["error.of"] =
           said_of_noise(asked_.method.error_metric, by_paths_ ? "paths" : "passes");
     if (by_paths_) result_.report.method = kByPaths;

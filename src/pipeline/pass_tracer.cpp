@@ -67,7 +67,9 @@ Recipe PassTracer::recipe_of(std::uint64_t number, const View& view) const {
   recipe.gathered = of_pass.traced.local_paths > settings_.traced.local_paths &&
                     settings_.view.only == LightPart::all && !settings_.view.film_samples;
   recipe.seed = hash_ids(settings_.seed, Stage::passes);
-  recipe.pass = number;
+  const auto parts = static_cast<std::uint64_t>(this->parts());
+  recipe.pass = number / parts;
+  recipe.pixels = film::interleaved(side_, static_cast<int>(number % parts));
   recipe.light_seed = hash_ids(settings_.seed, Stage::passes, ~number);
   recipe.brief_survey = settings_.time > 0 && settings_.time < kTimeOfBriefSurvey;
   recipe.spp = 1;
@@ -81,7 +83,7 @@ Recipe PassTracer::recipe_of(std::uint64_t number, const View& view) const {
 
 std::size_t PassTracer::lights_of(const View& view) const {
   if (settings_.lights.count) return *settings_.lights.count;
-  const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
+  const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height) / parts();
   const double part = static_cast<double>(eighths_) / PassPlan::kWhole;
   return std::clamp(static_cast<std::size_t>(part * kLightsOfRoot * std::sqrt(pixels)), kMinLightsOfPass,
                     kMaxLightsOfPass);

@@ -33,10 +33,15 @@ class PassTracer {
   // In eighths of a usual pass (PassPlan): lights, and draws of each receiver.
   void set_size(int eighths);
   int eighths() const { return eighths_; }
+  // Each pass after this has one of side² sets of interleaved pixels, so many of them a pass of the film.
+  void interleave(int side) { side_ = side; }
+  int parts() const { return side_ * side_; }
 
   Recipe recipe_of(std::uint64_t number, const View& view) const;
+  // Of one pass.
   std::size_t lights_of(const View& view) const;
-  // What surfaces send, without emission that is seen. False if it was cancelled.
+  // What surfaces send, without emission that is seen; black in pixels that the pass has not. False if it was
+  // cancelled.
   bool trace(std::uint64_t number, const View& view, image::Image& image, PassSeconds& took);
 
   // Of the last pass.
@@ -56,7 +61,7 @@ class PassTracer {
   std::map<std::string, double>& seconds_;
   FilmParts sent_;
   SharedSurvey survey_;
-  int eighths_;
+  int eighths_, side_ = 1;
   SharedPrepared prepared_;
   TracedLight traced_;
   methods::Estimate estimate_;

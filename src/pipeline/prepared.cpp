@@ -194,7 +194,7 @@ bool same_rows(const Recipe& a, const Recipe& b) {
   return a.seed == b.seed && a.pass == b.pass && a.spp == b.spp && a.film_samples == b.film_samples &&
          a.only == b.only && a.traced_below == b.traced_below && a.sharp_below == b.sharp_below &&
          a.local_paths == b.local_paths && a.gathered == b.gathered && a.first_hits == b.first_hits &&
-         a.instants == b.instants && a.instant == b.instant;
+         a.instants == b.instants && a.instant == b.instant && a.pixels == b.pixels;
 }
 
 bool same_columns(const Recipe& a, const Recipe& b) {

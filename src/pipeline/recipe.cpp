@@ -87,6 +87,7 @@ transport::ReceiverSettings receiver_settings(const Recipe& recipe, const View& 
   rs.crop_height = std::min(film.height, view.crop_y + view.height + reach) - rs.crop_y;
   rs.first_hits = recipe.first_hits;
   rs.instants = recipe.instants, rs.instant = recipe.instant;
+  rs.pixels = recipe.pixels;
   return rs;
 }
 

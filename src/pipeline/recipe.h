@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "film/pixel_lattice.h"
 #include "lumirank/settings.h"
 #include "methods/method.h"
 #include "pathtrace/reference.h"
@@ -49,6 +50,7 @@ struct Recipe {
   bool brief_survey = false;      // of lights, by half of the paths
   bool compensated = false;       // what clamping takes is given back by tracing
   int instants = 1, instant = 0;  // of an open shutter: rows are those of one instant of so many
+  film::PixelLattice pixels;      // rows are those of these pixels
   // Of a shot whose frames have the same lights (shot.h); nullptr: each picture has lights of its own.
   std::shared_ptr<const ShotLights> shot_lights;
 

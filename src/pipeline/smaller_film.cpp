@@ -19,9 +19,12 @@ View smaller(const View& view, int divisor) {
   const auto part = [divisor](int pixels) {
     return std::max(1, static_cast<int>(std::lround(static_cast<double>(pixels) / divisor)));
   };
-  scenedesc::set_film_size(less.sensor, part(view.width), part(view.height));
+  const auto& film = less.sensor.film;
+  scenedesc::set_film_size(less.sensor, part(view.sensor.film.width), part(view.sensor.film.height));
   less.sensor.film.crop_width = 0;
-  less.width = less.sensor.film.width, less.height = less.sensor.film.height;
+  less.width = std::min(part(view.width), film.width), less.height = std::min(part(view.height), film.height);
+  less.crop_x = std::min(view.crop_x / divisor, film.width - less.width);
+  less.crop_y = std::min(view.crop_y / divisor, film.height - less.height);
   return less;
 }
 

@@ -9,10 +9,10 @@ namespace lumirank::pipeline {
 
 using world::View;
 
-// Whether the view is the whole film, which alone can be made smaller.
+// Whether the view is the whole film, which alone is enlarged again.
 bool is_whole_film(const View& view);
 
-// The same view on a film of a divisor-th of the width and height, at least one pixel. Needs the whole film.
+// The same view, or window of it, on a film of a divisor-th of the width and height, at least one pixel.
 View smaller(const View& view, int divisor);
 
 // A film of half the width and height, enlarged by features of all pixels, is the better picture where fewer

@@ -52,6 +52,20 @@ TEST(Passes, ABudgetIsRepeatedBitByBit) {
   EXPECT_EQ(first.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb);
 }
 
+// A window of the film, for which a small one is tried out under a budget.
+TEST(Passes, ShowAWindowOfTheFilm) {
+  RenderSettings s = few_passes(3);
+  s.view.width = 64, s.view.height = 48;
+  s.view.crop = {30, 21, 17, 13};
+  const RenderResult window = render(example_box(), s);
+  EXPECT_EQ(window.picture.width, 17);
+  EXPECT_EQ(window.picture.height, 13);
+  const double usual = mean_of(window.picture);
+  EXPECT_GT(usual, 0);
+  s.passes = 0, s.time = 0.4;
+  EXPECT_NEAR(mean_of(render(example_box(), s).picture), usual, 0.1 * usual);
+}
+
 // Which of both goes on after two passes is the clock's choice; here it is written down by hand.
 TEST(Passes, PathsThatGoOnAreThePicture) {
   const Scene scene = example_box();
@@ -67,10 +81,15 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
   using Case = std::pair<std::int64_t, std::int64_t>;
   for (const auto& [own_emission, share_of_passes] : {Case{0, 0}, Case{1, 0}, Case{0, 400}, Case{1, 400}}) {
     SCOPED_TRACE(testing::Message() << own_emission << ", " << share_of_passes);
-    s.choices = {{"film_divisor", {1}}, {"eighths_of_pass", {8, 8}},
-                 {"passes", {2}},       {"trial_paths", {2}},
-                 {"by_paths", {1}},     {"own_emission", {own_emission}},
-                 {"more_paths", {126}}, {"share_of_passes", {share_of_passes}}};
+    s.choices = {{"film_divisor", {1}},
+                 {"interleaved", {1}},
+                 {"eighths_of_pass", {8, 8}},
+                 {"passes", {2}},
+                 {"trial_paths", {2}},
+                 {"by_paths", {1}},
+                 {"own_emission", {own_emission}},
+                 {"more_paths", {126}},
+                 {"share_of_passes", {share_of_passes}}};
     const RenderResult result = render(scene, s);
     EXPECT_EQ(said(result)["method"], "path-tracing");
     EXPECT_EQ(said(result)["paths"], 128);

@@ -64,6 +64,28 @@ TEST(PictureMean, WeighsByVariance) {
   EXPECT_GT(off(equal), 1.3 * off(mean));
 }
 
+// Pictures of a quarter of the pixels each: what others have there is not theirs.
+TEST(PictureMean, IsOfThePixelsThatPicturesHave) {
+  PictureMean mean;
+  const auto add = [&](int part, float value) {
+    const film::PixelLattice pixels = film::interleaved(2, part);
+    image::Image picture(5, 3);
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 5; ++x)
+        if (pixels.has(x, y)) picture.at(x, y) = Rgb(value);
+    mean.add(picture, 1, pixels);
+  };
+  for (int part = 0; part < 4; ++part) add(part, 1);
+  EXPECT_EQ(mean.noise(), 0);
+  for (const Rgb& p : mean.mean().pixels) EXPECT_EQ(p, Rgb(1));
+  add(0, 2);
+  EXPECT_EQ(mean.mean().at(2, 2), Rgb(1.5f));
+  EXPECT_EQ(mean.mean().at(1, 1), Rgb(1));
+  EXPECT_EQ(mean.difference().at(2, 2), Rgb(-1));
+  EXPECT_EQ(mean.difference().at(1, 1), Rgb(0));
+  EXPECT_NEAR(mean.noise(), 1.0 / 3, 1e-6) << "of the pixels that two have shown";
+}
+
 TEST(PictureMean, NothingIsKnownOfOnePicture) {
   PictureMean mean;
   mean.add(image::Image(2, 2, Rgb(1)));

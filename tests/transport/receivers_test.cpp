@@ -337,6 +337,29 @@ TEST(Receivers, ACropShowsTheSamePicture) {
   }
 }
 
+// Sets of interleaved pixels, in any window, have the receivers of the whole picture between them.
+TEST(Receivers, OfInterleavedPixelsAreThoseOfThePicture) {
+  const auto world = varied_scene().build();
+  const Camera camera = from_above(40, 30);
+  auto settings = settings_of(1);
+  settings.crop_x = 13, settings.crop_y = 7, settings.crop_width = 11, settings.crop_height = 9;
+  const auto whole = trace_receivers(world, camera, settings);
+  std::map<std::uint64_t, Vec3f> at;
+  for (int k = 0; k < 4; ++k) {
+    settings.pixels = film::interleaved(2, k);
+    const auto part = trace_receivers(world, camera, settings);
+    EXPECT_EQ(part.samples(), whole.samples());
+    EXPECT_LT(part.size(), whole.size() / 2);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const Vec2f film = part.film[part.sample[i]];
+      EXPECT_TRUE(settings.pixels.has(static_cast<int>(film.x), static_cast<int>(film.y)));
+      EXPECT_TRUE(at.emplace(part.id[i], part.position[i]).second);
+    }
+  }
+  ASSERT_EQ(at.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(at.at(whole.id[i]), whole.position[i]);
+}
+
 TEST(Receivers, RefusesBadSettings) {
   const auto world = floor_scene().build();
   EXPECT_THROW(trace_receivers(world, from_above(4, 4), settings_of(0)), InputError);

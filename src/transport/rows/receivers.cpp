@@ -141,6 +141,10 @@ class ReceiverTracer {
   // Random numbers belong to the pixel of the whole film, so a crop shows the same picture.
   void trace_pixel(Vec2i pixel, std::size_t sample, EyeChain& chain, Piece& piece) {
     const int x = crop_.x + pixel.x, y = crop_.y + pixel.y;
+    if (!settings_.pixels.has(x, y)) {
+      for (int k = 0; k < settings_.spp; ++k) result_.film[sample++] = on_pixel({x, y}, {0.5f, 0.5f});
+      return;
+    }
     const std::uint64_t id = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera_.width()) +
                              static_cast<std::uint64_t>(x);
     const PixelPattern pattern(settings_.spp, hash_ids(settings_.seed, Stage::receivers, id, ~0ull));

@@ -8,6 +8,7 @@
 #include "base/rgb.h"
 #include "base/sinks.h"
 #include "base/vec.h"
+#include "film/pixel_lattice.h"
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
 #include "transport/rows/eye_segments.h"
@@ -34,6 +35,8 @@ struct ReceiverSettings {
   // Of so many instants of an open shutter, the samples of one: each pixel's samples are spread evenly over
   // the instants, from a start of its own, so that every instant has 1/instants of them on average.
   int instants = 1, instant = 0;
+  // Only these pixels of the whole film; the samples of all others see nothing.
+  film::PixelLattice pixels;
   // Of participating media, as in ChainSettings.
   int eye_medium = -1, segments = 0;
 };
