@@ -9,10 +9,10 @@ namespace {
 // Sizes of passes in eighths: a smaller one is not worth its receivers, a larger one not its lights.
 // Of interleaved pixels, neighbors do not share lights, and a large pass for each is as good as two small
 // ones.
-constexpr int kMinOfFirst = 3, kMin = 2, kMax = 12;
+constexpr int kMinOfFirst = 3, kMin = 2, kMaxOfAllPixels = 12;
 // How often all pixels shall be shown: halves tell the noise. But two passes that are larger are better than
 // three below this size, and one of interleaved pixels is better than two.
-constexpr int kWantedFilms = 3, kMinOfThree = 4, kMinInterleaved = 6;
+constexpr int kWantedRounds = 3, kMinOfThree = 4, kMinInterleaved = 6;
 // Of what is left a pass is planned for, since no two take the same time.
 constexpr double kPlanned = 0.98;
 constexpr double kLeastSeconds = 1e-3;
@@ -33,29 +33,29 @@ void PassPlan::took(int eighths, double seconds, double drawing) {
 }
 
 int PassPlan::eighths_of(int passes, double seconds) const {
-  const double most = parts_ > 1 ? kMost : kMax;
+  const double most = parts_ > 1 ? kMax : kMaxOfAllPixels;
   return static_cast<int>(std::floor(std::clamp((seconds / passes - fixed_) / per_eighth_, 0.0, most)));
 }
 
 int PassPlan::passes_wanted(double left) const {
   const int fitting = static_cast<int>(std::clamp(std::round(left / whole()), 1.0, 65536.0));
-  if (passes_ + fitting >= kWantedFilms * parts_) return fitting;
-  for (int films = kWantedFilms; films > 1; --films) {
-    const int passes = films * parts_ - passes_;
-    int least = parts_ > 1 ? kMinInterleaved : films == kWantedFilms ? kMinOfThree : kMinOfFirst;
-    if (films < kWantedFilms && whole_film_is_shown()) least = kMin;
+  if (passes_ + fitting >= kWantedRounds * parts_) return fitting;
+  for (int rounds = kWantedRounds; rounds > 1; --rounds) {
+    const int passes = rounds * parts_ - passes_;
+    int least = parts_ > 1 ? kMinInterleaved : rounds == kWantedRounds ? kMinOfThree : kMinOfFirst;
+    if (rounds < kWantedRounds && every_pixel_is_shown()) least = kMin;
     if (passes > 0 && eighths_of(passes, left) >= least) return passes;
   }
-  return whole_film_is_shown() ? fitting : parts_ - passes_;
+  return every_pixel_is_shown() ? fitting : parts_ - passes_;
 }
 
 int PassPlan::next(double left) const {
-  if (!resizes_) return !whole_film_is_shown() || whole() < left ? kWhole : 0;
+  if (!resizes_) return !every_pixel_is_shown() || whole() < left ? kWhole : 0;
   const double planned = kPlanned * left;
   int passes = passes_wanted(planned);
-  while (whole_film_is_shown() && passes > 1 && eighths_of(passes, planned) < kMin) --passes;
+  while (every_pixel_is_shown() && passes > 1 && eighths_of(passes, planned) < kMin) --passes;
   const int eighths = eighths_of(passes, planned);
-  if (!whole_film_is_shown()) return std::max(kMinOfFirst, eighths);
+  if (!every_pixel_is_shown()) return std::max(kMinOfFirst, eighths);
   return eighths >= kMin ? eighths : 0;
 }
 

@@ -8,7 +8,7 @@ namespace lumirank::pipeline {
 class PassPlan {
  public:
   // Size of a pass, in eighths of a whole one.
-  static constexpr int kWhole = 8, kMost = 16;
+  static constexpr int kWhole = 8, kMax = 16;
 
   // Whether passes may be of another size than whole; how many of them show every pixel.
   explicit PassPlan(bool resizes, int parts = 1) : resizes_(resizes), parts_(parts) {}
@@ -25,7 +25,7 @@ class PassPlan {
   int passes_wanted(double left) const;
   // Of each, where so many passes fill these seconds.
   int eighths_of(int passes, double seconds) const;
-  bool whole_film_is_shown() const { return passes_ >= parts_; }
+  bool every_pixel_is_shown() const { return passes_ >= parts_; }
   double whole() const { return fixed_ + kWhole * per_eighth_; }
 
   bool resizes_;

@@ -53,13 +53,13 @@ constexpr double kMissed = 0.03;
 // Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
 // takes two of these at least, which was a third of ten seconds among thousands of lamps.
 constexpr double kDearPath = 0.75;
-// Films below which passes are of interleaved pixels.
+// Passes of interleaved pixels: of every second in x and y, where fewer rounds of them than this fit.
 constexpr int kMaxSide = 2;
-constexpr double kManyFilms = 4;
-constexpr double kLeastLeft = 1e-3;  // seconds
-// Whole films by passes of interleaved pixels that are worth more than films of half the size: one for so
-// many pixels. The least that counts as one.
-constexpr double kPixelsOfFilm = 300000, kLeastFilm = 0.75, kMostFilms = 3;
+constexpr double kManyRounds = 4;
+// Rounds that are worth more than a film of half the size: one for so many pixels, of which the first may be
+// of passes this much smaller.
+constexpr double kPixelsOfRound = 300000, kMinRound = 0.75, kMaxRounds = 3;
+constexpr double kMinLeft = 1e-3;   // seconds
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
@@ -103,7 +103,7 @@ class PassRun {
       ++passes_;
       if (passes_ == kPassesBeforePaths * tracer_.parts() && !compare_with_paths()) break;
     }
-    if (films() == 0) throw Cancelled();
+    if (rounds() == 0) throw Cancelled();
     return picture();
   }
 
@@ -111,8 +111,8 @@ class PassRun {
   bool timed() const { return asked_.time > 0; }
   bool replays() const { return !asked_.choices.empty(); }
 
-  // How often every pixel has been shown.
-  int films() const { return passes_ / tracer_.parts(); }
+  // Each shows every pixel once.
+  int rounds() const { return passes_ / tracer_.parts(); }
 
   // What takes longer the larger a pass is.
   double seconds_drawing() { return seconds_["method"] + seconds_["lights"]; }
@@ -170,9 +170,9 @@ class PassRun {
   }
 
   // Few passes are each of some of the pixels, so that what these share by their lights is noise among
-  // neighbors; a film of them takes twice as many lights.
+  // neighbors; a round takes twice as many lights.
   void interleave() {
-    int side = may_interleave() && left() < kManyFilms * (2 * expected_.fixed + expected_.by_pixel) ? 2 : 1;
+    int side = may_interleave() && left() < kManyRounds * (2 * expected_.fixed + expected_.by_pixel) ? 2 : 1;
     if (const auto earlier = choices_.earlier("interleaved", kMaxSide); earlier && may_interleave())
       side = static_cast<int>(*earlier);
     choices_.record("interleaved", side);
@@ -187,30 +187,30 @@ class PassRun {
   void choose_size(int at_least) {
     const double whole = expected_.total() * (1 + rest_share());  // a pass of the whole film
     const double enough = asked_.time - left() + kFewPasses * whole;
-    if (films_worth_a_pixel() * expected_.total() > left()) at_least = 2;
+    if (rounds_worth_a_pixel() * expected_.total() > left()) at_least = 2;
     int divisor = 1;
     const bool may = is_whole_film(task_.view);
-    while (may && divisor < kMaxDivisorOfPasses && (divisor < at_least || least_film() > left())) {
+    while (may && divisor < kMaxDivisorOfPasses && (divisor < at_least || min_round_seconds() > left())) {
       divisor *= 2;
       make_smaller(divisor);
       expected_.by_pixel /= 4;
     }
     choices_.record("film_divisor", divisor);
     const double left_now = left();
-    if (divisor == 1 && least_film() <= left_now) return;
+    if (divisor == 1 && min_round_seconds() <= left_now) return;
     shortage_ = said({asked_.time, task_.build_seconds, asked_.time < task_.build_seconds, enough},
                      said_of_smaller(divisor));
     sinks_.warn(shortage_);
   }
-  // How often every pixel shall be shown; less often, half the film is better.
-  double films_worth_a_pixel() const {
+  // With fewer rounds half the film is better.
+  double rounds_worth_a_pixel() const {
     if (!picture_->denoising().wanted()) return 1;
     if (!may_interleave()) return std::max(1.0, paths_worth_a_pixel(whole_) / kPathsWorthAPass);
     const double pixels = static_cast<double>(whole_.width) * static_cast<double>(whole_.height);
-    return std::clamp(pixels / kPixelsOfFilm, kLeastFilm, kMostFilms);
+    return std::clamp(pixels / kPixelsOfRound, kMinRound, kMaxRounds);
   }
   // Seconds, by passes with fewer lights where they may have these.
-  double least_film() const { return (may_interleave() ? kLeastFilm : 1) * expected_.total(); }
+  double min_round_seconds() const { return (may_interleave() ? kMinRound : 1) * expected_.total(); }
 
   // Passes may have other numbers of lights, of which receivers draw as many fewer or more.
   bool resizes() const {
@@ -220,7 +220,7 @@ class PassRun {
   void set_size() {
     int eighths = next_eighths_;
     if (timed()) {
-      if (const auto earlier = choices_.earlier("eighths_of_pass", PassPlan::kMost))
+      if (const auto earlier = choices_.earlier("eighths_of_pass", PassPlan::kMax))
         eighths = static_cast<int>(*earlier);
       choices_.record("eighths_of_pass", eighths);
     }
@@ -236,8 +236,8 @@ class PassRun {
     next_eighths_ = timed() && !as_asked_ ? plan_.next(left()) : PassPlan::kWhole;
     if (sinks_.cancelled()) return false;
     if (passes_ >= wanted_) return false;
-    if (films() == 0) return true;
-    if (asked_.method.target_error > 0 && films() >= kFewPasses && noise() < asked_.method.target_error)
+    if (rounds() == 0) return true;
+    if (asked_.method.target_error > 0 && rounds() >= kFewPasses && noise() < asked_.method.target_error)
       return false;
     return !timed() || replays() || as_asked_ || next_eighths_ > 0;
   }
@@ -258,11 +258,11 @@ class PassRun {
                                   of_film.pixels.in_window(view_.crop_x, view_.crop_y),
                                   number % tracer_.parts() == 0};
     of_film.pixels = {};
-    const double rest_of_film = (tracer_.parts() - 1) * passes_seconds_;
+    const double rest_of_round = (tracer_.parts() - 1) * passes_seconds_;
     const Timer timer;
     if (!picture_->add(shown, image,
                        {*task_.world, view_, of_film, *tracer_.prepared()->rows, tracer_.traced()},
-                       timed() ? std::max(kLeastLeft, left() - rest_of_film) : 0, sinks_))
+                       timed() ? std::max(kMinLeft, left() - rest_of_round) : 0, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     report_progress(number + 1);
@@ -283,7 +283,7 @@ class PassRun {
     const double all = static_cast<double>(view_.width) * static_cast<double>(view_.height) *
                        rest_->plan().pilot.path_seconds;
     if (!timed() || !(all > 0)) return kRestUntimed;
-    const double of_pass = films() >= kFewPasses ? picture_->noise() * std::sqrt(films()) : kNoiseOfPass;
+    const double of_pass = rounds() >= kFewPasses ? picture_->noise() * std::sqrt(rounds()) : kNoiseOfPass;
     return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kMinRest,
                       kMaxRest);
   }
@@ -323,7 +323,7 @@ class PassRun {
   // Passes are few, and each takes as long as many paths.
   bool is_dear() const {
     const double pass = expected_.total() * (1 + rest_share());
-    const bool is_only_one = least_film() * (1 + rest_share()) > left();
+    const bool is_only_one = min_round_seconds() * (1 + rest_share()) > left();
     return kFewPasses * pass > left() &&
            pass > (is_only_one ? kPathsOfOnlyPass : kPathsOfPass) * path_seconds();
   }
@@ -422,7 +422,7 @@ class PassRun {
 
   bool try_paths() {
     const auto earlier = choices_.earlier("trial_paths", kMaxBeside);
-    const double pass = passes_seconds_ / films();
+    const double pass = passes_seconds_ / rounds();
     if (earlier ? *earlier == 0 : left() < kWorthATrial * pass || path_seconds() > kDearPath * pass)
       return true;
     paths_.emplace(*task_.world, view_, asked_, sinks_);
@@ -530,7 +530,7 @@ class PassRun {
   }
 
   image::Image noise_of_passes() const {
-    return films() > 1 ? picture_->with_noise(*rest_).difference : image::Image{};
+    return rounds() > 1 ? picture_->with_noise(*rest_).difference : image::Image{};
   }
 
   RenderResult picture() {
@@ -571,7 +571,7 @@ class PassRun {
     numbers["rest.light_paths"] = rest_->light_paths();
     numbers["passes"] = numbers["receivers_per_pixel"] = static_cast<double>(passes_) / tracer_.parts();
     numbers.erase("sampling_rate");
-    if (films() > 1) {
+    if (rounds() > 1) {
       numbers["error.noise"] = l1_noise();
       numbers["error.estimate"] = noise();
     }
@@ -584,7 +584,7 @@ class PassRun {
     if (!shortage_.empty()) tracer_.estimate().trace.notes["budget.short"] = shortage_;
     result_.report = make_report(*tracer_.prepared(), tracer_.traced(), asked_, *task_.info,
                                  tracer_.estimate(), tracer_.cost(), choices_.made());
-    if (films() > 1)
+    if (rounds() > 1)
       result_.report.notes["error.of"] =
           said_of_noise(asked_.method.error_metric, by_paths_ ? "paths" : "passes");
     if (by_paths_) result_.report.method = kByPaths;

@@ -303,6 +303,20 @@ TEST(GltfMaterial, SpecularClearCoatSheenUnlit) {
   EXPECT_EQ(find_bsdf<PlasticDesc>(scene)->specular_reflectance.value, Rgb(1, 0.5f, 0));
   EXPECT_EQ(find_bsdf<MixtureDesc>(scene)->parts[0].weight.value, 0.5f);
 
+  // Twice the 0.04 of an index of 1.5 in red, half of it in blue.
+  auto& specular = m.root["materials"][0]["extensions"]["KHR_materials_specular"];
+  specular = {{"specularColorFactor", {2, 1, 0.5}}};
+  scene = parse(m);
+  const auto* shiny = find_bsdf<PlasticDesc>(scene);
+  EXPECT_NEAR(std::pow((shiny->eta - 1) / (shiny->eta + 1), 2), 0.08, 1e-5);
+  EXPECT_NEAR(shiny->specular_reflectance.value.r, 1, 1e-5);
+  EXPECT_NEAR(shiny->specular_reflectance.value.b, 0.25, 1e-5);
+  EXPECT_EQ(warning_about(scene, "specular"), nullptr);
+  specular = {{"specularColorFactor", {100, 10, 1}}};
+  scene = parse(m);
+  EXPECT_NEAR(find_bsdf<PlasticDesc>(scene)->specular_reflectance.value.g, 0.4 / 0.9, 1e-5);
+  EXPECT_NE(warning_about(scene, "reflects more than 0.9"), nullptr);
+
   m.root["materials"][0]["extensions"] = {
       {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.5}}}};
   scene = parse(m);

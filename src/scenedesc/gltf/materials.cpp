@@ -4,6 +4,9 @@
 // metallic 1 is that formula. A dielectric is a GGX reflection of index 1.5 over a diffuse base: "plastic",
 // lossless, whose base gets what is not reflected, so that nothing is lost or made; the appendix's own base ·
 // (1 - F(half vector)) sends back more than it receives at grazing angles.
+#include <cmath>
+
+#include "base/vec.h"
 #include "scenedesc/gltf/surface.h"
 
 namespace lumirank::scenedesc::gltf {
@@ -14,6 +17,7 @@ bool is_constant(const FloatInput& input, float value) {
 }
 // Sheets of a roughness up to this are clear: shadow rays pass them.
 constexpr float kSmoothSheet = 0.1f;
+constexpr float kMaxReflectance = 0.9f;  // at normal incidence, of what is not metal
 bool is_black(const ColorInput& input) { return input.texture == kNone && input.value == Rgb(0); }
 
 }  // namespace
@@ -58,20 +62,28 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
   if (!is_constant(s.metallic, 1)) {
     FloatInput weight{1};
     ColorInput tint{Rgb(1)};
+    float eta = s.ior;
     if (const auto specular = material.extension("KHR_materials_specular")) {
       weight = float_input(*specular, "specularFactor", 1, "specularTexture", TextureChannel::alpha);
       tint = color_input(*specular, "specularColorFactor", Rgb(1), "specularColorTexture");
       const float max_tint = max_component(tint.value);
-      if (tint.texture == kNone && max_tint > 1) {
-        warn(specular->at("specularColorFactor"), "a specular color above 1", "1");
-        tint.value = clamp_below(tint.value, 1.0f);
+      if (tint.texture == kNone && max_tint > 1 && s.ior != 1) {
+        // More than the index of refraction reflects at normal incidence: so has a larger one, tinted.
+        const float usual = square((s.ior - 1) / (s.ior + 1));
+        float reflectance = usual * max_tint;
+        if (reflectance > kMaxReflectance) {
+          warn(specular->at("specularColorFactor"), "a specular color that reflects more than 0.9", "0.9");
+          reflectance = kMaxReflectance;
+        }
+        tint.value = (1 / reflectance) * clamp_below(usual * tint.value, reflectance);
+        eta = (1 + std::sqrt(reflectance)) / (1 - std::sqrt(reflectance));
       }
     }
     if (s.ior == 1 || is_black(tint)) weight = {0};
     int plastic = kNone, diffuse = kNone;
     if (!is_constant(weight, 0)) {
       PlasticDesc desc;
-      desc.eta = s.ior;
+      desc.eta = eta;
       desc.diffuse_reflectance = s.base;
       desc.specular_reflectance = tint;
       desc.distribution = Distribution::ggx;
