@@ -178,9 +178,10 @@ class PassRun {
     choices_.record("interleaved", side);
     tracer_.interleave(side);
   }
-  // Pixels have filters of their own then, and film samples the light of their receivers.
+  // Pixels have filters of their own then, and film samples the light of their receivers. A frame that is
+  // averaged with its neighbors needs the noise of halves, which one round does not tell.
   bool may_interleave() const {
-    return resizes() && picture_->denoising().wanted() && !asked_.view.film_samples;
+    return resizes() && picture_->denoising().wanted() && !asked_.view.film_samples && !task_.features;
   }
 
   // A film of half the width and height, enlarged, is better than none.
