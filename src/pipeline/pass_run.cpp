@@ -178,8 +178,8 @@ class PassRun {
     choices_.record("interleaved", side);
     tracer_.interleave(side);
   }
-  // Pixels have filters of their own then, and film samples the light of their receivers. A frame that is
-  // averaged with its neighbors needs the noise of halves, which one round does not tell.
+  // That needs a filter no wider than a pixel, which denoised pictures have, and receivers that are the film
+  // samples. A frame averaged with its neighbors needs the noise of halves, which one round does not tell.
   bool may_interleave() const {
     return resizes() && picture_->denoising().wanted() && !asked_.view.film_samples && !task_.features;
   }
