@@ -59,7 +59,6 @@ constexpr double kManyRounds = 4;
 // Rounds that are worth more than a film of half the size: one for so many pixels, of which the first may be
 // of passes this much smaller.
 constexpr double kPixelsOfRound = 300000, kMinRound = 0.75, kMaxRounds = 3;
-constexpr double kMinLeft = 1e-3;   // seconds
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
@@ -138,7 +137,8 @@ class PassRun {
                    took.by_pixel / shrunk};
       const double one_feature = picture_->denoising().seconds_of_feature(
           *task_.world, small, tracer_.recipe_of(kMaxPasses, small), sinks_);
-      features_expected_ = picture_->denoising().feature_seconds(one_feature / shrunk, left());
+      left_for_features_ = left();
+      features_expected_ = picture_->denoising().feature_seconds(one_feature / shrunk, left_for_features_);
       const bool few = too_few_fit(kUnsure);
       paths_alone_ = few && small_paths_are_better(small, image, shrunk);
       if (paths_alone_) return;
@@ -259,11 +259,12 @@ class PassRun {
                                   of_film.pixels.in_window(view_.crop_x, view_.crop_y),
                                   number % tracer_.parts() == 0};
     of_film.pixels = {};
-    const double rest_of_round = (tracer_.parts() - 1) * passes_seconds_;
+    // The first of a round does not tell what is left after it: later ones are planned by what features took.
+    const double left_for_features = tracer_.parts() > 1 ? left_for_features_ : left();
     const Timer timer;
     if (!picture_->add(shown, image,
                        {*task_.world, view_, of_film, *tracer_.prepared()->rows, tracer_.traced()},
-                       timed() ? std::max(kMinLeft, left() - rest_of_round) : 0, sinks_))
+                       timed() ? left_for_features : 0, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     report_progress(number + 1);
@@ -619,6 +620,7 @@ class PassRun {
   PassTracer tracer_;
   PassSeconds expected_;
   double features_expected_ = 0;  // what follows the first pass
+  double left_for_features_ = 0;  // seconds of the budget, by which these were foretold
   PassPlan plan_{false};
   double rest_due_ = 0;
   int wanted_ = 1, passes_ = 0, next_eighths_ = PassPlan::kWhole;
