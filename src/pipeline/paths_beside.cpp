@@ -73,7 +73,8 @@ double own_emission_over_apart(const PathsBeside& now, double paths) {
 
 double own_emission_over_apart(const image::Image& picture, const image::Image& all, const image::Image& sent,
                                double paths_now, double paths) {
-  // Film samples of an edge, of one that glares, and for each path (pixel_features.h, pass_run.cpp).
+  // Film samples of an edge, of one that glares, and for each path (pixel_features.h,
+  // paths_after_passes.cpp).
   constexpr double kAtEdges = 16, kGlaring = 48, kForPath = 1.0 / 8;
   double usual = 0, own = 0, apart = 0;
   for (const Rgb& p : picture.pixels) usual += brightness(p);

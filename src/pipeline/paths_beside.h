@@ -52,6 +52,7 @@ struct NoisyPicture {
 // may find at all: what is lit by a lamp within glass, and seen through glass. `passes`: the difference may
 // be empty, where it is not known.
 double missed_by_paths(const NoisyPicture& passes, const NoisyPicture& paths);
+inline constexpr double kMissed = 0.03;  // above that it is none of the passes' noise
 
 // Noise of passes over that of paths for the same seconds, as eyes see it: over what is there and a tenth of
 // what is usual, in the mean over pixels. That of passes counts worse than it is: it is alike in neighbors,

@@ -22,6 +22,11 @@ class RestTracing {
 
   const RestPlan& plan() const { return plan_; }
   double pilot_seconds() const { return pilot_seconds_; }
+  // Of a path of all light for each pixel, as the pilot says; 0: there was none.
+  double seconds_of_whole_path(const View& view) const {
+    return plan_.pilot.whole_path_seconds * static_cast<double>(view.width) *
+           static_cast<double>(view.height);
+  }
 
   // Under a budget: the first paths before the method, which fills it. `earlier` > 0: a repetition's number
   // of paths. Throws Cancelled.
