@@ -52,7 +52,7 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
                                                                : methods::Carrying::automatic;
   s.filter = static_cast<std::size_t>(t.filter);
   s.keep_rectangles = t.write_clusters;
-  if (t.largest_representatives) s.representatives = methods::Representatives::largest;
+  if (t.largest_representatives) s.representatives = methods::RepresentativeRule::largest;
   s.precision =
       t.bits == 32 ? linalg::ReducedTensor::Precision::bits32 : linalg::ReducedTensor::Precision::bits16;
   return s;

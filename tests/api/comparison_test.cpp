@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "api/whole_renders.h"
 #include "base/error.h"
 #include "lumirank/compare.h"
 #include "support/scene_file.h"
@@ -12,9 +13,8 @@
 namespace lumirank {
 namespace {
 
+using test::box;
 using test::TemporaryFolder;
-
-Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
 
 CompareSettings small_comparison() {
   CompareSettings settings;
@@ -33,10 +33,10 @@ TEST(TypedComparison, SaysWhatTheFilesSay) {
   const Comparison c = compare(box(), settings, folder / "out");
   EXPECT_FALSE(c.interrupted);
   ASSERT_EQ(c.runs.size(), 6u);
-  const auto json = nlohmann::json::parse(std::ifstream(folder / "out/results.json"));
+  const auto said = nlohmann::json::parse(std::ifstream(folder / "out/results.json"));
   for (std::size_t k = 0; k < 6; ++k) {
-    EXPECT_EQ(c.runs[k].label, json["runs"][k]["label"]);
-    EXPECT_EQ(c.runs[k].error.relative_l1, json["runs"][k]["error"]["relative_l1"].get<double>());
+    EXPECT_EQ(c.runs[k].label, said["runs"][k]["label"]);
+    EXPECT_EQ(c.runs[k].error.relative_l1, said["runs"][k]["error"]["relative_l1"].get<double>());
     EXPECT_TRUE(std::filesystem::exists(folder / ("out/" + c.runs[k].image_file)));
   }
   EXPECT_LT(c.runs[2].error.relative_l2, c.runs[0].error.relative_l2);
@@ -72,20 +72,20 @@ TEST(TypedInfo, IsWhatTheJsonSays) {
   const SceneInfo info = box().info();
   EXPECT_EQ(info.triangles, 36u);
   ASSERT_EQ(info.cameras.size(), 1u);
-  const auto json = nlohmann::json::parse(info.json());
-  EXPECT_EQ(json["triangles"], info.triangles);
-  EXPECT_EQ(json["cameras"][0]["fov_x"].get<double>(), info.cameras[0].fov_x);
+  const auto said = nlohmann::json::parse(info.json());
+  EXPECT_EQ(said["triangles"], info.triangles);
+  EXPECT_EQ(said["cameras"][0]["fov_x"].get<double>(), info.cameras[0].fov_x);
   EXPECT_NE(info.text().find("36 triangles"), std::string::npos);
   EXPECT_EQ(info.text().find(info.listing), 0u);
 }
 
 TEST(TypedMethods, AllOfThemWithTheirParameters) {
-  const auto json = nlohmann::json::parse(methods_json(true));
+  const auto said = nlohmann::json::parse(methods_json(true));
   const std::vector<MethodDescription> methods = list_methods();
-  ASSERT_EQ(methods.size(), json.size());
+  ASSERT_EQ(methods.size(), said.size());
   for (std::size_t k = 0; k < methods.size(); ++k) {
-    EXPECT_EQ(methods[k].name, json[k]["name"]);
-    EXPECT_EQ(methods[k].parameters.size(), json[k]["parameters"].size());
+    EXPECT_EQ(methods[k].name, said[k]["name"]);
+    EXPECT_EQ(methods[k].parameters.size(), said[k]["parameters"].size());
   }
 }
 

@@ -2,6 +2,7 @@
 // picture.
 #include <gtest/gtest.h>
 
+#include "api/whole_renders.h"
 #include "lumirank/error.h"
 #include "lumirank/lumirank.h"
 #include "support/channel_means.h"
@@ -10,14 +11,12 @@
 namespace lumirank {
 namespace {
 
+using test::kAlpha;
 using test::mean_color;
 using test::mean_of;
 using test::student_quantile;
 
-constexpr double kAlpha = 1e-3;  // false alarms of each test
-constexpr int kSeeds = 24;
-
-std::string wall(const std::string& transform, const std::string& specular) {
+std::string glossy_wall(const std::string& transform, const std::string& specular) {
   return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform +
          "</transform><bsdf type=\"twosided\"><bsdf type=\"ward\"><rgb name=\"diffuse_reflectance\" "
          "value=\"0.4, "
@@ -29,12 +28,12 @@ std::string wall(const std::string& transform, const std::string& specular) {
 
 // A glossy floor and two glossy walls that meet in the middle of the picture, lit by a spot: entries are
 // large along the edges and in the walls' mirror directions.
-Scene corner() {
+Scene glossy_corner() {
   return test::load_text(
       test::point_camera("0.4,0.5,1.2", "0,0.1,0", 7, 16) +
-      wall("<rotate x=\"1\" angle=\"-90\"/>", "0.5, 0.5, 0.5") +
-      wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", "0.4, 0.45, 0.5") +
-      wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-0.5\" y=\"1\" z=\"0\"/>", "0.2, 0.2, 0.2") +
+      glossy_wall("<rotate x=\"1\" angle=\"-90\"/>", "0.5, 0.5, 0.5") +
+      glossy_wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", "0.4, 0.45, 0.5") +
+      glossy_wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-0.5\" y=\"1\" z=\"0\"/>", "0.2, 0.2, 0.2") +
       "<emitter type=\"spot\"><transform name=\"to_world\"><lookat origin=\"0.5, 1.2, 0.8\" target=\"-0.1, "
       "0, "
       "-0.1\" up=\"0, 1, 0.2\"/></transform><rgb name=\"intensity\" value=\"5, 6, 7\"/><float "
@@ -55,11 +54,12 @@ RenderSettings settings_for(const std::string& light_type) {
 }
 
 void expect_whole(const std::string& light_type) {
-  const Scene scene = corner();
+  const Scene scene = glossy_corner();
   RenderSettings settings = settings_for(light_type);
   ReferenceSettings how;
   how.paths = ReferencePaths::columns;
   how.spp = 512;
+  constexpr int kSeeds = 24;
   std::vector<double> clamped[3], whole[3], paths[3];
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + k;
@@ -86,7 +86,7 @@ TEST(Compensation, GivesBackWhatClampingTookFromGlossyLights) { expect_whole("po
 TEST(Compensation, GivesBackWhatDiffuseLightsLeaveOutAsWell) { expect_whole("diffuse-point"); }
 
 TEST(Compensation, IsRefusedWhereItCannotBeWhole) {
-  const Scene scene = corner();
+  const Scene scene = glossy_corner();
   const auto message = [&](auto&& change) {
     RenderSettings settings = settings_for("point");
     settings.traced.compensate = 1;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/scene.h"
+#include "api/whole_renders.h"
 #include "lumirank/lumirank.h"
 #include "methods/common/column_pass.h"
 #include "methods/common/exact_rows.h"
@@ -17,12 +18,10 @@ namespace lumirank {
 namespace {
 
 using nlohmann::json;
+using test::box;
+using test::kAlpha;
 using test::mean_of;
 using test::student_quantile;
-
-constexpr double kAlpha = 1e-3;  // false alarms of each test
-
-Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
 
 std::vector<Rgb> sums_of(const matrix::LightingMatrix& matrix) {
   std::vector<matrix::ScaledColumn> columns;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/whole_renders.h"
 #include "lumirank/lumirank.h"
 #include "lumirank/session.h"
 #include "support/scene_file.h"
@@ -11,6 +12,8 @@
 namespace lumirank {
 namespace {
 
+using test::box;
+using test::example;
 using test::load_text;
 
 constexpr int kSize = 16;
@@ -132,8 +135,6 @@ TEST(FilmSamples, ThinThingsHaveTheLightOfTheirArea) {
   EXPECT_NEAR(sum / n, 0.36, 0.36 * 0.03);
 }
 
-Scene example(const char* name) { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/" + name); }
-
 RenderSettings small_settings(const char* method) {
   RenderSettings s;
   s.method.name = method;
@@ -183,11 +184,11 @@ TEST(FilmSamples, LayersAddUpToThePicture) {
 
 TEST(FilmSamples, SumsOfWholePixelsAreLeftAsTheyAre) {
   RenderSettings settings = small_settings("multidimensional-lightcuts");
-  EXPECT_THROW(render(example("box.xml"), settings), InputError) << "asked for by hand";
+  EXPECT_THROW(render(box(), settings), InputError) << "asked for by hand";
   settings.view.film_samples.reset();
-  EXPECT_EQ(render(example("box.xml"), settings).report.numbers.at("film.samples"), 0);
+  EXPECT_EQ(render(box(), settings).report.numbers.at("film.samples"), 0);
   settings.method.name = "power-sampling";
-  const Prepared prepared = prepare(example("box.xml"), settings);
+  const Prepared prepared = prepare(box(), settings);
   EXPECT_THROW(estimate_sums(prepared, small_settings("multidimensional-lightcuts").method), InputError);
 }
 
@@ -196,15 +197,14 @@ TEST(FilmSamples, WhereThereAreAsManyReceiversTheseAreTheFilmSamples) {
   settings.view.film_samples.reset();
   for (const auto& [spp, film_samples] : {std::pair{4, 16}, std::pair{15, 16}, std::pair{16, 0}}) {
     settings.view.spp = spp;
-    const RenderResult made = render(example("box.xml"), settings);
+    const RenderResult made = render(box(), settings);
     EXPECT_EQ(made.report.numbers.at("film.samples"), film_samples);
-    EXPECT_EQ(
-        render(example("box.xml"), render_settings_from_report(made.report.json())).picture.planes[0].rgb,
-        made.picture.planes[0].rgb);
+    EXPECT_EQ(render(box(), render_settings_from_report(made.report.json())).picture.planes[0].rgb,
+              made.picture.planes[0].rgb);
   }
   // Asked for by hand, they are there, and a report repeats that.
   settings.view.film_samples = 16;
-  const RenderResult made = render(example("box.xml"), settings);
+  const RenderResult made = render(box(), settings);
   EXPECT_EQ(made.report.numbers.at("film.samples"), 16);
   EXPECT_EQ(render_settings_from_report(made.report.json()).view.film_samples_or_default(), 16);
 }

@@ -9,8 +9,6 @@
 namespace lumirank::test {
 namespace {
 
-constexpr int kWidth = 48, kHeight = 36;
-
 // A checkered floor, a rough metal, a glass and a matt sphere under a lamp, a point light, a distant one and
 // a sky. Nothing is symmetric, so that a mirrored or turned picture would differ.
 const char* const kMitsuba = R"(
@@ -95,7 +93,7 @@ TEST(Formats, MitsubaAndPbrtGiveTheSamePicture) {
   strict.strict = true;  // nothing is replaced or left out
   const Plane mitsuba = picture(load_text(kMitsuba, strict), 1), pbrt = picture(Scene::load(file, strict), 2);
   // Tessellated spheres are the same on both sides.
-  expect_same_pictures(mitsuba.rgb, pbrt.rgb, {.width = kWidth, .height = kHeight});
+  expect_same_pictures(mitsuba.rgb, pbrt.rgb, {.width = 48, .height = 36});
 }
 
 }  // namespace

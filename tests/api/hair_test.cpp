@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+#include "api/whole_renders.h"
 #include "base/random.h"
 #include "lumirank/lumirank.h"
 #include "support/channel_means.h"
@@ -13,11 +14,10 @@
 namespace lumirank {
 namespace {
 
+using test::kAlpha;
 using test::mean_color;
 using test::mean_of;
 using test::student_quantile;
-
-constexpr double kAlpha = 1e-3;  // false alarms of each test
 
 // 400 leaning hairs of length 0.3 on a black floor around the origin, and a white wall 0.9 away.
 std::string fur_and_wall(const test::TemporaryFolder& folder) {

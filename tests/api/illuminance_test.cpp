@@ -24,7 +24,7 @@ std::vector<float> lux_of(const Picture& picture) {
   throw InputError("no illuminance");
 }
 
-RenderSettings settings_for(const std::string& method) {
+RenderSettings lux_settings(const std::string& method) {
   RenderSettings s;
   s.traced.rest = RestOfPaths::skip;
   s.method.name = method;
@@ -54,7 +54,7 @@ TEST(Illuminance, InverseSquareAndThirdPowerOfTheCosineBelowAnIesLight) {
                     bsdf + "</shape>" + lamp());
       const double cosine = 2 / std::hypot(2.0, x);
       for (const char* method : {"brute-force", "auto"})
-        for (const float lux : lux_of(render(scene, settings_for(method)).picture))
+        for (const float lux : lux_of(render(scene, lux_settings(method)).picture))
           EXPECT_NEAR(lux / (250 * std::pow(cosine, 3)), 1, 2e-4) << method << " " << x;  // the pixels' size
     }
 }
@@ -65,7 +65,7 @@ TEST(Illuminance, ColorsKeepTheLuxAndTheScaleDims) {
                                   "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" "
                                   "angle=\"-90\"/></transform></shape>" +
                                   lamp(more));
-    return lux_of(render(scene, settings_for("brute-force")).picture)[0];
+    return lux_of(render(scene, lux_settings("brute-force")).picture)[0];
   };
   EXPECT_NEAR(mean_lux("<rgb name=\"color\" value=\"1, 0.5, 0.1\"/>"), 250, 0.05);
   EXPECT_NEAR(mean_lux("<float name=\"scale\" value=\"0.4\"/>"), 100, 0.02);
@@ -78,7 +78,7 @@ TEST(Illuminance, UnderAnEvenSky) {
                 "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" "
                 "angle=\"-90\"/></transform></shape>"
                 "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0.5\"/></emitter>");
-  RenderSettings settings = settings_for("brute-force");
+  RenderSettings settings = lux_settings("brute-force");
   settings.lights.count = 20000;
   settings.view.only = LightPart::direct;
   const auto lux = lux_of(render(scene, settings).picture);
@@ -95,7 +95,7 @@ TEST(Illuminance, AgreesWithThePathTracerInAGrayRoom) {
       "<translate y=\"1\"/><scale value=\"1.5\"/></transform>"
       "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf></shape>" +
       lamp());
-  RenderSettings settings = settings_for("brute-force");
+  RenderSettings settings = lux_settings("brute-force");
   settings.lights.count = 4000;
   settings.view.max_depth = 5;
   settings.lights.clamp = 0;

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "api/scene.h"
+#include "api/whole_renders.h"
 #include "lumirank/lumirank.h"
 #include "methods/common/column_pass.h"
 #include "methods/common/row_group_pass.h"
@@ -16,7 +17,7 @@ namespace {
 // 300 lights in an example scene, seen by 24×16 pixels of two samples.
 class LightCutsInScenes : public testing::TestWithParam<const char*> {
  protected:
-  LightCutsInScenes() : scene_(Scene::load(std::string(LUMIRANK_EXAMPLES) + "/" + GetParam())) {
+  LightCutsInScenes() : scene_(test::example(GetParam())) {
     settings_.view.width = 24, settings_.view.height = 16, settings_.view.spp = 2;
     std::vector<scenedesc::Warning> warnings;
     world_ = std::make_unique<world::World>(world::World::build(scene_.impl().desc, {}, warnings));

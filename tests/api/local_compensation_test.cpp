@@ -13,9 +13,7 @@
 namespace lumirank {
 namespace {
 
-constexpr int kSeeds = 32;
-
-std::string wall(const std::string& transform, const std::string& bsdf) {
+std::string two_sided_wall(const std::string& transform, const std::string& bsdf) {
   return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform +
          "</transform><bsdf type=\"twosided\">" + bsdf + "</bsdf></shape>";
 }
@@ -34,8 +32,8 @@ const std::string kSpot =
 // Where a lit wall meets a floor. The camera's window shows the edge, or the floor in front of it.
 Scene corner(const std::string& floor, const std::string& target) {
   return test::load_text(test::point_camera("0.4,0.5,1.2", target, 8, 14) +
-                         wall("<rotate x=\"1\" angle=\"-90\"/>", floor) +
-                         wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", kMatt) + kSpot);
+                         two_sided_wall("<rotate x=\"1\" angle=\"-90\"/>", floor) +
+                         two_sided_wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", kMatt) + kSpot);
 }
 
 RenderSettings brute_force(const std::string& light_type) {
@@ -55,6 +53,7 @@ void expect_whole(const Scene& scene, RenderSettings settings, double teeth) {
   ReferenceSettings how;
   how.paths = ReferencePaths::columns;
   how.spp = 512;
+  constexpr int kSeeds = 32;
   test::ChannelMeans whole, paths;
   for (std::uint64_t k = 0; k < kSeeds; ++k) {
     settings.seed = 100 + k;
@@ -116,10 +115,11 @@ TEST(LocalCompensation, GatheredReceiversHaveAllLightOfSharpLobes) {
         "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.6\"/><rotate y=\"1\" "
         "angle=\"90\"/><translate x=\"-0.9\" y=\"1\" z=\"1\"/></transform><emitter type=\"area\"><rgb "
         "name=\"radiance\" value=\"6, 5, 4\"/></emitter></shape>";
-    return test::load_text(test::point_camera("0.4,0.5,1.2", "0.2,0,0.35", 8, 14) +
-                           wall("<rotate x=\"1\" angle=\"-90\"/>", gloss) +
-                           wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", kMatt) +
-                           wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"1\" y=\"1\"/>", right) + lamp);
+    return test::load_text(
+        test::point_camera("0.4,0.5,1.2", "0.2,0,0.35", 8, 14) +
+        two_sided_wall("<rotate x=\"1\" angle=\"-90\"/>", gloss) +
+        two_sided_wall("<translate x=\"0\" y=\"1\" z=\"-0.5\"/>", kMatt) +
+        two_sided_wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"1\" y=\"1\"/>", right) + lamp);
   };
   RenderSettings settings = brute_force("point");
   settings.passes = 8;

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "api/whole_renders.h"
 #include "base/vec.h"
 #include "lumirank/lumirank.h"
 #include "support/scene_file.h"
@@ -12,14 +13,13 @@
 namespace lumirank {
 namespace {
 
+using test::kAlphaOfAFile;
 using test::load_text;
 using test::mean_of;
 using test::normal_quantile;
 using test::TemporaryFolder;
 
-// False alarm in one of 10,000 runs of the whole file's tests.
-constexpr double kAlpha = 1e-4;
-constexpr std::size_t kComparisons = 40;
+constexpr std::size_t kComparisons = 40;  // in this file
 
 // Parallel rays along +x through a window of half a width `half` about the x axis.
 std::string parallel_camera(double half) {
@@ -71,14 +71,14 @@ Picture render_truth(const Scene& scene, int paths, int max_depth = -1) {
   return reference(scene, settings, how).picture;
 }
 
-void expect_mean(const Picture& picture, const double (&expected)[3], const char* what) {
+void expect_mean_light(const Picture& picture, const double (&expected)[3], const char* what) {
   for (std::size_t c = 0; c < 3; ++c) {
     std::vector<double> values;
     for (std::size_t p = c; p < picture.planes[0].rgb.size(); p += 3)
       values.push_back(static_cast<double>(picture.planes[0].rgb[p]));
     const auto m = mean_of(values);
     const double allowed =
-        normal_quantile(kAlpha, kComparisons) * m.standard_error + 2e-4 * std::abs(expected[c]) + 1e-7;
+        normal_quantile(kAlphaOfAFile, kComparisons) * m.standard_error + 2e-4 * std::abs(expected[c]) + 1e-7;
     EXPECT_NEAR(m.mean, expected[c], allowed) << what << ", channel " << c;
   }
 }
@@ -90,12 +90,12 @@ TEST(MediaReference, AbsorptionIsBeerAndLamberts) {
   const double expected[3] = {std::exp(-0.4), std::exp(-2.0), std::exp(-6.0)};
   const Scene scene =
       load_text(parallel_camera(0.5) + kWhiteSky + cube_of(homogeneous("0.2, 1, 3", "0, 0, 0")));
-  expect_mean(render_truth(scene, 64), expected, "absorption");
+  expect_mean_light(render_truth(scene, 64), expected, "absorption");
   write_even_grid(folder / "even.vol", 9, 0.7f);
   const Scene grid =
       load_text(parallel_camera(0.5) + kWhiteSky + cube_of(even_grid(folder / "even.vol", "0, 0, 0")));
   const double gray[3] = {std::exp(-1.4), std::exp(-1.4), std::exp(-1.4)};
-  expect_mean(render_truth(grid, 64), gray, "absorption of a grid");
+  expect_mean_light(render_truth(grid, 64), gray, "absorption of a grid");
 }
 
 TEST(MediaRender, ColorOfGlassIsBeersLaw) {
@@ -113,7 +113,7 @@ TEST(MediaRender, ColorOfGlassIsBeersLaw) {
   const double expected[3] = {std::exp(-0.2), std::exp(-1.0), std::exp(-2.0)};
   const RenderResult result = render(scene, settings);
   EXPECT_EQ(result.report.method, "row-guided-sampling");
-  expect_mean(result.picture, expected, "color");
+  expect_mean_light(result.picture, expected, "color");
 }
 
 TEST(MediaReference, NothingIsLostInAFurnace) {
@@ -124,21 +124,21 @@ TEST(MediaReference, NothingIsLostInAFurnace) {
   const std::string mixed = "<phase type=\"blendphase\"><float name=\"weight\" value=\"0.3\"/>" + forward +
                             "<phase type=\"hg\"><float name=\"g\" value=\"-0.4\"/></phase></phase>";
   for (const std::string& phase : {std::string(), forward, mixed})
-    expect_mean(render_truth(load_text(parallel_camera(0.9) + kWhiteSky +
-                                       cube_of(homogeneous("0.5, 2, 4", "1, 1, 1", phase))),
-                             48),
-                one, "furnace");
+    expect_mean_light(render_truth(load_text(parallel_camera(0.9) + kWhiteSky +
+                                             cube_of(homogeneous("0.5, 2, 4", "1, 1, 1", phase))),
+                                   48),
+                      one, "furnace");
   write_even_grid(folder / "even.vol", 9, 1.5f);
-  expect_mean(render_truth(load_text(parallel_camera(0.9) + kWhiteSky +
-                                     cube_of(even_grid(folder / "even.vol", "1, 1, 1"))),
-                           48),
-              one, "furnace of a grid");
+  expect_mean_light(render_truth(load_text(parallel_camera(0.9) + kWhiteSky +
+                                           cube_of(even_grid(folder / "even.vol", "1, 1, 1"))),
+                                 48),
+                    one, "furnace of a grid");
 }
 
 TEST(MediaReference, AColoredFurnaceKeepsWhite) {
   // Where channels have different extinctions, paths are weighted over the three choices of one.
   const double one[3] = {1, 1, 1};
-  expect_mean(
+  expect_mean_light(
       render_truth(load_text(parallel_camera(0.9) + kWhiteSky + cube_of(homogeneous("0, 1, 20", "1, 1, 1"))),
                    64),
       one, "colored furnace");
@@ -149,7 +149,7 @@ TEST(MediaReference, GlassAroundAMediumKeepsWhite) {
   const Scene scene =
       load_text(parallel_camera(0.7) + kWhiteSky + "<shape type=\"sphere\"><bsdf type=\"dielectric\"/>" +
                 homogeneous("0.5, 1, 2", "1, 1, 1") + "</shape>");
-  expect_mean(render_truth(scene, 64), one, "glass");
+  expect_mean_light(render_truth(scene, 64), one, "glass");
 }
 
 // Light comes down the z axis, the eye looks along x: the way of the light to the ray is 1 - z, that of the
@@ -168,16 +168,16 @@ TEST(MediaReference, SingleScatteringInASlab) {
   const double sigma[3] = {0.3, 1, 2}, albedo[3] = {0.9, 0.5, 1};
   double expected[3];
   for (int c = 0; c < 3; ++c) expected[c] = scattered_once(sigma[c], albedo[c], 0.4);
-  expect_mean(
+  expect_mean_light(
       render_truth(load_text(parallel_camera(0.4) + sun + cube_of(homogeneous("0.3, 1, 2", "0.9, 0.5, 1"))),
                    64, 2),
       expected, "single scattering");
   write_even_grid(folder / "even.vol", 12, 1);
   for (int c = 0; c < 3; ++c) expected[c] = scattered_once(1, albedo[c], 0.4);
-  expect_mean(render_truth(load_text(parallel_camera(0.4) + sun +
-                                     cube_of(even_grid(folder / "even.vol", "0.9, 0.5, 1"))),
-                           64, 2),
-              expected, "single scattering in a grid");
+  expect_mean_light(render_truth(load_text(parallel_camera(0.4) + sun +
+                                           cube_of(even_grid(folder / "even.vol", "0.9, 0.5, 1"))),
+                                 64, 2),
+                    expected, "single scattering in a grid");
 }
 
 TEST(MediaReference, ACameraInAMediumLooksThroughIt) {
@@ -194,7 +194,7 @@ TEST(MediaReference, ACameraInAMediumLooksThroughIt) {
   // The cube's near face is 4 away, of which the film sees nothing before its near plane.
   const double seen = 4 - 0.5 * 0.01;
   const double expected[3] = {std::exp(-0.1 * seen), std::exp(-0.2 * seen), std::exp(-0.4 * seen)};
-  expect_mean(render_truth(scene, 16), expected, "camera in fog");
+  expect_mean_light(render_truth(scene, 16), expected, "camera in fog");
 }
 
 TEST(MediaReference, WhatAFogLampLightsAgreesWithAMeshOfIt) {
@@ -257,16 +257,16 @@ TEST(MediaReference, ALampInFogLightsAsItsIntegralSays) {
   double expected[3];
   for (int c = 0; c < 3; ++c) expected[c] = scattered_from(at, sigma[c], albedo[c], 0.6, 0.4);
   const std::string forward = "<phase type=\"hg\"><float name=\"g\" value=\"0.6\"/></phase>";
-  expect_mean(render_truth(load_text(parallel_camera(0.4) + lamp +
-                                     cube_of(homogeneous("0.3, 1, 4", "0.9, 0.5, 1", forward))),
-                           256, 2),
-              expected, "a lamp in fog");
+  expect_mean_light(render_truth(load_text(parallel_camera(0.4) + lamp +
+                                           cube_of(homogeneous("0.3, 1, 4", "0.9, 0.5, 1", forward))),
+                                 256, 2),
+                    expected, "a lamp in fog");
   write_even_grid(folder / "even.vol", 12, 1);
   for (int c = 0; c < 3; ++c) expected[c] = scattered_from(at, 1, albedo[c], 0, 0.4);
-  expect_mean(render_truth(load_text(parallel_camera(0.4) + lamp +
-                                     cube_of(even_grid(folder / "even.vol", "0.9, 0.5, 1"))),
-                           256, 2),
-              expected, "a lamp in a grid");
+  expect_mean_light(render_truth(load_text(parallel_camera(0.4) + lamp +
+                                           cube_of(even_grid(folder / "even.vol", "0.9, 0.5, 1"))),
+                                 256, 2),
+                    expected, "a lamp in a grid");
 }
 
 // A grid that is dense on one side and empty on the other: what collisions are supposed to do there is far

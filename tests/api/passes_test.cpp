@@ -1,8 +1,7 @@
 // Renders in passes: bits, repetition, what they refuse, and that their mean is the truth's.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "api/whole_renders.h"
 #include "base/error.h"
 #include "lumirank/lumirank.h"
 #include "support/scene_file.h"
@@ -10,7 +9,9 @@
 namespace lumirank {
 namespace {
 
-Scene example_box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
+using test::box;
+using test::mean_value;
+using test::report_of;
 
 RenderSettings few_passes(int passes) {
   RenderSettings s;
@@ -21,33 +22,25 @@ RenderSettings few_passes(int passes) {
   return s;
 }
 
-nlohmann::json said(const RenderResult& result) { return nlohmann::json::parse(result.report.json()); }
-
-double mean_of(const Picture& picture) {
-  double sum = 0;
-  for (const float v : picture.planes[0].rgb) sum += static_cast<double>(v);
-  return sum / static_cast<double>(picture.planes[0].rgb.size());
-}
-
 TEST(Passes, TheSameBitsOnOneAndTwoThreads) {
-  const Scene scene = example_box();
+  const Scene scene = box();
   RenderSettings s = few_passes(3);
   s.threads = 1;
   const RenderResult one = render(scene, s);
   s.threads = 2;
   EXPECT_EQ(one.picture.planes[0].rgb, render(scene, s).picture.planes[0].rgb);
-  const auto report = said(one);
+  const auto report = report_of(one);
   EXPECT_EQ(report["method"], "row-guided-sampling");
   EXPECT_EQ(report["passes"], 3);
   EXPECT_GT(report["error.noise"], 0);
 }
 
 TEST(Passes, ABudgetIsRepeatedBitByBit) {
-  const Scene scene = example_box();
+  const Scene scene = box();
   RenderSettings s = few_passes(0);
   s.time = 0.4;
   const RenderResult first = render(scene, s);
-  EXPECT_GE(said(first)["passes"], 1);
+  EXPECT_GE(report_of(first)["passes"], 1);
   const RenderSettings again = render_settings_from_report(first.report.json());
   EXPECT_EQ(first.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb);
 }
@@ -57,18 +50,18 @@ TEST(Passes, ShowAWindowOfTheFilm) {
   RenderSettings s = few_passes(3);
   s.view.width = 64, s.view.height = 48;
   s.view.crop = {30, 21, 17, 13};
-  const RenderResult window = render(example_box(), s);
+  const RenderResult window = render(box(), s);
   EXPECT_EQ(window.picture.width, 17);
   EXPECT_EQ(window.picture.height, 13);
-  const double usual = mean_of(window.picture);
+  const double usual = mean_value(window.picture);
   EXPECT_GT(usual, 0);
   s.passes = 0, s.time = 0.4;
-  EXPECT_NEAR(mean_of(render(example_box(), s).picture), usual, 0.1 * usual);
+  EXPECT_NEAR(mean_value(render(box(), s).picture), usual, 0.1 * usual);
 }
 
 // Which of both goes on after two passes is the clock's choice; here it is written down by hand.
 TEST(Passes, PathsThatGoOnAreThePicture) {
-  const Scene scene = example_box();
+  const Scene scene = box();
   RenderSettings s;
   s.view.width = 24, s.view.height = 18;
   s.denoise = Denoise::off;
@@ -77,7 +70,7 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
   RenderSettings truth;
   truth.view = s.view;
   truth.seed = 5;
-  const double expected = mean_of(reference(scene, truth, {.spp = 256}).picture);
+  const double expected = mean_value(reference(scene, truth, {.spp = 256}).picture);
   using Case = std::pair<std::int64_t, std::int64_t>;
   for (const auto& [own_emission, share_of_passes] : {Case{0, 0}, Case{1, 0}, Case{0, 400}, Case{1, 400}}) {
     SCOPED_TRACE(testing::Message() << own_emission << ", " << share_of_passes);
@@ -91,11 +84,12 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
                  {"more_paths", {126}},
                  {"share_of_passes", {share_of_passes}}};
     const RenderResult result = render(scene, s);
-    EXPECT_EQ(said(result)["method"], "path-tracing");
-    EXPECT_EQ(said(result)["paths"], 128);
-    EXPECT_EQ(said(result)["choices"]["by_paths"][0], 1);
-    EXPECT_FLOAT_EQ(said(result)["share_of_passes"].get<float>(), static_cast<float>(share_of_passes) / 1000);
-    EXPECT_NEAR(mean_of(result.picture), expected, 0.03 * expected);
+    EXPECT_EQ(report_of(result)["method"], "path-tracing");
+    EXPECT_EQ(report_of(result)["paths"], 128);
+    EXPECT_EQ(report_of(result)["choices"]["by_paths"][0], 1);
+    EXPECT_FLOAT_EQ(report_of(result)["share_of_passes"].get<float>(),
+                    static_cast<float>(share_of_passes) / 1000);
+    EXPECT_NEAR(mean_value(result.picture), expected, 0.03 * expected);
     const RenderSettings again = render_settings_from_report(result.report.json());
     EXPECT_EQ(result.picture.planes[0].rgb, render(scene, again).picture.planes[0].rgb);
   }
@@ -104,7 +98,7 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
 TEST(Passes, OtherMethodsHaveThemToo) {
   RenderSettings s = few_passes(2);
   s.method.name = "slice-cuts";
-  const auto report = said(render(example_box(), s));
+  const auto report = report_of(render(box(), s));
   EXPECT_EQ(report["method"], "slice-cuts");
   EXPECT_EQ(report["passes"], 2);
 }
@@ -112,7 +106,7 @@ TEST(Passes, OtherMethodsHaveThemToo) {
 TEST(Passes, StopWhereTheNoiseIsAsAsked) {
   RenderSettings s = few_passes(0);
   s.method.target_error = 0.1;
-  const auto report = said(render(example_box(), s));
+  const auto report = report_of(render(box(), s));
   EXPECT_LT(report["error.noise"], 0.1);
   EXPECT_GE(report["passes"], 4);
 }
@@ -121,25 +115,25 @@ TEST(Passes, StopByAnotherMetric) {
   RenderSettings s = few_passes(0);
   s.method.target_error = 0.05;
   s.method.error_metric = ErrorMetric::relmse;
-  const auto report = said(render(example_box(), s));
+  const auto report = report_of(render(box(), s));
   EXPECT_LT(report["error.estimate"], 0.05);
   EXPECT_NE(report["error.of"].get<std::string>().find("relMSE"), std::string::npos);
   s.method.name = "slice-cuts";
   s.passes = 0;
-  EXPECT_THROW(render(example_box(), s), InputError);
+  EXPECT_THROW(render(box(), s), InputError);
 }
 
 // Without clamping nothing of the light is lost: the mean over pixels, whose noise is a hundredth, is the
 // path tracer's.
 TEST(Passes, HaveTheWholeLight) {
-  const Scene scene = example_box();
+  const Scene scene = box();
   RenderSettings s = few_passes(64);
   s.lights.clamp = 0;
   s.traced.rest = RestOfPaths::trace;
-  const double ours = mean_of(render(scene, s).picture);
+  const double ours = mean_value(render(scene, s).picture);
   ReferenceSettings how;
   how.spp = 1024;
-  const double truth = mean_of(reference(scene, s, how).picture);
+  const double truth = mean_value(reference(scene, s, how).picture);
   EXPECT_NEAR(ours, truth, 0.03 * truth);
 }
 
@@ -167,21 +161,21 @@ TEST(Passes, LightComesThroughPanes) {
   s.traced.rest = RestOfPaths::trace;
   ReferenceSettings how;
   how.spp = 2048;
-  const double truth = mean_of(reference(scene, s, how).picture);
+  const double truth = mean_value(reference(scene, s, how).picture);
   const RenderResult straight = render(scene, s);
-  EXPECT_EQ(said(straight)["panes.straight"], 1);
-  EXPECT_NEAR(mean_of(straight.picture), truth, 0.015 * truth);
+  EXPECT_EQ(report_of(straight)["panes.straight"], 1);
+  EXPECT_NEAR(mean_value(straight.picture), truth, 0.015 * truth);
   s.traced.panes = Panes::exact;
-  EXPECT_EQ(said(render(scene, s))["panes.straight"], 0);
+  EXPECT_EQ(report_of(render(scene, s))["panes.straight"], 0);
 }
 
 TEST(Passes, RefuseWhatIsOfOnePassAlone) {
   RenderSettings s = few_passes(2);
   s.layers = {"albedo"};
-  EXPECT_THROW(render(example_box(), s), InputError);
+  EXPECT_THROW(render(box(), s), InputError);
   s = few_passes(2);
   s.view.shutter_close = 0.5;
-  EXPECT_THROW(render(example_box(), s), InputError);
+  EXPECT_THROW(render(box(), s), InputError);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "api/whole_renders.h"
 #include "base/vec.h"
 #include "lumirank/lumirank.h"
 #include "support/scene_file.h"
@@ -11,13 +12,11 @@
 namespace lumirank {
 namespace {
 
+using test::kAlphaOfAFile;
 using test::load_text;
 using test::mean_of;
 using test::normal_quantile;
 using test::point_camera;
-
-// False alarm in one of 10,000 runs of the whole file's tests.
-constexpr double kAlpha = 1e-4;
 
 std::vector<double> channel(const Picture& picture, std::size_t c) {
   std::vector<double> values;
@@ -33,7 +32,7 @@ void expect_mean(const Picture& picture, const double (&expected)[3], const char
     const auto m = mean_of(values);
     // Single precision sets a floor under the interval of noise-free pictures.
     const double allowed =
-        normal_quantile(kAlpha, 30) * m.standard_error + 2e-5 * std::abs(expected[c]) + 1e-7;
+        normal_quantile(kAlphaOfAFile, 30) * m.standard_error + 2e-5 * std::abs(expected[c]) + 1e-7;
     EXPECT_NEAR(m.mean, expected[c], allowed) << what << ", channel " << c;
   }
 }
@@ -238,14 +237,14 @@ TEST(Reference, MirrorShowsTheLampAndColumnsLeaveOutItsLightOnTheFloor) {
     rest_sum += rest[p];
   }
   const auto m = mean_of(difference);
-  EXPECT_NEAR(m.mean, 0, normal_quantile(kAlpha, 30) * m.standard_error);
+  EXPECT_NEAR(m.mean, 0, normal_quantile(kAlphaOfAFile, 30) * m.standard_error);
   EXPECT_GT(rest_sum, 0) << "the mirror throws light of the lamp on the floor";
 }
 
 TEST(Reference, StatesItsErrorHonestly) {
   // The stated error of a short run against a run with 64 times the samples, whose own error is an eighth:
   // relative L1 averages over 24² pixels, so the statement holds within 25 %.
-  const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml");
+  const Scene scene = test::box();
   RenderSettings settings;
   settings.view.width = settings.view.height = 24;
   ReferenceSettings how;

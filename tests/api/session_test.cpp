@@ -28,7 +28,7 @@ SceneBuilder floor_and_lamps() {
   return builder;
 }
 
-RenderSettings few_lights() {
+RenderSettings small_matrix() {
   RenderSettings settings;
   settings.lights.count = 200;
   settings.view.spp = 1;
@@ -47,7 +47,7 @@ std::string refusal(Call&& call) {
 }
 
 TEST(PublicMatrix, AnEntryHasOneValueHoweverItIsAskedFor) {
-  const Prepared prepared = prepare(floor_and_lamps().build(), few_lights());
+  const Prepared prepared = prepare(floor_and_lamps().build(), small_matrix());
   const Matrix matrix = prepared.matrix();
   ASSERT_GT(matrix.rows(), 20u);
   ASSERT_GT(matrix.columns(), 100u);
@@ -80,7 +80,7 @@ TEST(PublicMatrix, AnEntryHasOneValueHoweverItIsAskedFor) {
 }
 
 TEST(PublicMatrix, RefusesWhatDoesNotFit) {
-  const Matrix matrix = prepare(floor_and_lamps().build(), few_lights()).matrix();
+  const Matrix matrix = prepare(floor_and_lamps().build(), small_matrix()).matrix();
   std::vector<Rgb> row(matrix.columns()), column(matrix.rows());
   const auto beyond = static_cast<Index>(matrix.rows() + matrix.columns());
   EXPECT_NE(refusal([&] { matrix.row(0, column); }), "");
@@ -91,7 +91,7 @@ TEST(PublicMatrix, RefusesWhatDoesNotFit) {
 
 TEST(Session, APreparedRenderHasTheBitsOfARender) {
   const Scene scene = floor_and_lamps().build();
-  RenderSettings settings = few_lights();
+  RenderSettings settings = small_matrix();
   settings.traced.rest = RestOfPaths::skip;
   settings.method.name = "row-column-sampling";
   const Picture whole = render(scene, settings).picture;
@@ -103,7 +103,7 @@ TEST(Session, APreparedRenderHasTheBitsOfARender) {
 // With what was taken over, the picture is that of a preparation from nothing.
 TEST(Session, WhatIsTakenOverChangesNoPicture) {
   const Scene scene = floor_and_lamps().build();
-  const RenderSettings first = few_lights();
+  const RenderSettings first = small_matrix();
   const Prepared previous = prepare(scene, first);
   std::vector<RenderSettings> others(6, first);
   others[1].lights.count = 300;
@@ -126,7 +126,7 @@ TEST(Session, WhatIsTakenOverChangesNoPicture) {
 
 TEST(Session, RelightingIsLinear) {
   const Scene scene = floor_and_lamps().build();
-  RenderSettings settings = few_lights();
+  RenderSettings settings = small_matrix();
   settings.layers = {"light:*"};
   const Prepared prepared = prepare(scene, settings);
   const Relighting relighting(prepared, estimate_sums(prepared, {.name = "brute-force"}));

@@ -18,7 +18,7 @@ namespace {
 using test::TemporaryFolder;
 using Frames = std::vector<std::vector<Rgb>>;
 
-constexpr int kWidth = 32, kHeight = 24;
+constexpr int kShotWidth = 32, kShotHeight = 24;
 
 std::string animation(const std::string& first, const std::string& last) {
   return "<animation name=\"to_world\"><transform time=\"0\">" + first +
@@ -26,8 +26,8 @@ std::string animation(const std::string& first, const std::string& last) {
 }
 std::string camera(const std::string& to_world) {
   return "<sensor type=\"perspective\"><float name=\"fov\" value=\"60\"/>" + to_world +
-         "<film type=\"hdrfilm\"><integer name=\"width\" value=\"" + std::to_string(kWidth) +
-         "\"/><integer name=\"height\" value=\"" + std::to_string(kHeight) +
+         "<film type=\"hdrfilm\"><integer name=\"width\" value=\"" + std::to_string(kShotWidth) +
+         "\"/><integer name=\"height\" value=\"" + std::to_string(kShotHeight) +
          "\"/><rfilter type=\"box\"/></film></sensor>";
 }
 std::string look_at(const std::string& origin, const std::string& target) {
@@ -37,22 +37,23 @@ std::string diffuse(const std::string& color) {
   return "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + color + "\"/></bsdf>";
 }
 // The square of 2 × 2 that faces +z, put somewhere by `place`.
-std::string wall(const std::string& place, const std::string& of_it) {
+std::string square(const std::string& place, const std::string& of_it) {
   return "<shape type=\"rectangle\"><transform name=\"to_world\">" + place + "</transform>" + of_it +
          "</shape>";
 }
 // A floor, a back and a side wall of colors of their own, and a box that throws shadows.
-std::string corner() {
-  return wall("<rotate x=\"1\" angle=\"-90\"/><scale value=\"3\"/>", diffuse("0.6,0.5,0.4")) +
-         wall("<scale value=\"3\"/><translate y=\"3\" z=\"-3\"/>", diffuse("0.7,0.7,0.7")) +
-         wall("<rotate y=\"1\" angle=\"90\"/><scale value=\"3\"/><translate x=\"-3\" y=\"3\"/>",
-              diffuse("0.7,0.2,0.1")) +
+std::string corner_with_a_box() {
+  return square("<rotate x=\"1\" angle=\"-90\"/><scale value=\"3\"/>", diffuse("0.6,0.5,0.4")) +
+         square("<scale value=\"3\"/><translate y=\"3\" z=\"-3\"/>", diffuse("0.7,0.7,0.7")) +
+         square("<rotate y=\"1\" angle=\"90\"/><scale value=\"3\"/><translate x=\"-3\" y=\"3\"/>",
+                diffuse("0.7,0.2,0.1")) +
          "<shape type=\"cube\"><transform name=\"to_world\"><scale value=\"0.6\"/><rotate y=\"1\" "
          "angle=\"30\"/><translate x=\"0.5\" y=\"0.6\" z=\"-1\"/></transform>" +
          diffuse("0.3,0.4,0.7") + "</shape>";
 }
-const std::string kPanel = wall("<rotate x=\"1\" angle=\"90\"/><scale value=\"0.7\"/><translate y=\"4\"/>",
-                                "<emitter type=\"area\"><rgb name=\"radiance\" value=\"9\"/></emitter>");
+const std::string kPanelAbove =
+    square("<rotate x=\"1\" angle=\"90\"/><scale value=\"0.7\"/><translate y=\"4\"/>",
+           "<emitter type=\"area\"><rgb name=\"radiance\" value=\"9\"/></emitter>");
 
 std::string scene_file(const TemporaryFolder& folder, const std::string& body) {
   std::ofstream(folder / "scene.xml") << "<scene version=\"3.0.0\">" << body << "</scene>";
@@ -114,7 +115,7 @@ double worst(const std::vector<double>& of_frame) {
 Scene flight(const TemporaryFolder& folder, const std::string& what_else = "") {
   return Scene::load(
       scene_file(folder, camera(animation(look_at("2,2,5", "-0.5,1,-1"), look_at("3,3,3.5", "-0.5,0.7,-1"))) +
-                             corner() + kPanel + what_else));
+                             corner_with_a_box() + kPanelAbove + what_else));
 }
 
 TEST(ShotTruth, EveryFrameHasTheErrorThatWasAskedFor) {
@@ -152,11 +153,12 @@ TEST(ShotTruth, MoreColumnsHaveLessError) {
 void expect_no_ghost(const std::string& of_camera, const std::string& of_lamp) {
   const TemporaryFolder folder;
   const Scene scene = Scene::load(scene_file(
-      folder, camera(of_camera) + corner() +
-                  wall("<rotate x=\"1\" angle=\"-90\"/><scale value=\"2\"/><translate y=\"0.2\" z=\"2.4\"/>",
-                       "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.2\"/></bsdf>") +
-                  "<shape type=\"sphere\"><float name=\"radius\" value=\"0.3\"/>" + of_lamp +
-                  "<emitter type=\"area\"><rgb name=\"radiance\" value=\"30\"/></emitter></shape>"));
+      folder,
+      camera(of_camera) + corner_with_a_box() +
+          square("<rotate x=\"1\" angle=\"-90\"/><scale value=\"2\"/><translate y=\"0.2\" z=\"2.4\"/>",
+                 "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.2\"/></bsdf>") +
+          "<shape type=\"sphere\"><float name=\"radius\" value=\"0.3\"/>" + of_lamp +
+          "<emitter type=\"area\"><rgb name=\"radiance\" value=\"30\"/></emitter></shape>"));
   AnimateSettings settings = shot(1000);
   settings.render.view.spp = 4, settings.render.view.max_depth = 2;
   settings.tensor->columns = 50, settings.tensor->carrying = TensorSettings::Carrying::always;
@@ -241,7 +243,7 @@ TEST(ShotTruth, SphericalLightsAndHairsStandStillWhereNothingMoves) {
   std::vector<std::vector<Rgb>> pictures;
   for (const bool hairs : {false, true}) {
     const Scene scene =
-        Scene::load(scene_file(folder, camera(animation(view, view)) + corner() + kPanel +
+        Scene::load(scene_file(folder, camera(animation(view, view)) + corner_with_a_box() + kPanelAbove +
                                            (hairs ? tuft(folder, animation(place, place)) : "")));
     for (const LightType type : {LightType::point, LightType::sphere}) {
       settings.render.lights.type = type;

@@ -11,15 +11,15 @@
 namespace lumirank::test {
 namespace {
 
-constexpr int kWidth = 48, kHeight = 36;
+constexpr int kFilmWidth = 48, kFilmHeight = 36;
 
 using Point = std::array<float, 3>;
-struct Quad {
+struct NamedQuad {
   const char* name;
   Point p[4];  // counter-clockwise seen from the front
 };
 // The metal reflects all light at every angle, so that Fresnel's and Schlick's formulas agree.
-const Quad kQuads[] = {
+const NamedQuad kQuads[] = {
     {"floor", {{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}},
     {"wall", {{-2, 0, -2}, {2, 0, -2}, {2, 3, -2}, {-2, 3, -2}}},
     {"side", {{-2, 0, 2}, {-2, 0, -2}, {-2, 3, -2}, {-2, 3, 2}}},
@@ -157,7 +157,7 @@ std::vector<float> picture(const std::string& file, std::uint64_t seed) {
   strict.strict = true;  // nothing is replaced or left out
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
-  settings.view.width = kWidth, settings.view.height = kHeight;
+  settings.view.width = kFilmWidth, settings.view.height = kFilmHeight;
   settings.view.max_depth = 5;
   settings.seed = seed;
   ReferenceSettings how;
@@ -171,7 +171,8 @@ TEST(ThreeFormats, OneSceneGivesTheSamePicture) {
              gltf = picture(gltf_file(folder), 3);
   // 10⁻⁴ is left to numbers with six decimals. A lamp twice as bright, a color or a place mixed up would be
   // seen.
-  const SamePictures how{.width = kWidth, .height = kHeight, .pairs = 3, .slack = 1e-4, .noise_below = 0.35};
+  const SamePictures how{
+      .width = kFilmWidth, .height = kFilmHeight, .pairs = 3, .slack = 1e-4, .noise_below = 0.35};
   expect_same_pictures(mitsuba, pbrt, how, "mitsuba and pbrt");
   expect_same_pictures(mitsuba, gltf, how, "mitsuba and glTF");
   expect_same_pictures(pbrt, gltf, how, "pbrt and glTF");

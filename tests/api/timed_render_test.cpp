@@ -1,8 +1,7 @@
 // A render under a time budget: every choice of the clock is in the report, and repeating it gives the bits.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "api/whole_renders.h"
 #include "base/error.h"
 #include "lumirank/lumirank.h"
 #include "methods/method.h"
@@ -16,6 +15,7 @@ namespace {
 
 using test::load_text;
 using test::point_camera;
+using test::report_of;
 
 // Something for every stage: a sharp lobe for traced direct light, a mirror for the rest, a lamp.
 Scene room() {
@@ -30,8 +30,6 @@ Scene room() {
       "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"3\" z=\"1\"/><float name=\"radius\" "
       "value=\"0.5\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"9\"/></emitter></shape>");
 }
-
-nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::parse(result.report.json()); }
 
 std::vector<std::vector<float>> bits(const RenderResult& result) {
   std::vector<std::vector<float>> planes;

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "api/whole_renders.h"
 #include "lumirank/lumirank.h"
 #include "support/channel_means.h"
 #include "support/scene_file.h"
@@ -11,14 +12,12 @@
 namespace lumirank {
 namespace {
 
+using test::box;
+using test::kAlpha;
 using test::mean_color;
 using test::mean_of;
 using test::normal_quantile;
 using test::student_quantile;
-
-constexpr double kAlpha = 1e-3;  // false alarms of each test
-
-Scene box() { return Scene::load(std::string(LUMIRANK_EXAMPLES) + "/box.xml"); }
 
 // Brute force over unclamped columns estimates the same as the path tracer over the paths that columns carry.
 // The window shows the middle of the back wall: farther than 5 % of the scene from every other surface, so
@@ -139,7 +138,7 @@ TEST(Unbiased, RowColumnSamplingAgreesWithBruteForceOver48Seeds) {
 }
 
 TEST(Determinism, TheSameBitsOnOneTwoAndFourThreads) {
-  const Scene scene = Scene::load(std::string(LUMIRANK_EXAMPLES) + "/interior.xml");
+  const Scene scene = test::example("interior.xml");
   RenderSettings settings;
   settings.traced.rest = RestOfPaths::skip;
   settings.view.width = 48, settings.view.height = 32;

@@ -1,8 +1,7 @@
 // Light that columns cannot carry is part of the picture by default, where it matters.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "api/whole_renders.h"
 #include "lumirank/lumirank.h"
 #include "pipeline/rest_pilot.h"
 #include "support/scene_file.h"
@@ -13,7 +12,9 @@ namespace {
 
 using test::load_text;
 using test::mean_of;
+using test::mean_value;
 using test::point_camera;
+using test::report_of;
 using test::student_quantile;
 
 // A floor of reflectance 0.5 under an even sky of radiance 1, at the foot of a mirror that hides half of the
@@ -38,14 +39,6 @@ RenderSettings few_lights() {
   s.view.max_depth = 3;
   return s;
 }
-
-double mean_value(const Picture& picture) {
-  double sum = 0;
-  for (const float x : picture.planes[0].rgb) sum += x;
-  return sum / static_cast<double>(picture.planes[0].rgb.size());
-}
-
-nlohmann::json report_of(const RenderResult& result) { return nlohmann::json::parse(result.report.json()); }
 
 TEST(WholeLight, TheSkyInAMirrorIsPartOfThePictureByDefault) {
   const Scene scene = load_text(floor_and_wall(kMirror));

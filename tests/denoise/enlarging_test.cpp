@@ -13,7 +13,7 @@ namespace {
 
 using image::Image;
 
-constexpr int kWidth = 96, kHeight = 64;
+constexpr int kLargeWidth = 96, kLargeHeight = 64;
 
 template <class F>
 Image painted(int width, int height, F color) {
@@ -32,7 +32,7 @@ double mean_difference(const Image& a, const Image& b) {
   return sum / of;
 }
 
-Image flat(Rgb color) { return Image(kWidth, kHeight, color); }
+Image flat(Rgb color) { return Image(kLargeWidth, kLargeHeight, color); }
 const Image kNoAlbedo = flat(Rgb(0.5f)), kOneNormal = flat({0, 0, 1});
 
 TEST(Reduced, KeepsTheMean) {
@@ -62,30 +62,31 @@ TEST(Reduced, IsTheMeanOfFourPixels) {
 // Where features say nothing, between centers of pixels light is as on a ramp.
 TEST(Enlarged, WithoutFeaturesIsLinear) {
   const auto ramp = [](int scale) {
-    return painted(kWidth / scale, kHeight / scale, [scale](int x, int) {
+    return painted(kLargeWidth / scale, kLargeHeight / scale, [scale](int x, int) {
       return Rgb((static_cast<float>(x) + 0.5f) * static_cast<float>(scale));
     });
   };
   const Image large = enlarged(ramp(2), kNoAlbedo, kOneNormal);
-  for (int x = 2; x < kWidth - 2; ++x) EXPECT_NEAR(large.at(x, 20).g, static_cast<float>(x) + 0.5f, 1e-3f);
+  for (int x = 2; x < kLargeWidth - 2; ++x)
+    EXPECT_NEAR(large.at(x, 20).g, static_cast<float>(x) + 0.5f, 1e-3f);
 }
 
 TEST(Enlarged, OfTheSameSizeIsThePicture) {
   const Image truth =
-      painted(kWidth, kHeight, [](int x, int y) { return Rgb(static_cast<float>(x * y % 7)); });
+      painted(kLargeWidth, kLargeHeight, [](int x, int y) { return Rgb(static_cast<float>(x * y % 7)); });
   const Image albedo =
-      painted(kWidth, kHeight, [](int x, int y) { return Rgb(static_cast<float>(x + y) / 160); });
+      painted(kLargeWidth, kLargeHeight, [](int x, int y) { return Rgb(static_cast<float>(x + y) / 160); });
   EXPECT_EQ(enlarged(truth, albedo, kOneNormal).pixels, truth.pixels);
 }
 
 // A texture of three pixels, of which the small picture has one and a half, under light that changes slowly.
 TEST(Enlarged, TexturesComeBack) {
   const Image albedo =
-      painted(kWidth, kHeight, [](int x, int y) { return Rgb((x / 3 + y / 3) % 2 ? 0.8f : 0.3f); });
+      painted(kLargeWidth, kLargeHeight, [](int x, int y) { return Rgb((x / 3 + y / 3) % 2 ? 0.8f : 0.3f); });
   Image truth = albedo;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) truth.at(x, y) *= 1 + static_cast<float>(x) / kWidth;
-  const Image small = reduced(truth, kWidth / 2, kHeight / 2);
+  for (int y = 0; y < kLargeHeight; ++y)
+    for (int x = 0; x < kLargeWidth; ++x) truth.at(x, y) *= 1 + static_cast<float>(x) / kLargeWidth;
+  const Image small = reduced(truth, kLargeWidth / 2, kLargeHeight / 2);
   EXPECT_GT(mean_difference(enlarged(small, kNoAlbedo, kOneNormal), truth), 0.1);
   EXPECT_LT(mean_difference(enlarged(small, albedo, kOneNormal), truth), 0.02);
 }
@@ -93,18 +94,18 @@ TEST(Enlarged, TexturesComeBack) {
 // The corner of a room, one wall of which is lit, not in the middle between pixels of the small picture.
 TEST(Enlarged, EdgesOfNormalsComeBack) {
   const auto lit = [](int x, int) { return Rgb(x < 41 ? 1.0f : 0.2f); };
-  const Image truth = painted(kWidth, kHeight, lit);
-  const Image normal = painted(kWidth, kHeight, [](int x, int) {
+  const Image truth = painted(kLargeWidth, kLargeHeight, lit);
+  const Image normal = painted(kLargeWidth, kLargeHeight, [](int x, int) {
     return x < 41 ? Rgb{1, 0, 0} : Rgb{0, 0, 1};
   });
-  const Image small = reduced(truth, kWidth / 2, kHeight / 2);
+  const Image small = reduced(truth, kLargeWidth / 2, kLargeHeight / 2);
   const double linear = mean_difference(enlarged(small, kNoAlbedo, kOneNormal), truth),
                guided = mean_difference(enlarged(small, kNoAlbedo, normal), truth);
   EXPECT_LT(guided, 0.15 * linear);
 }
 
 TEST(Enlarged, SizesNeedNoCommonDivisor) {
-  const Image truth = painted(kWidth, kHeight, [](int x, int y) {
+  const Image truth = painted(kLargeWidth, kLargeHeight, [](int x, int y) {
     return Rgb(2 + std::sin(static_cast<float>(x) / 9) + std::sin(static_cast<float>(y) / 7));
   });
   const Image small = reduced(truth, 41, 27);
@@ -117,9 +118,10 @@ TEST(Enlarged, StaysWithinWhatIsAround) {
   const auto noise = [&](int, int) {
     return Rgb{random.next_float(), random.next_float(), random.next_float()};
   };
-  const Image albedo = painted(kWidth, kHeight, noise), normal = painted(kWidth, kHeight, noise);
+  const Image albedo = painted(kLargeWidth, kLargeHeight, noise),
+              normal = painted(kLargeWidth, kLargeHeight, noise);
   const Image small =
-      painted(kWidth / 2, kHeight / 2, [&](int x, int) { return Rgb(x < 20 ? 1.0f : 100.0f); });
+      painted(kLargeWidth / 2, kLargeHeight / 2, [&](int x, int) { return Rgb(x < 20 ? 1.0f : 100.0f); });
   const Image large = enlarged(small, albedo, normal);
   for (const Rgb& c : large.pixels)
     for (int k = 0; k < 3; ++k) {

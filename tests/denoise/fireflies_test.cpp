@@ -13,16 +13,16 @@ namespace {
 
 using image::Image;
 
-constexpr int kWidth = 40, kHeight = 30;
+constexpr int kCalmWidth = 40, kCalmHeight = 30;
 
 struct WithFireflies {
-  Image image{kWidth, kHeight, Rgb(0.2f, 0.4f, 0.1f)};
+  Image image{kCalmWidth, kCalmHeight, Rgb(0.2f, 0.4f, 0.1f)};
   std::vector<float> deviation = std::vector<float>(image.pixels.size(), 0.01f);
 
   void set(int x, int y, float times, float deviations) {
     const float usual = luminance(image.at(x, y));
     image.at(x, y) *= times;
-    deviation[static_cast<std::size_t>(y * kWidth + x)] = (times - 1) * usual / deviations;
+    deviation[static_cast<std::size_t>(y * kCalmWidth + x)] = (times - 1) * usual / deviations;
   }
   Image clean() const { return without_fireflies(image, deviation); }
 };
@@ -47,8 +47,8 @@ TEST(Fireflies, WhatManySamplesHaveFoundStays) {
 
 TEST(Fireflies, EdgesAndLinesStay) {
   WithFireflies s;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < kCalmHeight; ++y)
+    for (int x = 0; x < kCalmWidth; ++x)
       if (x >= 20 || x == 8 || y == 15) s.set(x, y, 6, 1);
   EXPECT_EQ(s.clean().pixels, s.image.pixels);
 }
@@ -57,8 +57,8 @@ TEST(Fireflies, EdgesAndLinesStay) {
 TEST(Fireflies, TheMeanOfMuchNoiseStays) {
   WithFireflies s;
   Rng random(3, Stage::projection, 8);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < kCalmHeight; ++y)
+    for (int x = 0; x < kCalmWidth; ++x)
       if (random.next_float() < 0.05f) s.set(x, y, 10, 1);
   const auto sum = [](const Image& image) {
     double light = 0;

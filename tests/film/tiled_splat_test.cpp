@@ -7,14 +7,14 @@
 namespace lumirank::film {
 namespace {
 
-struct Samples {
+struct FilmSamples {
   std::vector<Vec2f> film;
   std::vector<Rgb> values;
 };
 
 // Some per pixel of a film of 70 × 50, row by row.
-Samples random_samples() {
-  Samples samples;
+FilmSamples random_samples() {
+  FilmSamples samples;
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 70; ++x)
       for (std::uint64_t k = 0; k < 3; ++k) {
@@ -26,7 +26,7 @@ Samples random_samples() {
   return samples;
 }
 
-image::Image tiled(const Samples& samples, const Filter& filter, Vec2i corner, int width, int height) {
+image::Image tiled(const FilmSamples& samples, const Filter& filter, Vec2i corner, int width, int height) {
   TiledSplat splat(width, height, filter, corner);
   for (std::size_t t = 0; t < splat.tiles(); ++t) {
     const auto box = splat.pixels(t);
@@ -43,7 +43,7 @@ constexpr FilterKind kKinds[] = {FilterKind::box,      FilterKind::tent,       F
                                  FilterKind::mitchell, FilterKind::catmullrom, FilterKind::lanczos};
 
 TEST(TiledSplat, IsTheSplatOfAllSamples) {
-  const Samples samples = random_samples();
+  const FilmSamples samples = random_samples();
   for (const FilterKind kind : kKinds) {
     const Filter filter = Filter::standard(kind);
     const image::Image whole = splat(70, 50, filter, samples.film, samples.values);
@@ -55,7 +55,7 @@ TEST(TiledSplat, IsTheSplatOfAllSamples) {
 }
 
 TEST(TiledSplat, AWindowHasTheBitsOfTheWhole) {
-  const Samples samples = random_samples();
+  const FilmSamples samples = random_samples();
   for (const FilterKind kind : kKinds) {
     const Filter filter = Filter::standard(kind);
     const image::Image whole = tiled(samples, filter, {0, 0}, 70, 50);

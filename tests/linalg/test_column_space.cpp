@@ -10,7 +10,7 @@
 namespace lumirank::linalg {
 namespace {
 
-constexpr std::size_t kRows = 200, kWidth = 3, kLength = kRows * kWidth;
+constexpr std::size_t kSpaceRows = 200, kWidth = 3, kLength = kSpaceRows * kWidth;
 
 // Columns of a space of `rank` dimensions, with `noise` of their own.
 class LowRank {
@@ -38,7 +38,7 @@ class LowRank {
 
 std::vector<std::uint32_t> every(std::size_t step) {
   std::vector<std::uint32_t> rows;
-  for (std::uint32_t a = 0; a < kRows; a += static_cast<std::uint32_t>(step)) rows.push_back(a);
+  for (std::uint32_t a = 0; a < kSpaceRows; a += static_cast<std::uint32_t>(step)) rows.push_back(a);
   return rows;
 }
 
@@ -61,7 +61,7 @@ double distance(std::span<const float> a, std::span<const float> b) {
 TEST(ColumnSpace, ColumnsWithinAreExactFromATwentiethOfTheirRows) {
   LowRank matrix(6, 1);
   ColumnSpace space;
-  space.begin(kRows, kWidth);
+  space.begin(kSpaceRows, kWidth);
   std::vector<float> coordinates, out(kLength);
   for (int k = 0; k < 9; ++k) {
     const auto column = matrix.column();
@@ -87,7 +87,7 @@ TEST(ColumnSpace, ColumnsWithinAreExactFromATwentiethOfTheirRows) {
 TEST(ColumnSpace, RowsThatAreLeftOutTellTheErrorElsewhere) {
   LowRank matrix(5, 2);
   ColumnSpace space;
-  space.begin(kRows, kWidth);
+  space.begin(kSpaceRows, kWidth);
   std::vector<float> coordinates, out(kLength);
   for (int k = 0; k < 5; ++k) space.add(matrix.column(), coordinates);
   for (const std::size_t step : {50u, 20u, 8u}) {
@@ -104,7 +104,7 @@ TEST(ColumnSpace, RowsThatAreLeftOutTellTheErrorElsewhere) {
       double square = 0;
       for (std::size_t j = 0; j < kLength; ++j)
         square += std::pow(static_cast<double>(out[j]) - static_cast<double>(column[j]), 2);
-      is += square / kRows;
+      is += square / kSpaceRows;
     }
     EXPECT_GT(told, 0.8 * is) << step;
     EXPECT_LT(told, 4 * is) << step;
@@ -114,7 +114,7 @@ TEST(ColumnSpace, RowsThatAreLeftOutTellTheErrorElsewhere) {
 
 TEST(ColumnSpace, SampledRowsThatSeeNothingGiveNothing) {
   ColumnSpace space;
-  space.begin(kRows, kWidth);
+  space.begin(kSpaceRows, kWidth);
   std::vector<float> column(kLength, 0.0f), coordinates;
   column[7] = 1;
   space.add(column, coordinates);
@@ -130,7 +130,7 @@ TEST(ColumnSpace, SampledRowsThatSeeNothingGiveNothing) {
 // no reason to foretell a hundred specks.
 TEST(ColumnSpace, SpecksOutsideOfTheSampledRowsAreNotMultiplied) {
   ColumnSpace space;
-  space.begin(kRows, kWidth);
+  space.begin(kSpaceRows, kWidth);
   std::vector<float> speck(kLength, 1e-3f), coordinates, out(kLength);
   speck[kWidth] = 1;
   space.add(speck, coordinates);
@@ -143,7 +143,7 @@ TEST(ColumnSpace, SpecksOutsideOfTheSampledRowsAreNotMultiplied) {
 
 TEST(ColumnSpace, DarkColumnsAddNoDirection) {
   ColumnSpace space;
-  space.begin(kRows, kWidth);
+  space.begin(kSpaceRows, kWidth);
   std::vector<float> coordinates;
   space.add(std::vector<float>(kLength, 0.0f), coordinates);
   EXPECT_EQ(space.rank(), 0u);

@@ -16,9 +16,9 @@ namespace lumirank::linalg {
 namespace {
 
 // Entry (row, light, frame).
-using Entry = std::function<Rgb(std::size_t, std::size_t, std::size_t)>;
+using EntryFunction = std::function<Rgb(std::size_t, std::size_t, std::size_t)>;
 
-ReducedTensor tensor_of(const ReducedTensor::Shape& shape, const Entry& entry) {
+ReducedTensor tensor_of(const ReducedTensor::Shape& shape, const EntryFunction& entry) {
   ReducedTensor tensor(shape);
   std::vector<Rgb> values(shape.rows * shape.columns);
   for (std::size_t k = 0; k < shape.frames; ++k) {

@@ -12,7 +12,8 @@
 namespace lumirank::methods {
 namespace {
 
-Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const RunOptions& options) {
+Estimate run_planned(const matrix::LightingMatrix& m, const SettingsMap& settings,
+                     const RunOptions& options) {
   return find_method("row-column-sampling").make(settings)->run(m, options);
 }
 
@@ -27,7 +28,7 @@ Spread over_seeds(const matrix::DenseMatrix& m, double target, int seeds) {
     RunOptions options;
     options.seed = static_cast<std::uint64_t>(seed);
     options.target_error = target;
-    const Estimate e = run(m, {}, options);
+    const Estimate e = run_planned(m, {}, options);
     s.error += relative_l1_difference(e.sums, truth) / seeds;
     s.predicted += e.trace.numbers.at("predicted_error") / seeds;
     s.stated += e.trace.numbers.at("error.estimate") / seeds;
@@ -68,7 +69,7 @@ TEST(Automatic, SmallerTargetsTakeMoreColumns) {
 TEST(Automatic, LowRankNeedsFewColumns) {
   const auto m = matrix::clustered_matrix({2000, 3000, 1}, 20);
   RunOptions options;
-  const Estimate e = run(m, {}, options);
+  const Estimate e = run_planned(m, {}, options);
   EXPECT_LE(e.trace.numbers.at("columns"), 100);
   EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 0.02);
 }
@@ -78,16 +79,16 @@ TEST(Automatic, GivesUpOnClusteringWhereItDoesNotPay) {
   const auto m = matrix::recess_matrix({1000, 600, 1});
   RunOptions options;
   options.target_error = 0.001;
-  const Estimate e = run(m, {}, options);
+  const Estimate e = run_planned(m, {}, options);
   EXPECT_EQ(e.trace.numbers.at("columns"), 600);
   EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 600 * 0x1p-24);
 }
 
 TEST(Automatic, KeepsGivenNumbers) {
   const auto m = matrix::low_rank_matrix({600, 1000, 1}, 40);
-  const Estimate rows = run(m, {{"rows", "123"}}, {});
+  const Estimate rows = run_planned(m, {{"rows", "123"}}, {});
   EXPECT_EQ(rows.trace.numbers.at("rows"), 123);
-  const Estimate columns = run(m, {{"columns", "200"}}, {});
+  const Estimate columns = run_planned(m, {{"columns", "200"}}, {});
   EXPECT_EQ(columns.trace.numbers.at("clusters"), 200);
 }
 
@@ -96,7 +97,7 @@ TEST(Automatic, TimeBudgetGivesACompleteEstimate) {
   for (double seconds : {1e-6, 0.01}) {
     RunOptions options;
     options.time_seconds = seconds;
-    const Estimate e = run(m, {}, options);
+    const Estimate e = run_planned(m, {}, options);
     EXPECT_FALSE(e.interrupted);
     EXPECT_LT(relative_difference(e.sums, m.exact_sums()),
               1.0);  // some columns were rendered and stand for all

@@ -2,7 +2,6 @@
 // that nothing here depends on the machine.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -13,6 +12,7 @@
 #include "methods/common/column_pass.h"
 #include "methods/common/timed_choices.h"
 #include "methods/common/turns.h"
+#include "methods/method_names.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {
@@ -156,17 +156,7 @@ TEST_P(EveryBudget, EveryIntegerHasAHighestValue) {
   }
 }
 
-std::vector<std::string> budget_names() {
-  std::vector<std::string> n;
-  for (const MethodInfo& m : all_methods()) n.push_back(m.name);
-  return n;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EveryBudget, testing::ValuesIn(budget_names()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, EveryBudget, testing::ValuesIn(test::method_names()), test::name_of_test);
 
 struct Covered {
   std::vector<Rgb> sums;

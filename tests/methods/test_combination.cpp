@@ -7,6 +7,7 @@
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
 #include "methods/method.h"
+#include "methods/method_names.h"
 
 namespace lumirank::methods {
 namespace {
@@ -49,7 +50,7 @@ const std::set<std::string> kLocal{"adaptive-lightslice",  "column-completion", 
                                    "sampling-recovery",    "slice-cuts",        "stochastic-lightcuts",
                                    "visibility-completion"};
 
-std::vector<std::string> names() {
+std::vector<std::string> names_with_a_combination() {
   std::vector<std::string> n;
   for (const MethodInfo& m : all_methods())
     if (!kLocal.contains(m.name)) n.push_back(m.name);
@@ -68,11 +69,8 @@ TEST(LocalMethods, CombinationIsLeftEmptyWhereColumnsDifferFromRowToRow) {
     EXPECT_TRUE(find_method(name).make({})->run(m, {}).combination.empty()) << name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Combination, testing::ValuesIn(names()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Methods, Combination, testing::ValuesIn(names_with_a_combination()),
+                         test::name_of_test);
 
 }  // namespace
 }  // namespace lumirank::methods

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "matrix/synthetic.h"
 #include "methods/common/column_pass.h"
+#include "methods/method_names.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {
@@ -37,7 +38,7 @@ TEST_P(EveryMethod, SettingsRoundTripThroughJson) {
 
 // A room with shadows, where every step of every method has something to do: places, normals, two receivers
 // per pixel, lamps of several colors, some of which no sampled row sees.
-const matrix::DenseMatrix& room() {
+const matrix::DenseMatrix& busy_room() {
   static const auto m = [] {
     auto made = matrix::occluded_matrix({600, 400, 3}, 8);
     made.group.resize(made.columns());
@@ -58,7 +59,7 @@ std::vector<std::string> choices_of(const Parameter& p) {
 // default, there or of a matrix that is mostly zero: a choice that nothing reads would not.
 TEST_P(EveryMethod, EveryChoiceRunsAndOneMakesADifference) {
   const auto sparse = matrix::sparse_matrix({600, 400, 1}, 0.02);
-  const auto exact = room().exact_sums();
+  const auto exact = busy_room().exact_sums();
   // Fewer columns than there are, so that there is something to choose.
   SettingsMap few;
   for (const Parameter& p : info().parameters)
@@ -70,11 +71,11 @@ TEST_P(EveryMethod, EveryChoiceRunsAndOneMakesADifference) {
   };
   for (const Parameter& p : info().parameters) {
     if (p.type != "choice") continue;
-    const auto usual = sums_with(room(), p, p.default_text),
+    const auto usual = sums_with(busy_room(), p, p.default_text),
                usual_sparse = sums_with(sparse, p, p.default_text);
     bool differs = false;
     for (const std::string& choice : choices_of(p)) {
-      const auto sums = sums_with(room(), p, choice);
+      const auto sums = sums_with(busy_room(), p, choice);
       EXPECT_LT(relative_l1_difference(sums, exact), 0.35) << p.key << '=' << choice;
       differs = differs || sums != usual || sums_with(sparse, p, choice) != usual_sparse;
       // Or another matrix is made for it.
@@ -116,7 +117,7 @@ TEST_P(EveryMethod, SameBitsForAnyNumberOfThreads) {
   for (const Parameter& p : info().parameters)
     if (p.key == "slice-rows") settings[p.key] = "40";
   const auto method = info().make(settings);
-  for (const matrix::DenseMatrix* m : {&sparse, &room()})
+  for (const matrix::DenseMatrix* m : {&sparse, &busy_room()})
     for (const double target : {0.0, 0.05}) {
       RunOptions options;
       options.seed = 5;
@@ -223,24 +224,15 @@ TEST_P(EveryMethod, CopesWithTinyAndDarkMatrices) {
   EXPECT_TRUE(info().make({})->run(no_rows, {}).sums.empty());
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> n;
-  for (const MethodInfo& m : all_methods()) n.push_back(m.name);
-  return n;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(names()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(test::method_names()), test::name_of_test);
 
 TEST(Methods, UnknownNamesListTheValidOnes) {
   try {
     find_method("no-such-method");
     FAIL() << "accepted";
   } catch (const InputError& e) {
-    for (const std::string& name : names()) EXPECT_NE(std::string(e.what()).find(name), std::string::npos);
+    for (const std::string& name : test::method_names())
+      EXPECT_NE(std::string(e.what()).find(name), std::string::npos);
   }
 }
 

@@ -14,6 +14,9 @@
 namespace lumirank::methods {
 namespace {
 
+using lumirank::test::mean_of;
+using lumirank::test::student_quantile;
+
 constexpr double kAlpha = 1e-4;  // false alarms per test
 
 // Columns are random samples: entry (i, j) = base_i / columns · (1 + u), u uniform in (−1, 1) and different
@@ -49,12 +52,12 @@ TEST(ExactRows, LightsPartIsTheDistanceFromTheLimit) {
     stated.push_back(lights);
     difference.push_back(lights - relative_l1_difference(s.matrix.exact_sums(), s.limit));
   }
-  const auto m = test::mean_of(difference);
-  const double bound = test::student_quantile(kAlpha, 1, difference.size() - 1) * m.standard_error;
+  const auto m = mean_of(difference);
+  const double bound = student_quantile(kAlpha, 1, difference.size() - 1) * m.standard_error;
   EXPECT_NEAR(m.mean, 0, bound);
-  EXPECT_LT(bound, 0.1 * test::mean_of(stated).mean);  // the test has teeth
+  EXPECT_LT(bound, 0.1 * mean_of(stated).mean);  // the test has teeth
   // √30 samples of a relative standard deviation of 1/√3, in the mean of an absolute normal deviate.
-  EXPECT_NEAR(test::mean_of(stated).mean, std::sqrt(1.0 / 90) * std::sqrt(2 / M_PI), 0.004);
+  EXPECT_NEAR(mean_of(stated).mean, std::sqrt(1.0 / 90) * std::sqrt(2 / M_PI), 0.004);
 }
 
 TEST(ExactRows, ExactColumnsHaveNoLightsPart) {
@@ -187,11 +190,10 @@ TEST(ExactRows, WeighsRows) {
     for (const SampledRow& r : sampler.next_by_density(200, density)) known.read(r, row);
     values.push_back(known.sampling(sums).value);
   }
-  const auto mean = test::mean_of(values);
+  const auto mean = mean_of(values);
   // A ratio of means is biased by about its variance over its mean: far less than the error of this mean.
-  EXPECT_NEAR(
-      mean.mean, over / under,
-      test::student_quantile(kAlpha, 1, values.size() - 1) * mean.standard_error + 0.02 * over / under);
+  EXPECT_NEAR(mean.mean, over / under,
+              student_quantile(kAlpha, 1, values.size() - 1) * mean.standard_error + 0.02 * over / under);
 }
 
 TEST(ExactRows, PartsAddUp) {

@@ -12,7 +12,7 @@ namespace {
 
 using Settings = std::map<std::string, std::string>;
 
-Estimate run(const matrix::LightingMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
+Estimate run_lightslice(const matrix::LightingMatrix& m, const Settings& settings, std::uint64_t seed = 1) {
   RunOptions options;
   options.seed = seed;
   return find_method("lightslice").make(settings)->run(m, options);
@@ -23,7 +23,7 @@ double mean_error(const matrix::DenseMatrix& m, const Settings& settings) {
   double sum = 0;
   constexpr std::uint64_t kSeeds = 8;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
-    sum += relative_l1_difference(run(m, settings, seed).sums, m.exact_sums());
+    sum += relative_l1_difference(run_lightslice(m, settings, seed).sums, m.exact_sums());
   return sum / kSeeds;
 }
 
@@ -53,15 +53,15 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
        {matrix::low_rank_matrix({200, 300, 1}, 8), matrix::sparse_matrix({200, 300, 1}, 0.3)}) {
     test::UnbiasednessTest t(m.exact_sums(), 10);
     for (std::uint64_t seed = 1; seed <= test::runs(150); ++seed)
-      t.add(run(m,
-                {{"columns", "40"},
-                 {"slice-rows", "40"},
-                 {"neighbors", "3"},
-                 {"color", "scalar"},
-                 {"max-sum-share", "0"},
-                 {"zero-columns", "sample"},
-                 {"zero-share", "0.3"}},
-                seed)
+      t.add(run_lightslice(m,
+                           {{"columns", "40"},
+                            {"slice-rows", "40"},
+                            {"neighbors", "3"},
+                            {"color", "scalar"},
+                            {"max-sum-share", "0"},
+                            {"zero-columns", "sample"},
+                            {"zero-share", "0.3"}},
+                           seed)
                 .sums);
     EXPECT_LT(t.max_t(), t.limit());
   }
@@ -70,7 +70,7 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
 TEST(LightSlice, StatesWhatItCost) {
   const auto m = matrix::low_rank_matrix({400, 900, 1}, 5);
   const matrix::MeteredMatrix metered(m);
-  const Estimate e = run(metered, {{"slice-rows", "100"}, {"columns", "30"}});
+  const Estimate e = run_lightslice(metered, {{"slice-rows", "100"}, {"columns", "30"}});
   const auto& n = e.trace.numbers;
   EXPECT_EQ(n.at("slices"), 4);
   EXPECT_EQ(n.at("columns"), 30);

@@ -13,7 +13,8 @@
 namespace lumirank::methods {
 namespace {
 
-Estimate run(const matrix::LightingMatrix& m, const SettingsMap& settings, const RunOptions& options = {}) {
+Estimate run_row_column(const matrix::LightingMatrix& m, const SettingsMap& settings,
+                        const RunOptions& options = {}) {
   return find_method("row-column-sampling").make(settings)->run(m, options);
 }
 
@@ -23,8 +24,8 @@ TEST(RowColumn, ExactClustersGiveTheExactSum) {
   const auto m = matrix::clustered_matrix({300, 400, 1}, 12);
   for (const char* clustering : {"combined", "splitting"})
     for (const char* color : {"averaged", "scalar"}) {
-      const Estimate e =
-          run(m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"color", color}});
+      const Estimate e = run_row_column(
+          m, {{"rows", "50"}, {"columns", "12"}, {"clustering", clustering}, {"color", color}});
       EXPECT_EQ(e.trace.numbers.at("columns"), 12);
       EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 64 * 0x1p-24);
     }
@@ -32,7 +33,7 @@ TEST(RowColumn, ExactClustersGiveTheExactSum) {
 
 TEST(RowColumn, AllColumnsAreExact) {
   const auto m = matrix::low_rank_matrix({300, 200, 1}, 10);
-  const Estimate e = run(m, {{"rows", "50"}, {"columns", "200"}});
+  const Estimate e = run_row_column(m, {{"rows", "50"}, {"columns", "200"}});
   EXPECT_LT(relative_difference(e.sums, m.exact_sums()), 200 * 0x1p-24);
 }
 
@@ -49,7 +50,8 @@ TEST(RowColumn, ErrorFallsWithColumns) {
       RunOptions options;
       options.seed = seed;
       const double e = relative_difference(
-          run(m, {{"rows", "100"}, {"columns", columns}, {"power-share", "0"}}, options).sums, truth);
+          run_row_column(m, {{"rows", "100"}, {"columns", columns}, {"power-share", "0"}}, options).sums,
+          truth);
       squares.push_back(e * e);
     }
     if (!previous.empty()) {

@@ -8,7 +8,7 @@
 namespace lumirank::methods {
 namespace {
 
-constexpr std::size_t kSide = 48;  // pixels
+constexpr std::size_t kFloorSide = 48;  // pixels
 
 // A surface seen from above, a row to a pixel; every eighth row of every eighth line is asked.
 struct Floor {
@@ -16,12 +16,12 @@ struct Floor {
   std::vector<Vec3f> position, normal;
   std::vector<Rgb> albedo;
   FoundChanges found;
-  std::vector<bool> known = std::vector<bool>(kSide * kSide, false);
+  std::vector<bool> known = std::vector<bool>(kFloorSide * kFloorSide, false);
 
   template <typename Change>
   explicit Floor(const Change& change) {
-    for (std::size_t y = 0; y < kSide; ++y)
-      for (std::size_t x = 0; x < kSide; ++x) {
+    for (std::size_t y = 0; y < kFloorSide; ++y)
+      for (std::size_t x = 0; x < kFloorSide; ++x) {
         const Vec2f at{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
         const std::size_t row = pixel.size();
         pixel.push_back(at), position.push_back({at.x, at.y, 0}), normal.push_back({0, 0, 1});
@@ -39,7 +39,7 @@ struct Floor {
   }
 };
 
-std::size_t row_at(std::size_t x, std::size_t y) { return y * kSide + x; }
+std::size_t row_at(std::size_t x, std::size_t y) { return y * kFloorSide + x; }
 
 TEST(SpreadChanges, GivesEveryRowWhatAllThatWereAskedLack) {
   const Floor floor([](Vec2f) { return Rgb(0.02f, 0, -0.01f); });
@@ -56,8 +56,8 @@ TEST(SpreadChanges, FollowsWhatChangesSlowly) {
   const Floor floor(change);
   const std::vector<Rgb> spread = floor.spread();
   double left = 0, all = 0;
-  for (std::size_t y = 8; y + 8 < kSide; ++y)
-    for (std::size_t x = 8; x + 8 < kSide; ++x) {
+  for (std::size_t y = 8; y + 8 < kFloorSide; ++y)
+    for (std::size_t x = 8; x + 8 < kFloorSide; ++x) {
       const std::size_t row = row_at(x, y);
       if (floor.known[row]) continue;
       const double is = static_cast<double>(change(floor.pixel[row]).g);
@@ -69,8 +69,8 @@ TEST(SpreadChanges, FollowsWhatChangesSlowly) {
 TEST(SpreadChanges, NotFromOneSurfaceToAnother) {
   // The right half is a wall, at whose rows nothing is lacking; and one that shows nothing at all.
   Floor floor([](Vec2f at) { return Rgb(at.x < 24 ? 1.0f : 0.0f); });
-  for (std::size_t y = 0; y < kSide; ++y)
-    for (std::size_t x = 24; x < kSide; ++x) {
+  for (std::size_t y = 0; y < kFloorSide; ++y)
+    for (std::size_t x = 24; x < kFloorSide; ++x) {
       const std::size_t row = row_at(x, y);
       floor.normal[row] = {1, 0, 0.01f};
       floor.position[row] = {24, static_cast<float>(y), static_cast<float>(x) - 24};

@@ -10,7 +10,8 @@ namespace {
 using matrix::DenseMatrix;
 using matrix::Index;
 
-Estimate run(const DenseMatrix& m, const std::map<std::string, std::string>& settings, std::uint64_t seed) {
+Estimate run_stochastic(const DenseMatrix& m, const std::map<std::string, std::string>& settings,
+                        std::uint64_t seed) {
   RunOptions options;
   options.seed = seed;
   return find_method("stochastic-lightcuts").make(settings)->run(m, options);
@@ -24,7 +25,8 @@ TEST(StochasticLightcuts, AreUnbiased) {
           {{"nodes", "25"}},
           {{"nodes", "120"}, {"error-bound", "0.03"}}}) {
       test::UnbiasednessTest t(m.exact_sums(), 10);
-      for (std::uint64_t seed = 1; seed <= test::runs(150); ++seed) t.add(run(m, settings, seed).sums);
+      for (std::uint64_t seed = 1; seed <= test::runs(150); ++seed)
+        t.add(run_stochastic(m, settings, seed).sums);
       EXPECT_LT(t.max_t(), t.limit());
     }
 }
@@ -36,7 +38,7 @@ TEST(StochasticLightcuts, ErrorFallsToNothingAsCutsGrow) {
 TEST(StochasticLightcuts, AnErrorBoundSavesColumns) {
   const DenseMatrix m = matrix::low_rank_matrix({120, 300, 1}, 6);
   const auto columns = [&](const char* bound) {
-    return run(m, {{"nodes", "200"}, {"error-bound", bound}}, 1).trace.numbers.at("columns");
+    return run_stochastic(m, {{"nodes", "200"}, {"error-bound", bound}}, 1).trace.numbers.at("columns");
   };
   EXPECT_EQ(columns("0"), 200);
   EXPECT_LT(columns("0.05"), columns("0.01"));

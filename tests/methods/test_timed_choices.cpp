@@ -3,17 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "matrix/synthetic.h"
+#include "methods/method_names.h"
 
 namespace lumirank::methods {
 namespace {
 
-Estimate run(const std::string& method, const matrix::LightingMatrix& m, double seconds, double target,
-             TimedChoices& choices) {
+Estimate run_timed(const std::string& method, const matrix::LightingMatrix& m, double seconds, double target,
+                   TimedChoices& choices) {
   RunOptions options;
   options.time_seconds = seconds;
   options.target_error = target;
@@ -29,12 +28,12 @@ TEST_P(EveryTimedMethod, RepeatsTheSameBits) {
   for (const double seconds : {1e-6, 0.002, 0.02})
     for (const double target : {0.0, 0.01}) {
       TimedChoices made;
-      const Estimate first = run(GetParam(), m, seconds, target, made);
+      const Estimate first = run_timed(GetParam(), m, seconds, target, made);
       EXPECT_FALSE(made.made().empty());
       for (const double other : {1e-6, 1e6}) {
         TimedChoices again(made.made());
         Estimate second;
-        with_threads(2, [&] { second = run(GetParam(), m, other, target, again); });
+        with_threads(2, [&] { second = run_timed(GetParam(), m, other, target, again); });
         again.expect_end();
         EXPECT_TRUE(first.sums == second.sums) << seconds << " s, target " << target;
         EXPECT_EQ(again.made(), made.made()) << "a repetition can be repeated";
@@ -42,23 +41,13 @@ TEST_P(EveryTimedMethod, RepeatsTheSameBits) {
     }
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> n;
-  for (const MethodInfo& m : all_methods()) n.push_back(m.name);
-  return n;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EveryTimedMethod, testing::ValuesIn(names()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, EveryTimedMethod, testing::ValuesIn(test::method_names()), test::name_of_test);
 
 TEST(TimedChoices, WithoutABudgetNoneAreMade) {
   const auto m = matrix::low_rank_matrix({500, 1000, 1}, 40);
   for (const MethodInfo& info : all_methods()) {
     TimedChoices none;
-    run(info.name, m, 0, 0.05, none);
+    run_timed(info.name, m, 0, 0.05, none);
     EXPECT_TRUE(none.made().empty()) << info.name;
   }
 }

@@ -16,26 +16,27 @@ namespace lumirank::methods {
 namespace {
 
 using Settings = std::map<std::string, std::string>;
-constexpr std::size_t kSide = 32, kRows = kSide * kSide, kColumns = 130;
+constexpr std::size_t kSquareSide = 32, kReceivers = kSquareSide * kSquareSide, kShadows = 130;
 
 // A square of 32×32 receivers, and for each column an edge of a shadow, at a random place and angle.
 matrix::DenseMatrix shadow_matrix() {
-  std::vector<float> visible(kRows * kColumns);
-  for (std::size_t j = 0; j < kColumns; ++j) {
+  std::vector<float> visible(kReceivers * kShadows);
+  for (std::size_t j = 0; j < kShadows; ++j) {
     Rng rng(1, Stage::test, 60, j);
     const float angle = 2 * kPi * rng.next_float(), offset = rng.next_float() - 0.5f;
-    for (std::size_t i = 0; i < kRows; ++i) {
-      const float x = (static_cast<float>(i % kSide) + 0.5f) / kSide - 0.5f;
-      const float y = (static_cast<float>(i / kSide) + 0.5f) / kSide - 0.5f;
-      visible[i * kColumns + j] = x * std::cos(angle) + y * std::sin(angle) < offset;
+    for (std::size_t i = 0; i < kReceivers; ++i) {
+      const float x = (static_cast<float>(i % kSquareSide) + 0.5f) / kSquareSide - 0.5f;
+      const float y = (static_cast<float>(i / kSquareSide) + 0.5f) / kSquareSide - 0.5f;
+      visible[i * kShadows + j] = x * std::cos(angle) + y * std::sin(angle) < offset;
     }
   }
-  matrix::DenseMatrix m(kRows, kColumns, std::vector<Rgb>(kRows * kColumns, Rgb(1)), std::move(visible));
-  for (std::size_t i = 0; i < kRows; ++i) {
-    m.row_position.push_back({static_cast<float>(i % kSide), static_cast<float>(i / kSide), 0});
+  matrix::DenseMatrix m(kReceivers, kShadows, std::vector<Rgb>(kReceivers * kShadows, Rgb(1)),
+                        std::move(visible));
+  for (std::size_t i = 0; i < kReceivers; ++i) {
+    m.row_position.push_back({static_cast<float>(i % kSquareSide), static_cast<float>(i / kSquareSide), 0});
     m.row_normal.push_back({0, 0, 1});
   }
-  m.power.assign(kColumns, 1.0f);
+  m.power.assign(kShadows, 1.0f);
   return m;
 }
 
@@ -45,7 +46,7 @@ struct Completed {
 };
 
 template <typename Complete>
-Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
+Completed complete_by(const matrix::DenseMatrix& m, Complete&& how) {
   const matrix::MeteredMatrix metered(m);
   const auto reader = metered.reader();
   Completion completion(*reader);
@@ -73,7 +74,7 @@ Completed complete(const matrix::DenseMatrix& m, Complete&& how) {
 // line by less than the last spacing.
 TEST(Completion, FollowsTheEdgesOfShadows) {
   const auto m = shadow_matrix();
-  const Completed c = complete(m, [](Completion& completion, const Completion::Slice& slice) {
+  const Completed c = complete_by(m, [](Completion& completion, const Completion::Slice& slice) {
     completion.complete(slice, {16, 0.0});
   });
   EXPECT_LT(c.sampled, 0.29);
@@ -84,7 +85,7 @@ TEST(Completion, FollowsTheEdgesOfShadows) {
 TEST(Completion, ChecksCostWhatTheySayAndCorrect) {
   const auto m = shadow_matrix();
   const auto with = [&](double checks) {
-    return complete(shadow_matrix(), [&](Completion& completion, const Completion::Slice& slice) {
+    return complete_by(shadow_matrix(), [&](Completion& completion, const Completion::Slice& slice) {
       completion.complete(slice, {16, checks});
     });
   };

@@ -13,7 +13,7 @@
 namespace lumirank::pathtrace {
 namespace {
 
-constexpr int kWidth = 12, kHeight = 8;
+constexpr int kGlassWidth = 12, kGlassHeight = 8;
 
 // A ball and a block of colored glass on a floor, under a lamp and a dim sky.
 std::string glass_scene(const std::string& more = "",
@@ -60,7 +60,7 @@ std::array<test::RunningMean, 3> pictures(const scenedesc::SceneDesc& desc, bool
     for (int c = 0; c < 3; ++c) {
       double sum = 0;
       for (const Rgb& pixel : film.result().image.pixels) sum += static_cast<double>(pixel[c]);
-      sums[static_cast<std::size_t>(c)].add(sum / (kWidth * kHeight));
+      sums[static_cast<std::size_t>(c)].add(sum / (kGlassWidth * kGlassHeight));
     }
   }
   return sums;

@@ -16,7 +16,7 @@ namespace {
 
 using test::SceneMaker;
 
-constexpr int kWidth = 12, kHeight = 8, kPictures = 100;
+constexpr int kWidth = 12, kHeight = 8, kPicturesOfEach = 100;
 
 Transform ball(Vec3f center, double radius) {
   return Transform::translate(static_cast<double>(center.x), static_cast<double>(center.y),
@@ -128,33 +128,34 @@ void expect_same(const PixelMeans& alone, const PixelMeans& both, double teeth =
 }
 
 TEST(LightTracer, ABulbInGlassIsTheSameWithAThirdOfTheVariance) {
-  const auto alone = means(bulb_in_glass(), Paths::all, 0, kPictures),
-             both = means(bulb_in_glass(), Paths::all, 1, kPictures);
+  const auto alone = means(bulb_in_glass(), Paths::all, 0, kPicturesOfEach),
+             both = means(bulb_in_glass(), Paths::all, 1, kPicturesOfEach);
   expect_same(alone, both);
   EXPECT_LT(both.variance(), alone.variance() / 3);
 }
 
 TEST(LightTracer, TheRestOfABulbInGlassIsTheSame) {
-  const auto alone = means(bulb_in_glass(), Paths::rest, 0, kPictures),
-             both = means(bulb_in_glass(), Paths::rest, 1, kPictures);
+  const auto alone = means(bulb_in_glass(), Paths::rest, 0, kPicturesOfEach),
+             both = means(bulb_in_glass(), Paths::rest, 1, kPicturesOfEach);
   expect_same(alone, both, 0.1);
   EXPECT_LT(both.variance(), alone.variance() / 3);
 }
 
 TEST(LightTracer, ALampThatLightsTheCeilingIsTheSame) {
-  const auto alone = means(shaded_lamp(), Paths::all, 0, kPictures),
-             both = means(shaded_lamp(), Paths::all, 1, kPictures);
+  const auto alone = means(shaded_lamp(), Paths::all, 0, kPicturesOfEach),
+             both = means(shaded_lamp(), Paths::all, 1, kPicturesOfEach);
   expect_same(alone, both);
   EXPECT_LT(both.variance(), alone.variance());
 }
 
 TEST(LightTracer, ASpotOnAMirrorIsTheSame) {
-  expect_same(means(spot_on_a_mirror(), Paths::all, 0, kPictures),
-              means(spot_on_a_mirror(), Paths::all, 2, kPictures));
+  expect_same(means(spot_on_a_mirror(), Paths::all, 0, kPicturesOfEach),
+              means(spot_on_a_mirror(), Paths::all, 2, kPicturesOfEach));
 }
 
 TEST(LightTracer, RoughMetalAndASkyAreTheSame) {
-  expect_same(means(gloss(), Paths::all, 0, kPictures), means(gloss(), Paths::all, 0.5, kPictures));
+  expect_same(means(gloss(), Paths::all, 0, kPicturesOfEach),
+              means(gloss(), Paths::all, 0.5, kPicturesOfEach));
 }
 
 // Le of a lamp is the flux of its starts, over their density: both say how light is spread over places and

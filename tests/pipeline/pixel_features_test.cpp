@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kSize = 16;
+constexpr int kFilmSide = 16;
 
 // From z = 10 the square [-1, 1]² of the plane z = 0 fills the film.
 sd::SceneDesc square_in_view() {
@@ -18,7 +18,7 @@ sd::SceneDesc square_in_view() {
   auto& sensor = desc.sensors[0];
   sensor.to_world = Transform::look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
   sensor.fov_x = static_cast<float>(2 * 180 / 3.14159265358979 * std::atan(0.1));
-  sensor.film.width = sensor.film.height = kSize;
+  sensor.film.width = sensor.film.height = kFilmSide;
   return desc;
 }
 
@@ -45,17 +45,17 @@ TEST(PixelFeatures, EdgesHaveTheirCoverageAndTheRestFewSamples) {
   const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.4f)}});
   use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), gray);
   // 0.3 of a pixel beyond the middle of the film.
-  const double edge = 0.3 * 2 / kSize;
+  const double edge = 0.3 * 2 / kFilmSide;
   const int lamp = add_shape(desc, sd::RectangleDesc{},
                              Transform::translate(3 + edge, 0, 1e-4) * Transform::scale(3, 3, 1));
   use(desc, lamp, add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0)}}));
   shine(desc, lamp, sd::ColorInput{Rgb(2)});
   double differing = 0;
   const PixelFeatures features = traced(desc, &differing);
-  EXPECT_NEAR(differing, 2.0 / kSize, 1.0 / kSize);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const float lit = x < kSize / 2 ? 0.0f : (x == kSize / 2 ? 0.7f : 1.0f);
+  EXPECT_NEAR(differing, 2.0 / kFilmSide, 1.0 / kFilmSide);
+  for (int y = 0; y < kFilmSide; ++y)
+    for (int x = 0; x < kFilmSide; ++x) {
+      const float lit = x < kFilmSide / 2 ? 0.0f : (x == kFilmSide / 2 ? 0.7f : 1.0f);
       EXPECT_NEAR(features.emission.at(x, y).g, 2 * lit, lit > 0 && lit < 1 ? 0.05f : 1e-4f) << x << ' ' << y;
       EXPECT_NEAR(features.albedo.at(x, y).g, 0.4f * (1 - lit), lit > 0 && lit < 1 ? 0.02f : 1e-4f);
       EXPECT_EQ(features.mirrored.at(x, y), Rgb(0));
@@ -70,8 +70,9 @@ TEST(PixelFeatures, EdgesOfWhatGlaresAreKnownFromOthers) {
     auto desc = square_in_view();
     const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.9f)}});
     use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), gray);
-    const int lamp = add_shape(desc, sd::RectangleDesc{},
-                               Transform::translate(3 + 0.6 / kSize, 0, 1e-4) * Transform::scale(3, 3, 1));
+    const int lamp =
+        add_shape(desc, sd::RectangleDesc{},
+                  Transform::translate(3 + 0.6 / kFilmSide, 0, 1e-4) * Transform::scale(3, 3, 1));
     use(desc, lamp, add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0)}}));
     shine(desc, lamp, sd::ColorInput{radiance});
     const world::World world = build(desc);
@@ -80,12 +81,12 @@ TEST(PixelFeatures, EdgesOfWhatGlaresAreKnownFromOthers) {
     EXPECT_TRUE(tracing.trace_all(4, {}));
     EXPECT_GT(tracing.differing(), 0);
     EXPECT_TRUE(tracing.trace_glaring(252, {}));
-    for (int y = 0; y < kSize; ++y)
-      EXPECT_NEAR(tracing.means().emission.at(kSize / 2, y).g, 0.7f * radiance.g,
+    for (int y = 0; y < kFilmSide; ++y)
+      EXPECT_NEAR(tracing.means().emission.at(kFilmSide / 2, y).g, 0.7f * radiance.g,
                   radiance.g > 1 ? 0.04f * radiance.g : 0.5f * radiance.g);
     return tracing.glaring();
   };
-  EXPECT_NEAR(glaring(Rgb(20)), 2.0 / kSize, 1.0 / kSize);
+  EXPECT_NEAR(glaring(Rgb(20)), 2.0 / kFilmSide, 1.0 / kFilmSide);
   EXPECT_EQ(glaring(Rgb(0.8f)), 0);
 }
 
@@ -125,7 +126,7 @@ TEST(PixelFeatures, AMediumHidesWhatIsBehindIt) {
     normal += features.normal.pixels[p].b;
     EXPECT_NEAR(features.albedo.pixels[p].b, 0.4f, 1e-3f);
   }
-  constexpr double kPixels = kSize * kSize;
+  constexpr double kPixels = kFilmSide * kFilmSide;
   EXPECT_NEAR(r / kPixels, 0.4f * red + 0.9f * (1 - red), 0.02);
   EXPECT_NEAR(g / kPixels, 0.4f * green + 0.9f * (1 - green), 0.02);
   EXPECT_NEAR(normal / kPixels, luminance(Rgb(red, green, 1)), 0.05);

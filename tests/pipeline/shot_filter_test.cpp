@@ -13,7 +13,7 @@
 namespace lumirank::pipeline {
 namespace {
 
-constexpr int kSize = 24;
+constexpr int kFrameSide = 24;
 
 // A camera in (x, 0, 0) that looks along z at a wall in z = 4, which fills its film. `light`, `albedo`: of a
 // place (x, y) of the wall.
@@ -21,14 +21,14 @@ using OfWall = std::function<float(float, float)>;
 ShotFrame frame_of(float camera_x, const OfWall& light, const OfWall& albedo = {}) {
   ShotFrame frame;
   scenedesc::SensorDesc& sensor = frame.view.sensor;
-  sensor.film.width = sensor.film.height = kSize;
+  sensor.film.width = sensor.film.height = kFrameSide;
   sensor.to_world = Transform::translate(camera_x, 0, 0);
-  frame.view.width = frame.view.height = kSize;
-  frame.picture = image::Image(kSize, kSize);
-  if (albedo) frame.albedo = image::Image(kSize, kSize);
+  frame.view.width = frame.view.height = kFrameSide;
+  frame.picture = image::Image(kFrameSide, kFrameSide);
+  if (albedo) frame.albedo = image::Image(kFrameSide, kFrameSide);
   const world::Camera camera(sensor);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
+  for (int y = 0; y < kFrameSide; ++y)
+    for (int x = 0; x < kFrameSide; ++x) {
       const geometry::Ray ray =
           camera.ray({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, {0.5f, 0.5f});
       const float t = (4 - ray.origin.z) / ray.direction.z;
@@ -51,10 +51,10 @@ OfWall even(float light) {
 double difference(const image::Image& a, const image::Image& b) {
   double all = 0;
   constexpr int kEdge = 6;
-  for (int y = kEdge; y < kSize - kEdge; ++y)
-    for (int x = kEdge; x < kSize - kEdge; ++x)
+  for (int y = kEdge; y < kFrameSide - kEdge; ++y)
+    for (int x = kEdge; x < kFrameSide - kEdge; ++x)
       all += std::pow(static_cast<double>(a.at(x, y).r - b.at(x, y).r), 2);
-  return std::sqrt(all) / (kSize - 2 * kEdge);
+  return std::sqrt(all) / (kFrameSide - 2 * kEdge);
 }
 
 TEST(ShotFilter, NoiseOfStillLightIsAveraged) {
@@ -151,13 +151,13 @@ TEST(ShotFilter, WhatMovesTakesItsLightAlong) {
     auto desc = test::empty_scene();
     auto& sensor = desc.sensors[0];
     sensor.to_world = Transform::look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
-    sensor.film.width = sensor.film.height = kSize;
+    sensor.film.width = sensor.film.height = kFrameSide;
     const Transform moved = Transform::rotate(0, 0, 1, 4 * k) * Transform::translate(0.7 * k, 0, 0);
     test::add_shape(desc, sd::RectangleDesc{}, moved * Transform::scale(40, 40, 1));
     const auto world = std::make_shared<const world::World>(test::build(desc));
     const View view = make_view(desc, {});
     // Stripes across the wall, of which places in the world know nothing.
-    ShotFrame frame = shot_frame(world, view, image::Image(kSize, kSize, Rgb(1)), {});
+    ShotFrame frame = shot_frame(world, view, image::Image(kFrameSide, kFrameSide, Rgb(1)), {});
     for (std::size_t p = 0; p < frame.picture.pixels.size(); ++p) {
       const Vec3f on_wall = moved.inverse()->point(frame.surfaces[p].position);
       frame.picture.pixels[p] = Rgb(1 + 0.5f * std::sin(on_wall.x));

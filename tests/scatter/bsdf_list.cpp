@@ -12,8 +12,6 @@ constexpr auto kGgx = NormalDistribution::ggx;
 constexpr auto kBeckmann = NormalDistribution::beckmann;
 
 ColorInput color(float r, float g, float b) { return {{r, g, b}, -1}; }
-ColorInput gray(float v) { return {Rgb(v), -1}; }
-FloatInput number(float v) { return {v, -1}; }
 
 BsdfCase single(std::string name, Material m) {
   BsdfCase c;

@@ -2,6 +2,9 @@
 // bsdf_list.cpp.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,17 @@ struct BsdfCase {
 };
 
 const std::vector<BsdfCase>& bsdf_list();
+
+// For tests with an index into the list: the name of their case, of letters, digits and underscores alone.
+inline std::string name_of(const testing::TestParamInfo<int>& index) {
+  std::string name = bsdf_list()[static_cast<std::size_t>(index.param)].name;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+// Inputs without a texture.
+inline ColorInput gray(float v) { return {Rgb(v), -1}; }
+inline FloatInput number(float v) { return {v, -1}; }
 
 // A point at the origin with normal `n` and an arbitrary tangent; uv in the middle of a texel.
 SurfacePoint point_with_normal(Vec3f n);

@@ -9,9 +9,6 @@
 namespace lumirank::scatter {
 namespace {
 
-ColorInput gray(float v) { return {Rgb(v), -1}; }
-FloatInput number(float v) { return {v, -1}; }
-
 ConductorMaterial metal(float alpha) {
   return {Rgb(0.2f), Rgb(2.5f), gray(1), NormalDistribution::ggx, number(alpha), number(alpha), alpha == 0};
 }

@@ -179,13 +179,6 @@ TEST_P(EveryBsdfPair, NoLeaksUnderTiltedShadingNormals) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<int>& info) {
-  std::string name = bsdf_list()[static_cast<std::size_t>(info.param)].name;
-  for (char& ch : name)
-    if (ch == '.') ch = '_';
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(List, EveryBsdfPair, testing::Range(0, static_cast<int>(bsdf_list().size())),
                          name_of);
 

@@ -108,11 +108,6 @@ TEST_P(EveryBsdfBound, OfOneDirectionIsNearTheValue) {
   EXPECT_LE(std::exp(bounds / sum), 5) << c.name;
 }
 
-std::string name_of(const testing::TestParamInfo<int>& at) {
-  std::string name = bsdf_list()[static_cast<std::size_t>(at.param)].name;
-  std::replace(name.begin(), name.end(), '.', '_');
-  return name;
-}
 INSTANTIATE_TEST_SUITE_P(List, EveryBsdfBound, testing::Range(0, static_cast<int>(bsdf_list().size())),
                          name_of);
 

@@ -17,9 +17,6 @@ namespace {
 
 using Passage = MaterialSet::Passage;
 
-ColorInput gray(float v) { return {Rgb(v), -1}; }
-FloatInput number(float v) { return {v, -1}; }
-
 MaterialSet materials(std::vector<Material> list, std::vector<Texture> textures = {}) {
   MaterialSet set;
   set.materials = std::move(list);

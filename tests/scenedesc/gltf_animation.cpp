@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scenedesc/gltf_maker.h"
+#include "scenedesc/moment.h"
 #include "scenedesc/schema/mesh_cache.h"
 
 namespace lumirank::scenedesc {
@@ -37,15 +38,10 @@ GltfMaker animated(const std::vector<Channel>& channels, const std::string& clip
   m.root["animations"] = json::array({animation});  // compilers differ on {animation}
   return m;
 }
-ReadOptions moment(double seconds) {
-  ReadOptions options;
-  options.time = seconds;
-  return options;
-}
 Vec3d place_at(const GltfMaker& m, double seconds, Vec3d of = {}) {
   return parse(m, moment(seconds)).shapes.at(0).to_world.place(of);
 }
-void expect_near(Vec3d have, Vec3d want, double tolerance = 1e-6) {
+void expect_place(Vec3d have, Vec3d want, double tolerance = 1e-6) {
   EXPECT_NEAR(have.x, want.x, tolerance);
   EXPECT_NEAR(have.y, want.y, tolerance);
   EXPECT_NEAR(have.z, want.z, tolerance);
@@ -54,10 +50,10 @@ void expect_near(Vec3d have, Vec3d want, double tolerance = 1e-6) {
 // The example of Khronos' tutorial: between (10, 5, -5) at 0.8 s and (14, 3, -2) at 1.6 s lies (12, 4, -3.5).
 TEST(GltfAnimation, LinearAsInTheTutorial) {
   const GltfMaker m = animated({{.times = {0, 0.8f, 1.6f}, .values = {0, 0, 0, 10, 5, -5, 14, 3, -2}}});
-  expect_near(place_at(m, 1.2), {12, 4, -3.5});
-  expect_near(place_at(m, 0.2), {2.5, 1.25, -1.25});
-  expect_near(place_at(m, -3), {0, 0, 0});
-  expect_near(place_at(m, 100), {14, 3, -2});
+  expect_place(place_at(m, 1.2), {12, 4, -3.5});
+  expect_place(place_at(m, 0.2), {2.5, 1.25, -1.25});
+  expect_place(place_at(m, -3), {0, 0, 0});
+  expect_place(place_at(m, 100), {14, 3, -2});
   const Motion motion = parse(m, moment(0)).motion;
   EXPECT_EQ(motion.begin, 0);
   EXPECT_NEAR(motion.end, 1.6, 1e-6);
@@ -70,7 +66,7 @@ TEST(GltfAnimation, StepsHoldTheirKey) {
       animated({{.times = {1, 2, 3}, .values = {1, 0, 0, 2, 0, 0, 3, 0, 0}, .interpolation = "STEP"}});
   for (const auto& [seconds, x] :
        {std::pair{0.0, 1}, {1.0, 1}, {1.999, 1}, {2.0, 2}, {2.5, 2}, {3.0, 3}, {9.0, 3}})
-    expect_near(place_at(m, seconds), {static_cast<double>(x), 0, 0});
+    expect_place(place_at(m, seconds), {static_cast<double>(x), 0, 0});
 }
 
 // A cubic spline is the polynomial of third degree through its values with its tangents: x(t) = t³ - 2t² + 5
@@ -84,7 +80,8 @@ TEST(GltfAnimation, CubicSplinesMeetACubic) {
     for (const float v : {slope, 0.0f, 0.0f, value, 0.0f, 0.0f, slope, 0.0f, 0.0f}) c.values.push_back(v);
   }
   const GltfMaker m = animated({c});
-  for (const double t : {0.0, 0.1, 0.25, 0.5, 0.9, 1.5, 2.0}) expect_near(place_at(m, t), {x(t), 0, 0}, 1e-5);
+  for (const double t : {0.0, 0.1, 0.25, 0.5, 0.9, 1.5, 2.0})
+    expect_place(place_at(m, t), {x(t), 0, 0}, 1e-5);
 }
 
 // A quarter turn about z in equal parts, by the shorter way although the second quaternion has the other
@@ -94,7 +91,7 @@ TEST(GltfAnimation, RotationsAreSpherical) {
   const GltfMaker m = animated({{.path = "rotation", .values = {0, 0, 0, 1, 0, 0, -s, -s}, .type = "VEC4"}});
   for (const double t : {0.0, 0.2, 0.5, 0.9, 1.0}) {
     const double angle = t * M_PI / 2;
-    expect_near(place_at(m, t, {1, 0, 0}), {std::cos(angle), std::sin(angle), 0});
+    expect_place(place_at(m, t, {1, 0, 0}), {std::cos(angle), std::sin(angle), 0});
   }
 }
 
@@ -128,10 +125,10 @@ TEST(GltfAnimation, CubicRotationsAreUnitQuaternions) {
     }
     for (double& number : q) number /= std::sqrt(size);
     const auto [x, y, z, w] = q;
-    expect_near(place_at(m, seconds, {1, 0, 0}),
-                {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)});
-    expect_near(place_at(m, seconds, {0, 0, 1}),
-                {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)});
+    expect_place(place_at(m, seconds, {1, 0, 0}),
+                 {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)});
+    expect_place(place_at(m, seconds, {0, 0, 1}),
+                 {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)});
     if (t > 0.1 && t < 0.9) {  // else the test would not see it
       EXPECT_GT(std::abs(size - 1), 0.01) << seconds;
     }
@@ -145,7 +142,7 @@ TEST(GltfAnimation, NormalizedIntegersAreRotationsToo) {
   m.root["animations"] = {
       {{"samplers", {{{"input", input}, {"output", output}}}},
        {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}}}}};
-  expect_near(place_at(m, 0.5, {1, 0, 0}), {0, 1, 0}, 1e-6);
+  expect_place(place_at(m, 0.5, {1, 0, 0}), {0, 1, 0}, 1e-6);
   EXPECT_EQ(parse(m, moment(0)).motion.clips, std::vector<std::string>{"0"});
 }
 
@@ -184,7 +181,7 @@ TEST(GltfAnimation, SkinsFollowJointsThatTurn) {
     // The elbow turns (1, 0.5) and (0, 0.5) about itself.
     const Vec3d want[4] = {{0, 0, 2}, {1, 0, 2}, {x - y / 2, 0.5 + y + x / 2, 2}, {-y / 4, 0.75 + x / 4, 2}};
     for (std::size_t k = 0; k < 4; ++k)
-      expect_near(mesh.origin + static_cast<Vec3d>(mesh.positions[k]), want[k]);
+      expect_place(mesh.origin + static_cast<Vec3d>(mesh.positions[k]), want[k]);
   }
 }
 
@@ -233,10 +230,10 @@ TEST(GltfAnimation, ClipsAreChosenByName) {
     options.clip = clip;
     return parse(m, options).shapes.at(0).to_world.place({1, 1, 0});
   };
-  expect_near(corner(""), {2, 1, 0});
-  expect_near(corner("walk"), {2, 1, 0});
-  expect_near(corner("grow"), {3, 3, 0});
-  expect_near(corner("*"), {4, 3, 0});
+  expect_place(corner(""), {2, 1, 0});
+  expect_place(corner("walk"), {2, 1, 0});
+  expect_place(corner("grow"), {3, 3, 0});
+  expect_place(corner("*"), {4, 3, 0});
   options.clip = "run";
   EXPECT_NE(failure(m.gltf(), options).find("no clip 'run'"), std::string::npos);
   EXPECT_NE(failure(m.gltf(), options).find("walk, grow"), std::string::npos);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "gltf_maker.h"
+#include "scenedesc/bad_files.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -15,7 +16,7 @@ struct BadGltf {
 };
 
 // clang-format off
-const std::vector<BadGltf> kBad = {
+const std::vector<BadGltf> kBadGltf = {
     {"glb_bad_json.glb", R"(not valid JSON)"},
     {"glb_chunk_too_long.glb", R"(a chunk)"},
     {"glb_empty.glb", R"(no JSON)"},
@@ -118,14 +119,12 @@ const std::vector<BadGltf> kBad = {
 // What only the world finds when it decodes the image.
 const std::set<std::string> kFoundLater = {"gltf_image_is_no_image.gltf", "gltf_truncated_image.gltf"};
 
-const std::string kFolder = std::string(LUMIRANK_TEST_DATA) + "/bad/";
-
 class BadGltfInput : public testing::TestWithParam<BadGltf> {};
 
 TEST_P(BadGltfInput, IsRefusedWithItsPlace) {
   const BadGltf& bad = GetParam();
   try {
-    read_scene(kFolder + bad.name);
+    read_scene(kBadFolder + bad.name);
     FAIL() << bad.name << " was read";
   } catch (const InputError& error) {
     const std::string what = error.what();
@@ -134,7 +133,7 @@ TEST_P(BadGltfInput, IsRefusedWithItsPlace) {
     EXPECT_NE(what.find("; "), std::string::npos) << "no remedy: " << what;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Corpus, BadGltfInput, testing::ValuesIn(kBad),
+INSTANTIATE_TEST_SUITE_P(Corpus, BadGltfInput, testing::ValuesIn(kBadGltf),
                          [](const testing::TestParamInfo<BadGltf>& file) {
                            std::string name = file.param.name;
                            for (char& c : name)
@@ -144,9 +143,9 @@ INSTANTIATE_TEST_SUITE_P(Corpus, BadGltfInput, testing::ValuesIn(kBad),
 
 TEST(BadGltfCorpus, EveryFileIsInTheTable) {
   std::set<std::string> listed = kFoundLater;
-  for (const BadGltf& bad : kBad) listed.insert(bad.name);
+  for (const BadGltf& bad : kBadGltf) listed.insert(bad.name);
   std::set<std::string> there;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder))
+  for (const auto& entry : std::filesystem::directory_iterator(kBadFolder))
     if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
       there.insert(entry.path().filename().string());
   EXPECT_EQ(there, listed);
@@ -180,9 +179,9 @@ TEST(BadGltfCorpus, CutAndChangedContainers) {
 }
 
 TEST(BadGltfCorpus, NoFileNoScene) {
-  EXPECT_THROW(read_gltf(kFolder + "no_such.gltf"), InputError);
-  EXPECT_THROW(read_gltf(kFolder), InputError);
-  EXPECT_THROW(read_scene(kFolder + "no_such.glb"), InputError);
+  EXPECT_THROW(read_gltf(kBadFolder + "no_such.gltf"), InputError);
+  EXPECT_THROW(read_gltf(kBadFolder), InputError);
+  EXPECT_THROW(read_scene(kBadFolder + "no_such.glb"), InputError);
 }
 
 }  // namespace

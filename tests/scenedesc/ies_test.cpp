@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "scenedesc/bad_files.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -159,12 +160,7 @@ TEST(Ies, TypeATurnsAboutTheVerticalAndIsAimedAtTheHorizon) {
   EXPECT_EQ(at(0, 180), 0);
 }
 
-struct BadFile {
-  const char* name;
-  int line;  // 0: about the file as a whole
-  const char* says;
-};
-const BadFile kBadFiles[] = {
+const BadFile kBadIesFiles[] = {
     {"empty.ies", 1, "TILT="},
     {"no_tilt.ies", 3, "TILT="},
     {"picture.ies", 2, "TILT="},
@@ -199,7 +195,7 @@ const BadFile kBadFiles[] = {
 };
 
 TEST(IesBadFiles, EveryFileIsRefusedWithItsNameLineAndReason) {
-  for (const BadFile& bad : kBadFiles) {
+  for (const BadFile& bad : kBadIesFiles) {
     const std::string name = std::string(LUMIRANK_TEST_DATA) + "/bad_ies/" + bad.name;
     try {
       IesData data = read_ies(name);
@@ -210,14 +206,14 @@ TEST(IesBadFiles, EveryFileIsRefusedWithItsNameLineAndReason) {
         EXPECT_EQ(e.where().file, name);
       }
       EXPECT_EQ(e.where().line, bad.line) << bad.name << ": " << e.what();
-      EXPECT_NE(std::string(e.what()).find(bad.says), std::string::npos) << bad.name << ": " << e.what();
+      EXPECT_NE(std::string(e.what()).find(bad.phrase), std::string::npos) << bad.name << ": " << e.what();
     }
   }
 }
 
 TEST(IesBadFiles, TheCorpusIsCompletelyListed) {
   std::set<std::string> listed, there;
-  for (const BadFile& bad : kBadFiles) listed.insert(bad.name);
+  for (const BadFile& bad : kBadIesFiles) listed.insert(bad.name);
   for (const auto& entry : std::filesystem::directory_iterator(std::string(LUMIRANK_TEST_DATA) + "/bad_ies"))
     there.insert(entry.path().filename().string());
   EXPECT_EQ(listed, there);

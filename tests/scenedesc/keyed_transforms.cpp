@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "scenedesc/meshes/mesh_reader.h"
+#include "scenedesc/moment.h"
 #include "scenedesc/pbrt_scene.h"
 #include "scenedesc/schema/frame_files.h"
 #include "scenedesc/schema/keyed_transform.h"
@@ -17,19 +18,13 @@
 namespace lumirank::scenedesc {
 namespace {
 
-void expect_near(const Transform& have, const Transform& want, double tolerance = 1e-9) {
+void expect_transform(const Transform& have, const Transform& want, double tolerance = 1e-9) {
   for (std::size_t k = 0; k < 16; ++k) EXPECT_NEAR(have.m[k], want.m[k], tolerance) << "element " << k;
 }
-void expect_near(Vec3d have, Vec3d want, double tolerance = 1e-9) {
+void expect_vector(Vec3d have, Vec3d want, double tolerance = 1e-9) {
   EXPECT_NEAR(have.x, want.x, tolerance);
   EXPECT_NEAR(have.y, want.y, tolerance);
   EXPECT_NEAR(have.z, want.z, tolerance);
-}
-
-ReadOptions moment(double seconds) {
-  ReadOptions options;
-  options.time = seconds;
-  return options;
 }
 
 TEST(KeyedTransform, KeysAreMetAndHeldOutside) {
@@ -40,8 +35,8 @@ TEST(KeyedTransform, KeysAreMetAndHeldOutside) {
   const std::vector<TransformKey> keys = {{1, a}, {3, b}};
   for (const double before : {-5.0, 1.0}) EXPECT_EQ(transform_at(keys, before), a);
   for (const double after : {3.0, 7.0}) EXPECT_EQ(transform_at(keys, after), b);
-  expect_near(transform_at(keys, 1 + 1e-12), a);
-  expect_near(transform_at(keys, 3 - 1e-12), b);
+  expect_transform(transform_at(keys, 1 + 1e-12), a);
+  expect_transform(transform_at(keys, 3 - 1e-12), b);
 }
 
 // Closed form: turning about one axis while moving and growing.
@@ -50,14 +45,15 @@ TEST(KeyedTransform, TurnsMovesAndStretchesApart) {
     return Transform::translate(4 * t, 0, -t) * Transform::rotate(0.3, 1, 0.2, 10 + 150 * t) *
            Transform::scale(1 + t, 2 - t, 1);
   };
-  for (const double t : {0.1, 0.5, 0.8}) expect_near(transform_at({{0, pose(0)}, {1, pose(1)}}, t), pose(t));
+  for (const double t : {0.1, 0.5, 0.8})
+    expect_transform(transform_at({{0, pose(0)}, {1, pose(1)}}, t), pose(t));
 }
 
 TEST(KeyedTransform, MirrorsStayMirrors) {
   const auto pose = [](double t) { return Transform::rotate(0, 0, 1, 90 * t) * Transform::scale(-1, 1, 1); };
   const Transform half = transform_at({{0, pose(0)}, {1, pose(1)}}, 0.5);
   EXPECT_NEAR(half.determinant3(), -1, 1e-12);
-  expect_near(half, pose(0.5));
+  expect_transform(half, pose(0.5));
   // Nothing lies between a mirror and none: the earlier one is kept.
   EXPECT_EQ(transform_at({{0, pose(0)}, {1, Transform{}}}, 0.9), pose(0));
 }
@@ -118,15 +114,15 @@ TEST(MitsubaMotion, CamerasAndLampsMove) {
   const double part = 0.25, turned = part * M_PI / 2;
   const SceneDesc scene = parse_mitsuba(text, testing::TempDir() + "flight.xml", moment(1 + 2 * part));
   const Transform& camera = scene.sensors.at(0).to_world;
-  expect_near(camera.origin(), {1, 0, 5});
-  expect_near(camera.axis(2), {-std::sin(turned), 0, -std::cos(turned)});
-  expect_near(camera.axis(1), {0, 1, 0});
-  expect_near(std::get<PointLightDesc>(scene.emitters.at(0).kind).position, {1, 3, 0});
+  expect_vector(camera.origin(), {1, 0, 5});
+  expect_vector(camera.axis(2), {-std::sin(turned), 0, -std::cos(turned)});
+  expect_vector(camera.axis(1), {0, 1, 0});
+  expect_vector(std::get<PointLightDesc>(scene.emitters.at(0).kind).position, {1, 3, 0});
   const Transform& spot = std::get<SpotLightDesc>(scene.emitters.at(1).kind).to_world;
-  expect_near(spot.origin(), {0, 0, 2});
-  expect_near(spot.axis(2), {std::sin(turned), 0, std::cos(turned)});
+  expect_vector(spot.origin(), {0, 0, 2});
+  expect_vector(spot.axis(2), {std::sin(turned), 0, std::cos(turned)});
   ASSERT_TRUE(scene.shapes.at(0).emitter);
-  expect_near(scene.shapes[0].to_world.origin(), {0, 0, 0});
+  expect_vector(scene.shapes[0].to_world.origin(), {0, 0, 0});
   EXPECT_EQ(scene.motion.moving.size(), 4u);
   EXPECT_EQ(scene.motion.begin, 1);
   EXPECT_EQ(scene.motion.end, 3);
@@ -149,20 +145,20 @@ TEST(PbrtMotion, CamerasAndLampsMove) {
   const double part = 0.25, turned = part * M_PI / 2;
   const SceneDesc scene = pbrt_world(world, head, moment(1 + 2 * part));
   const Transform& camera = scene.sensors.at(0).to_world;
-  expect_near(camera.origin(), {1, 0, 5});
-  expect_near(camera.axis(2), {-std::sin(turned), 0, -std::cos(turned)});
-  expect_near(camera.axis(1), {0, 1, 0});
-  expect_near(std::get<PointLightDesc>(scene.emitters.at(0).kind).position, {1, 3, 1});
+  expect_vector(camera.origin(), {1, 0, 5});
+  expect_vector(camera.axis(2), {-std::sin(turned), 0, -std::cos(turned)});
+  expect_vector(camera.axis(1), {0, 1, 0});
+  expect_vector(std::get<PointLightDesc>(scene.emitters.at(0).kind).position, {1, 3, 1});
   const Transform& spot = std::get<SpotLightDesc>(scene.emitters.at(1).kind).to_world;
-  expect_near(spot.origin(), {0, 0, 2});
-  expect_near(spot.axis(2), {std::sin(turned), 0, std::cos(turned)}, 1e-6);
+  expect_vector(spot.origin(), {0, 0, 2});
+  expect_vector(spot.axis(2), {std::sin(turned), 0, std::cos(turned)}, 1e-6);
   ASSERT_TRUE(scene.shapes.at(0).emitter);
-  expect_near(scene.shapes[0].to_world.origin(), {0, 0, -1});
+  expect_vector(scene.shapes[0].to_world.origin(), {0, 0, -1});
   EXPECT_EQ(scene.motion.moving.size(), 4u);
   // Without a moment it is the start.
   const SceneDesc start = pbrt_world(world, head);
-  expect_near(start.sensors.at(0).to_world.origin(), {0, 0, 5});
-  expect_near(std::get<PointLightDesc>(start.emitters.at(0).kind).position, {0, 2, 1});
+  expect_vector(start.sensors.at(0).to_world.origin(), {0, 0, 5});
+  expect_vector(std::get<PointLightDesc>(start.emitters.at(0).kind).position, {0, 2, 1});
 }
 
 TEST(FrameFiles, TheNearestOfThoseThatThereAre) {

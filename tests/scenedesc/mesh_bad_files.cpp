@@ -9,18 +9,13 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "mesh_builders.h"
+#include "scenedesc/bad_files.h"
 #include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {
 
-struct BadFile {
-  const char* name;
-  int line;          // 0: binary, or about the file as a whole
-  const char* says;  // a part of the message
-};
-
-const BadFile kBadFiles[] = {
+const BadFile kBadMeshes[] = {
     {"index_out_of_range.obj", 4, "vertex 4"},
     {"index_zero.obj", 5, "vertex 0"},
     {"index_before_first.obj", 4, "vertex -4"},
@@ -87,44 +82,44 @@ const char* const kEmptyFiles[] = {"empty.obj",          "no_faces.obj", "two_co
 
 std::string folder() { return std::string(LUMIRANK_TEST_DATA) + "/bad_meshes/"; }
 
-std::string bytes_of(const std::string& name) {
+std::string bytes_of_bad(const std::string& name) {
   std::ifstream in(folder() + name, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-MeshData parse(const std::string& name, const std::string& bytes) {
+MeshData parse_by_ending(const std::string& name, const std::string& bytes) {
   if (name.ends_with(".obj")) return parse_obj(bytes, name);
   if (name.ends_with(".ply")) return parse_ply(bytes, name);
   return parse_serialized(bytes, name, 0);
 }
 
 TEST(BadMeshes, AreRefusedWithFileLineAndReason) {
-  for (const BadFile& bad : kBadFiles) {
+  for (const BadFile& bad : kBadMeshes) {
     ASSERT_TRUE(std::filesystem::exists(folder() + bad.name)) << bad.name;
     try {
-      parse(bad.name, bytes_of(bad.name));
+      parse_by_ending(bad.name, bytes_of_bad(bad.name));
       ADD_FAILURE() << bad.name << " was accepted";
     } catch (const InputError& e) {
       EXPECT_EQ(e.where().file, bad.name);
       EXPECT_EQ(e.where().line, bad.line) << e.what();
-      EXPECT_NE(std::string(e.what()).find(bad.says), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(bad.phrase), std::string::npos) << e.what();
     }
   }
 }
 
 TEST(BadMeshes, AMeshWithoutATriangleIsReadAsOne) {
   for (const std::string name : kEmptyFiles) {
-    const MeshData mesh = parse(name, bytes_of(name));
+    const MeshData mesh = parse_by_ending(name, bytes_of_bad(name));
     EXPECT_EQ(mesh.triangle_count(), 0u) << name;
   }
-  EXPECT_EQ(parse("all_degenerate.obj", bytes_of("all_degenerate.obj")).left_out.size(), 1u);
-  EXPECT_EQ(parse("two_corners.obj", bytes_of("two_corners.obj")).left_out,
+  EXPECT_EQ(parse_by_ending("all_degenerate.obj", bytes_of_bad("all_degenerate.obj")).left_out.size(), 1u);
+  EXPECT_EQ(parse_by_ending("two_corners.obj", bytes_of_bad("two_corners.obj")).left_out,
             std::vector<std::string>{"1 face with fewer than 3 corners"});
 }
 
 TEST(BadMeshes, TheCorpusHasNoFileThatIsNotTested) {
   std::set<std::string> listed(std::begin(kEmptyFiles), std::end(kEmptyFiles));
-  for (const BadFile& bad : kBadFiles) listed.insert(bad.name);
+  for (const BadFile& bad : kBadMeshes) listed.insert(bad.name);
   for (const auto& entry : std::filesystem::directory_iterator(folder()))
     EXPECT_TRUE(listed.count(entry.path().filename().string())) << entry.path();
 }
@@ -158,10 +153,10 @@ TEST(BadMeshes, AnyCutAndAnyChangedByteIsReadOrRefused) {
       {"a.serialized", serialized_file({mesh, mesh}, 4)},
       {"b.serialized", serialized_file({mesh}, 3)}};
   for (const auto& [name, bytes] : good) {
-    ASSERT_EQ(parse(name, bytes).triangle_count(), 1u) << name;
+    ASSERT_EQ(parse_by_ending(name, bytes).triangle_count(), 1u) << name;
     auto attempt = [&, name = name](const std::string& changed) {
       try {
-        const MeshData m = parse(name, changed);
+        const MeshData m = parse_by_ending(name, changed);
         for (const std::uint32_t i : m.indices) ASSERT_LT(i, m.positions.size());
       } catch (const InputError& e) {
         EXPECT_EQ(e.where().file, name);

@@ -5,19 +5,14 @@
 #include <set>
 #include <string>
 
+#include "scenedesc/bad_files.h"
 #include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {
 
-struct BadFile {
-  const char* name;
-  int line;  // -1: not one that can be stated
-  const char* phrase;
-};
-
 // clang-format off
-const BadFile kBad[] = {
+const BadFile kBadMitsuba[] = {
     {"empty", 1, "the file is empty"},
     {"blank", 1, "the file is empty"},
     {"truncated", 3, "not well-formed XML"},
@@ -102,14 +97,12 @@ const BadFile kBad[] = {
 };
 // clang-format on
 
-const std::string kFolder = std::string(LUMIRANK_TEST_DATA) + "/bad/";
-
 class BadInput : public testing::TestWithParam<BadFile> {};
 
 TEST_P(BadInput, IsRefusedWithItsLine) {
   const BadFile& bad = GetParam();
   try {
-    read_scene(kFolder + bad.name + ".xml");
+    read_scene(kBadFolder + bad.name + ".xml");
     FAIL() << bad.name << " was read";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(bad.phrase), std::string::npos) << error.what();
@@ -119,13 +112,12 @@ TEST_P(BadInput, IsRefusedWithItsLine) {
     EXPECT_NE(error.where().file, "") << error.what();
   }
 }
-std::string name_of(const testing::TestParamInfo<BadFile>& file) { return file.param.name; }
-INSTANTIATE_TEST_SUITE_P(Corpus, BadInput, testing::ValuesIn(kBad), name_of);
+INSTANTIATE_TEST_SUITE_P(Corpus, BadInput, testing::ValuesIn(kBadMitsuba), name_of);
 
 TEST(BadInputCorpus, EveryXmlFileIsInTheTable) {
   std::set<std::string> listed;
-  for (const BadFile& bad : kBad) listed.insert(bad.name);
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+  for (const BadFile& bad : kBadMitsuba) listed.insert(bad.name);
+  for (const auto& entry : std::filesystem::directory_iterator(kBadFolder)) {
     const std::string name = entry.path().stem().string();
     EXPECT_TRUE(entry.path().extension() != ".xml" || listed.count(name)) << name;
   }
@@ -133,7 +125,7 @@ TEST(BadInputCorpus, EveryXmlFileIsInTheTable) {
 
 TEST(BadInputCorpus, AnIncludeLoopShowsItsChain) {
   try {
-    read_scene(kFolder + "include_loop_a.xml");
+    read_scene(kBadFolder + "include_loop_a.xml");
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
@@ -146,8 +138,8 @@ TEST(BadInputCorpus, AnIncludeLoopShowsItsChain) {
 }
 
 TEST(BadInputCorpus, MissingFileAndFolder) {
-  EXPECT_THROW(read_scene(kFolder + "no_such.xml"), InputError);
-  EXPECT_THROW(read_mitsuba(kFolder), InputError);
+  EXPECT_THROW(read_scene(kBadFolder + "no_such.xml"), InputError);
+  EXPECT_THROW(read_mitsuba(kBadFolder), InputError);
   EXPECT_THROW(read_scene("scene.unknown"), InputError);
 }
 

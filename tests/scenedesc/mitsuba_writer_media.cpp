@@ -286,18 +286,18 @@ TEST(WrittenMedia, WhatMitsubaLacksIsNamed) {
     EXPECT_EQ(trip.again.shapes.at(0).media.inside, 0);
     return trip.again;
   };
-  using Kind = PhaseLobeDesc::Kind;
+  using Phase = PhaseLobeDesc::Kind;
   const auto g_of = [](const SceneDesc& scene) { return scene.media[0].phase.at(0).g; };
   expect("gives off", [](SceneDesc&, MediumDesc& m) { m.emission.value = Rgb(1); });
   EXPECT_EQ(g_of(expect("Schlick",
                         [](SceneDesc&, MediumDesc& m) {
-                          m.phase = {{Kind::schlick, Rgb(0.5f), 1}};
+                          m.phase = {{Phase::schlick, Rgb(0.5f), 1}};
                         })),
             Rgb(0.5f));
-  expect("", [](SceneDesc&, MediumDesc& m) { m.phase = {{Kind::schlick, Rgb(0), 1}}; });
+  expect("", [](SceneDesc&, MediumDesc& m) { m.phase = {{Phase::schlick, Rgb(0), 1}}; });
   EXPECT_NEAR(g_of(expect("each color",
                           [](SceneDesc&, MediumDesc& m) {
-                            m.phase = {{Kind::henyey_greenstein, {0.1f, 0.2f, 0.6f}, 1}};
+                            m.phase = {{Phase::henyey_greenstein, {0.1f, 0.2f, 0.6f}, 1}};
                           }))
                   .r,
               0.3f, 1e-6f);

@@ -5,19 +5,14 @@
 #include <set>
 #include <string>
 
+#include "scenedesc/bad_files.h"
 #include "scenedesc/readers.h"
 
 namespace lumirank::scenedesc {
 namespace {
 
-struct BadFile {
-  const char* name;
-  int line;  // -1: of another file
-  const char* phrase;
-};
-
 // clang-format off
-const BadFile kBad[] = {
+const BadFile kBadPbrt[] = {
     {"p_active", 3, "ActiveTransform is not followed by StartTime, EndTime or All"},
     {"p_attribute_end", 3, "AttributeEnd without AttributeBegin"},
     {"p_attribute_open", 3, "AttributeBegin without its end"},
@@ -162,14 +157,12 @@ const BadFile kBad[] = {
 };
 // clang-format on
 
-const std::string kFolder = std::string(LUMIRANK_TEST_DATA) + "/bad/";
-
 class PbrtBadInput : public testing::TestWithParam<BadFile> {};
 
 TEST_P(PbrtBadInput, IsRefusedWithItsLine) {
   const BadFile& bad = GetParam();
   try {
-    read_scene(kFolder + bad.name + ".pbrt");
+    read_scene(kBadFolder + bad.name + ".pbrt");
     FAIL() << bad.name << " was read";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(bad.phrase), std::string::npos) << error.what();
@@ -180,21 +173,20 @@ TEST_P(PbrtBadInput, IsRefusedWithItsLine) {
     }
   }
 }
-std::string name_of(const testing::TestParamInfo<BadFile>& file) { return file.param.name; }
-INSTANTIATE_TEST_SUITE_P(Corpus, PbrtBadInput, testing::ValuesIn(kBad), name_of);
+INSTANTIATE_TEST_SUITE_P(Corpus, PbrtBadInput, testing::ValuesIn(kBadPbrt), name_of);
 
 TEST(PbrtBadInputCorpus, EveryPbrtFileIsInTheTable) {
   std::set<std::string> listed;
-  for (const BadFile& bad : kBad) listed.insert(bad.name);
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+  for (const BadFile& bad : kBadPbrt) listed.insert(bad.name);
+  for (const auto& entry : std::filesystem::directory_iterator(kBadFolder)) {
     const std::string name = entry.path().stem().string();
     EXPECT_TRUE(entry.path().extension() != ".pbrt" || listed.count(name)) << name;
   }
 }
 
 TEST(PbrtBadInputCorpus, MissingFileAndFolder) {
-  EXPECT_THROW(read_scene(kFolder + "no_such.pbrt"), InputError);
-  EXPECT_THROW(read_pbrt(kFolder), InputError);
+  EXPECT_THROW(read_scene(kBadFolder + "no_such.pbrt"), InputError);
+  EXPECT_THROW(read_pbrt(kBadFolder), InputError);
 }
 
 const std::string kGood =

@@ -8,8 +8,6 @@
 namespace lumirank::scenedesc {
 namespace {
 
-const std::string kSphere = "Shape \"sphere\"\n";
-
 Vec3f center(const SceneDesc& scene, std::size_t index = 0) {
   return scene.shapes.at(index).to_world.point({0, 0, 0});
 }

@@ -99,7 +99,8 @@ TEST(PbrtMaterial, ConductorsByColorsAndByNames) {
     const auto& c = inner<ConductorDesc>(scene);
     Rgb r;
     for (int i = 0; i < 3; ++i)
-      r[i] = (square(c.eta[i] - 1) + square(c.k[i])) / (square(c.eta[i] + 1) + square(c.k[i]));
+      r[i] = (lumirank::square(c.eta[i] - 1) + lumirank::square(c.k[i])) /
+             (lumirank::square(c.eta[i] + 1) + lumirank::square(c.k[i]));
     return r;
   };
   const Rgb copper = reflectance("\"conductor\"");

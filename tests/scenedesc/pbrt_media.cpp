@@ -14,14 +14,10 @@ std::string medium_text(const std::string& name, const std::string& parameters) 
 MediumDesc medium(const std::string& parameters, const std::string& head = "") {
   return pbrt_world(medium_text("fog", parameters), head).media.at(0);
 }
-const VolumeDesc& volume(const SceneDesc& scene, const VolumeInput& input) {
-  return scene.volumes.at(static_cast<std::size_t>(input.volume));
-}
 const GridData& grid(const SceneDesc& scene, const VolumeInput& input) {
   return *std::get<std::shared_ptr<const GridData>>(volume(scene, input).kind);
 }
 const std::string kFog = medium_text("fog", "\"homogeneous\"");
-const std::string kSphere = "Shape \"sphere\"\n";
 
 TEST(PbrtMedium, HomogeneousIsAbsorptionAndScatteringTimesAScale) {
   const SceneDesc scene = pbrt_world(medium_text(

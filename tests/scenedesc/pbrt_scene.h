@@ -26,6 +26,10 @@ const Kind& shape(const SceneDesc& scene, std::size_t index = 0) {
   return std::get<Kind>(scene.shapes.at(index).kind);
 }
 
+inline const VolumeDesc& volume(const SceneDesc& scene, const VolumeInput& input) {
+  return scene.volumes.at(static_cast<std::size_t>(input.volume));
+}
+
 // The material of the only shape, below the wrapper that makes it two-sided.
 template <typename Kind>
 const Kind& inner(const SceneDesc& scene, std::size_t shape_index = 0) {
@@ -37,9 +41,11 @@ const Kind& inner(const SceneDesc& scene, std::size_t shape_index = 0) {
   return std::get<Kind>(outer);
 }
 
+inline const std::string kSphere = "Shape \"sphere\"\n";
+
 // A sphere of this material.
 inline SceneDesc pbrt_material(const std::string& material, const std::string& before = "") {
-  return pbrt_world(before + "Material " + material + "\nShape \"sphere\"\n");
+  return pbrt_world(before + "Material " + material + "\n" + kSphere);
 }
 
 inline void expect_near(Rgb have, Rgb want, float tolerance) {

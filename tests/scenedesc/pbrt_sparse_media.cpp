@@ -19,9 +19,6 @@ std::string nanovdb_text(const std::string& file, const std::string& parameters 
   return "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" \"string filename\" \"" + file + "\" " +
          parameters + "\n";
 }
-const VolumeDesc& volume(const SceneDesc& scene, const VolumeInput& input) {
-  return scene.volumes.at(static_cast<std::size_t>(input.volume));
-}
 
 Sparse some_density() {
   Sparse grid;

@@ -9,6 +9,7 @@
 #include "support/scenes.h"
 #include "support/statistics.h"
 #include "transport/cpu/scene_matrix.h"
+#include "transport/false_alarms.h"
 #include "transport/lights/virtual_lights.h"
 #include "transport/rows/receivers.h"
 
@@ -16,8 +17,6 @@ namespace lumirank::transport {
 namespace {
 
 using test::SceneMaker;
-
-constexpr double kAlpha = 1e-4;  // false alarms per test
 
 // A box with a lamp under its ceiling and a lit sphere in it.
 SceneMaker lit_box() {

@@ -10,6 +10,7 @@
 #include "matrix_fixture.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "transport/false_alarms.h"
 #include "transport/lights/light_areas.h"
 #include "transport/lights/particle.h"
 #include "transport/lights/sphere_lights.h"
@@ -18,8 +19,6 @@ namespace lumirank::transport {
 namespace {
 
 using test::SceneMaker;
-
-constexpr double kAlpha = 1e-4;  // false alarms per test
 
 TEST(RoulettePlan, EqualUsesAreAllKept) {
   const RoulettePlan plan = plan_roulette(std::vector<double>(500, 3.0), 100, 2000);

@@ -16,8 +16,6 @@ using matrix::Emission;
 using matrix::Index;
 using matrix::Part;
 
-constexpr std::size_t kRows = 900, kColumns = 800;
-
 struct Case {
   std::string name;
   float clamp = 0, traced_below = 0;
@@ -41,6 +39,8 @@ std::vector<Case> cases() {
 
 class RowBoundsOfScenes : public ::testing::TestWithParam<int> {
  protected:
+  static constexpr std::size_t kRows = 900, kColumns = 800;
+
   static void SetUpTestSuite() {
     scenedesc::SceneDesc desc = room_with_blocks();
     add_all_bsdfs(desc);

@@ -14,10 +14,10 @@ namespace {
 using matrix::Index;
 using matrix::Part;
 
-constexpr std::size_t kRows = 600, kColumns = 500;
-
 class SceneMatrixPairs : public ::testing::Test {
  protected:
+  static constexpr std::size_t kRows = 600, kColumns = 500;
+
   static void SetUpTestSuite() {
     scenedesc::SceneDesc desc = room_with_blocks();
     add_all_bsdfs(desc);

@@ -10,14 +10,13 @@
 #include "base/parallel.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "transport/false_alarms.h"
 #include "transport/rows/receivers.h"
 
 namespace lumirank::transport {
 namespace {
 
 using test::SceneMaker;
-
-constexpr double kAlpha = 1e-4;  // false alarms per test
 
 Rgb total_power(const VirtualLights& lights, LightKind kind) {
   Rgb sum{0};
@@ -42,7 +41,7 @@ void expect_mean(const std::vector<double>& values, double expected, std::size_t
   EXPECT_NEAR(m.mean, expected, bound + 1e-5 * std::abs(expected)) << what;
 }
 
-LightSettings settings_of(std::uint64_t seed, std::size_t count) {
+LightSettings light_settings(std::uint64_t seed, std::size_t count) {
   LightSettings s;
   s.seed = seed, s.count = count;
   return s;
@@ -62,7 +61,7 @@ TEST(VirtualLights, AreaLampSumsToItsPower) {
   scene.rectangle({0, 0, -1}, {2, 0, 0}, {0, 2, 0}, scene.diffuse(Rgb(0.5f)));
   scene.lamp({0, 0, 1}, {0, 0.5f, 0}, {0.25f, 0, 0}, {3, 2, 1}, scene.diffuse(Rgb(0)));  // 1 × 0.5, downwards
   const auto world = scene.build();
-  auto settings = settings_of(1, 500);
+  auto settings = light_settings(1, 500);
   settings.indirect = false;
   const auto lights = trace_virtual_lights(world, settings);
   EXPECT_EQ(lights.size(), 500u);
@@ -93,7 +92,7 @@ TEST(VirtualLights, EnvironmentSumsToItsIntegral) {
   SceneMaker scene;
   scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, scene.diffuse(Rgb(0.5f)));
   scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
-  auto settings = settings_of(1, 1000);
+  auto settings = light_settings(1, 1000);
   settings.indirect = false;
   const auto lights = trace_virtual_lights(scene.build(), settings);
   EXPECT_EQ(lights.size(), 1000u);
@@ -119,7 +118,7 @@ TEST(VirtualLights, PointSpotAndDirectionalStayAsTheyAre) {
   spot.cutoff_angle = 30, spot.beam_width = 15;
   scene.light(spot);
   scene.light(scenedesc::DirectionalLightDesc{{0, 0, -1}, Rgb(7)});
-  auto settings = settings_of(1, 100);
+  auto settings = light_settings(1, 100);
   settings.indirect = false;
   const auto lights = trace_virtual_lights(scene.build(), settings);
   ASSERT_EQ(lights.size(), 3u);
@@ -146,7 +145,7 @@ TEST(VirtualLights, ParticlesKeepTheEnergyBalanceOfAFurnace) {
     std::array<std::vector<double>, kDepths + 1> flux;
     for (int seed = 0; seed < kSeeds; ++seed) {
       auto by_depth =
-          flux_by_depth(trace_virtual_lights(world, settings_of(static_cast<std::uint64_t>(seed), count)));
+          flux_by_depth(trace_virtual_lights(world, light_settings(static_cast<std::uint64_t>(seed), count)));
       for (int k = 1; k <= kDepths; ++k) flux[static_cast<std::size_t>(k)].push_back(by_depth[k]);
     }
     for (int k = 1; k <= kDepths; ++k)
@@ -160,7 +159,7 @@ TEST(VirtualLights, ParticlesKeepTheEnergyBalanceOfAFurnace) {
 TEST(VirtualLights, StraightPassagesDoNotCount) {
   auto scene = furnace(0.6f);
   scene.box_inside(0.7f, scene.bsdf(scenedesc::NullBsdfDesc{}));
-  const auto lights = trace_virtual_lights(scene.build(), settings_of(1, 2000));
+  const auto lights = trace_virtual_lights(scene.build(), light_settings(1, 2000));
   auto by_depth = flux_by_depth(lights);
   EXPECT_NEAR(by_depth[1], 4 * kPi, 1e-3);  // all particles arrive with equal powers
   for (std::size_t j = 0; j < lights.size(); ++j) {
@@ -183,7 +182,7 @@ TEST(VirtualLights, MirrorsAreFollowed) {
   const double power = 2 * kPi * (1 - std::cos(40 * kPi / 180));
   std::vector<double> flux;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
-    auto by_depth = flux_by_depth(trace_virtual_lights(world, settings_of(seed, 500)));
+    auto by_depth = flux_by_depth(trace_virtual_lights(world, light_settings(seed, 500)));
     EXPECT_EQ(by_depth.count(1), 0u);  // a mirror is no light
     flux.push_back(by_depth[2]);
   }
@@ -194,7 +193,7 @@ TEST(VirtualLights, MirrorsAreFollowed) {
 // pilot's mean over 4,096 paths has a relative standard deviation of √(3.75/4096)/2.5 = 1.2 %, the count
 // itself over 8,000 paths 0.9 %: together 1.5 %; the bound is five times that.
 TEST(VirtualLights, CountIsNearTheTarget) {
-  const auto lights = trace_virtual_lights(furnace(0.6f).build(), settings_of(3, 20000));
+  const auto lights = trace_virtual_lights(furnace(0.6f).build(), light_settings(3, 20000));
   EXPECT_EQ(lights.direct_count, 1u);
   EXPECT_NEAR(static_cast<double>(lights.size()), 20000, 0.075 * 20000);
   // Survival is paid by roulette, not by power: all lights of a gray box are alike.
@@ -208,7 +207,7 @@ TEST(VirtualLights, DepthLimit) {
   SceneMaker scene = furnace(0.6f);
   const auto world = scene.build();
   for (const int max_depth : {0, 1, 2, 3, 5}) {
-    auto settings = settings_of(1, 1000);
+    auto settings = light_settings(1, 1000);
     settings.max_depth = max_depth;
     const auto lights = trace_virtual_lights(world, settings);
     EXPECT_EQ(lights.direct_count, max_depth >= 2 ? 1u : 0u);
@@ -221,7 +220,7 @@ TEST(VirtualLights, DepthLimit) {
 
 TEST(VirtualLights, DirectAndIndirectAlone) {
   const auto world = furnace(0.6f).build();
-  auto settings = settings_of(1, 1000);
+  auto settings = light_settings(1, 1000);
   settings.indirect = false;
   EXPECT_EQ(trace_virtual_lights(world, settings).size(), 1u);
   settings.indirect = true, settings.direct = false;
@@ -241,7 +240,7 @@ TEST(VirtualLights, RememberTheirEmitter) {
   const double power[2] = {kPi * 1 * 1.0, kPi * 2 * 0.04};
   std::array<std::vector<double>, 2> first, direct;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
-    const auto lights = trace_virtual_lights(world, settings_of(seed, 1000));
+    const auto lights = trace_virtual_lights(world, light_settings(seed, 1000));
     std::array<double, 2> f{}, d{};
     for (std::size_t j = 0; j < lights.size(); ++j) {
       const auto e = lights.emitter[j];
@@ -274,7 +273,7 @@ TEST(VirtualLights, SomeLampsStandForAll) {
   const auto world = scene.build();
   std::vector<double> sums;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
-    auto settings = settings_of(seed, 100);
+    auto settings = light_settings(seed, 100);
     settings.indirect = false;
     const auto lights = trace_virtual_lights(world, settings);
     EXPECT_EQ(lights.size(), 100u);
@@ -298,7 +297,7 @@ TEST(VirtualLights, DiffuseOnlyKeepsThePlacesAndLeavesOutTheGlossyPart) {
   scene.rectangle({0, 0, -0.5f}, {0.9f, 0, 0}, {0, 0.9f, 0}, scene.bsdf(paint));
   scene.point_light({0.1f, 0.2f, 0.3f}, Rgb(1));
   const auto world = scene.build();
-  auto settings = settings_of(1, 3000);
+  auto settings = light_settings(1, 3000);
   settings.direct = false;
   settings.lobes.diffuse_only = true;
   const auto lights = trace_virtual_lights(world, settings);
@@ -335,7 +334,7 @@ TEST(VirtualLights, ALeastRoughnessWidensWhatTheyShineAndNothingElse) {
   scene.point_light({0.1f, 0.2f, 0.3f}, Rgb(1));
   const auto world = scene.build();
   for (const bool on_gather_samples : {false, true}) {
-    auto settings = settings_of(1, 1000);
+    auto settings = light_settings(1, 1000);
     settings.direct = false, settings.max_depth = 4, settings.on_gather_samples = on_gather_samples;
     const auto sharp = trace_virtual_lights(world, settings);
     settings.lobes.least_roughness = 0.3f;
@@ -367,7 +366,7 @@ TEST(VirtualLights, SortedByKindThenAlongACurve) {
   scene.point_light({0, 0, 0.4f}, Rgb(1));
   scene.point_light({0, 0, 0.8f}, Rgb(1));
   scene.lamp({0, 0, 0.95f}, {0, 0.05f, 0}, {0.05f, 0, 0}, Rgb(1), white);
-  const auto lights = trace_virtual_lights(scene.build(), settings_of(1, 3000));
+  const auto lights = trace_virtual_lights(scene.build(), light_settings(1, 3000));
   const auto sort_of = [&](std::size_t j) {
     return std::pair(lights.kind[j],
                      lights.kind[j] == LightKind::surface && lights.closure[j] != VirtualLights::kLambertian);
@@ -424,7 +423,7 @@ TEST(VirtualLights, SameBitsForAnyNumberOfThreads) {
   const auto world = scene.build();
   const world::Camera camera(test::sensor({0, 0, 0}, {1, 1, 1}, {0, 0, 1}, 40, 16, 16));
   const auto receivers = trace_receivers(world, camera, {});
-  auto settings = settings_of(5, 10000);
+  auto settings = light_settings(5, 10000);
   settings.receivers = &receivers;
   std::array<VirtualLights, 3> runs;
   for (int k = 0; k < 3; ++k)
@@ -458,7 +457,7 @@ TEST(VirtualLights, AreAimedAtWhatReceiversSee) {
   std::array<std::vector<double>, 2> flux, inside;  // without and with receivers
   for (int seed = 0; seed < kSeeds; ++seed)
     for (std::size_t aimed = 0; aimed < 2; ++aimed) {
-      auto settings = settings_of(static_cast<std::uint64_t>(seed), 4000);
+      auto settings = light_settings(static_cast<std::uint64_t>(seed), 4000);
       settings.direct = false;
       settings.receivers = aimed ? &receivers : nullptr;
       const auto lights = trace_virtual_lights(world, settings);
@@ -487,7 +486,7 @@ TEST(VirtualLights, AimingKeepsTheEnergyBalance) {
   const auto receivers = trace_receivers(world, corner, {});
   std::array<std::vector<double>, kDepths + 1> flux;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    auto settings = settings_of(static_cast<std::uint64_t>(seed), 1000);
+    auto settings = light_settings(static_cast<std::uint64_t>(seed), 1000);
     settings.receivers = &receivers;
     auto by_depth = flux_by_depth(trace_virtual_lights(world, settings));
     for (int k = 1; k <= kDepths; ++k) flux[static_cast<std::size_t>(k)].push_back(by_depth[k]);
@@ -500,11 +499,11 @@ TEST(VirtualLights, AimingKeepsTheEnergyBalance) {
 TEST(VirtualLights, NothingShines) {
   SceneMaker scene;
   scene.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, scene.diffuse(Rgb(0.5f)));
-  EXPECT_EQ(trace_virtual_lights(scene.build(), settings_of(1, 100)).size(), 0u);
+  EXPECT_EQ(trace_virtual_lights(scene.build(), light_settings(1, 100)).size(), 0u);
 }
 
 TEST(VirtualLights, ZeroLightsIsAnError) {
-  EXPECT_THROW(trace_virtual_lights(furnace(0.5f).build(), settings_of(1, 0)), InputError);
+  EXPECT_THROW(trace_virtual_lights(furnace(0.5f).build(), light_settings(1, 0)), InputError);
 }
 
 }  // namespace

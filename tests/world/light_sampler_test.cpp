@@ -10,18 +10,15 @@
 #include "base/warp.h"
 #include "scenedesc/readers.h"
 #include "support/statistics.h"
+#include "world/scene_maker.h"
 
 namespace lumirank::world {
 namespace {
 
 using emitters::LitPoint;
+using test::build;
 using test::mean_of;
 using test::student_quantile;
-
-World build(const scenedesc::SceneDesc& desc) {
-  std::vector<scenedesc::Warning> warnings;
-  return World::build(desc, {}, warnings);
-}
 
 World example(const std::string& name) {
   return build(scenedesc::read_mitsuba(std::string(LUMIRANK_EXAMPLES) + "/" + name + ".xml"));

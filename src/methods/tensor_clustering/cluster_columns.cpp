@@ -58,12 +58,12 @@ ClusterColumns::Pair ClusterColumns::central(const RectangleClustering::Rectangl
 
 ClusterColumns::Pair ClusterColumns::representative(const RectangleClustering::Rectangle& rectangle,
                                                     FrameRange frames) const {
-  return how_ == Representatives::central ? central(rectangle, frames) : largest(rectangle, frames);
+  return how_ == RepresentativeRule::central ? central(rectangle, frames) : largest(rectangle, frames);
 }
 
 // What is to add up: the column's sum over the rows that were read, or its norm.
 double ClusterColumns::amount(Pair pair, std::size_t channel) const {
-  return static_cast<double>(how_ == Representatives::central
+  return static_cast<double>(how_ == RepresentativeRule::central
                                  ? reduced_.sum(pair.column, pair.frame, channel)
                                  : reduced_.channel(pair.column, pair.frame, channel));
 }

@@ -11,7 +11,7 @@
 
 namespace lumirank::methods {
 
-enum class Representatives {
+enum class RepresentativeRule {
   // Ours: the pair whose direction is nearest to that of the cluster's sum, of those that are not much dimmer
   // than its mean, scaled so that sums over the rows that were read are the cluster's. A pair of the largest
   // norm often has it because it stands close to one of those rows, so it is too dark everywhere else.
@@ -32,7 +32,8 @@ struct ClusterColumn {
 // The clusters' columns and scales, by what is known of them from the rows that were read.
 class ClusterColumns {
  public:
-  ClusterColumns(const linalg::ReducedTensor& reduced, Representatives how) : reduced_(reduced), how_(how) {}
+  ClusterColumns(const linalg::ReducedTensor& reduced, RepresentativeRule how)
+      : reduced_(reduced), how_(how) {}
 
   ClusterColumn column_of(const linalg::RectangleClustering::Rectangle& rectangle) const;
 
@@ -59,7 +60,7 @@ class ClusterColumns {
             Pair computed) const;
 
   const linalg::ReducedTensor& reduced_;
-  Representatives how_;
+  RepresentativeRule how_;
 };
 
 }  // namespace lumirank::methods

@@ -63,7 +63,7 @@ struct TensorClusteringSettings {
   // `max_columns` for each frame) and of rows (up to `max_rows`) is found for it. 0: as given.
   double target_error = 0;
   std::size_t max_columns = 2000, max_rows = 400;
-  Representatives representatives = Representatives::central;
+  RepresentativeRule representatives = RepresentativeRule::central;
   linalg::ReducedTensor::Precision precision = linalg::ReducedTensor::Precision::bits16;
   bool keep_rectangles = false;  // TensorEstimate::rectangles
 };
