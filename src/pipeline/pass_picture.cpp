@@ -14,13 +14,14 @@ constexpr int kEmissionOfAll = 12, kEmissionOfPass = 2;
 
 }  // namespace
 
-bool PassPicture::add(const Pass& pass, const image::Image& sent, const FilmInput& film, double left,
-                      const Sinks& sinks) {
+bool PassPicture::begin(const world::World& world, const Recipe& recipe, double left, const Sinks& sinks) {
+  return !denoising_.wanted() || denoising_.trace_first(world, whole_, recipe, left, sinks);
+}
+
+bool PassPicture::add(const Pass& pass, const image::Image& sent, const FilmInput& film, const Sinks& sinks) {
   mean_.add(sent, pass.weight, pass.pixels);
   if (!pass.begins) return true;
-  if (denoising_.wanted())
-    return pass.number == 0 ? denoising_.trace_first(film.world, whole_, film.recipe, left, sinks)
-                            : denoising_.trace_another(pass.number, sinks);
+  if (denoising_.wanted()) return pass.number == 0 || denoising_.trace_another(pass.number, sinks);
   if (parts_.emission) emission_.add(emission_of_pass(pass.wanted, film));
   return true;
 }

@@ -26,6 +26,10 @@ class PassPicture {
   const PictureDenoising& denoising() const { return denoising_; }
   void make_smaller(int divisor) { denoising_.make_smaller(divisor); }
 
+  // Before any pass: what a denoiser asks of all pixels, with a recipe whose seeds are for film samples;
+  // `left`: seconds of the budget, 0 without one. False if it was cancelled.
+  bool begin(const world::World& world, const Recipe& recipe, double left, const Sinks& sinks);
+
   struct Pass {
     int number;     // how often all pixels have been shown before
     int wanted;     // so many numbers
@@ -33,10 +37,9 @@ class PassPicture {
     film::PixelLattice pixels;
     bool begins;  // showing all pixels once more
   };
-  // `sent`: what surfaces send. `film`: as the pass had it, with a recipe whose seeds are for film samples;
-  // `left`: seconds of the budget, 0 without one. False if it was cancelled.
-  bool add(const Pass& pass, const image::Image& sent, const FilmInput& film, double left,
-           const Sinks& sinks);
+  // `sent`: what surfaces send. `film`: as the pass had it, with a recipe as for begin(). False if it was
+  // cancelled.
+  bool add(const Pass& pass, const image::Image& sent, const FilmInput& film, const Sinks& sinks);
 
   // Features of one sample more, for who adds paths.
   bool trace_another(int number, const Sinks& sinks) { return denoising_.trace_another(number, sinks); }

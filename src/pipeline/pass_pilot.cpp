@@ -70,8 +70,7 @@ void PassPilot::run() {
   const double one_feature = picture_.denoising().seconds_of_feature(
                                  *task_.world, small, tracer_.recipe_of(kMaxPasses, small), sinks_) /
                              shrunk;
-  left_for_features_ = left();
-  features_expected_ = picture_.denoising().feature_seconds(one_feature, left_for_features_);
+  features_expected_ = picture_.denoising().feature_seconds(one_feature, left());
   paths_alone_ = too_few_fit(kUnsure) && small_paths_are_better(small, image, shrunk);
   if (paths_alone_) return;
   const bool half = too_few_fit(1) && is_dear() && may_be_half(one_feature);

@@ -39,8 +39,6 @@ class PassPilot {
   // pass; and the seconds of the budget by which that was foretold. 0: nothing was tried.
   const PassSeconds& expected() const { return expected_; }
   double with_rest() const;
-  double features_expected() const { return features_expected_; }
-  double left_for_features() const { return left_for_features_; }
   const std::string& shortage() const { return shortage_; }  // empty where the budget is not short
 
  private:
@@ -67,7 +65,7 @@ class PassPilot {
   const Sinks& sinks_;
   View whole_, view_;
   PassSeconds expected_;
-  double features_expected_ = 0, left_for_features_ = 0;
+  double features_expected_ = 0;  // seconds of what is traced before the passes
   bool paths_alone_ = false;
   std::string shortage_;
 };

@@ -64,6 +64,7 @@ class PassRun {
     plan();
     if (pilot_->paths_alone())
       return by_paths_alone("few passes would fit, and on a small film paths had less noise");
+    if (!trace_features()) throw Cancelled();
     picture_.emplace(*passes_, *rest_);
     while (wants_more()) {
       set_size();
@@ -126,6 +127,22 @@ class PassRun {
     plan_.expect((1 - kDrawingShare) * by_pixel, (fixed + kDrawingShare * by_pixel) / PassPlan::kWhole);
   }
 
+  Recipe film_recipe(int number) const {
+    Recipe recipe = tracer_.recipe_of(static_cast<std::uint64_t>(number), view_);
+    recipe.seed = hash_ids(asked_.seed, Stage::film_samples, recipe.pass);
+    return recipe;
+  }
+  // Before any pass, since what edges take is not known until they are found: passes are planned for what is
+  // left.
+  bool trace_features() {
+    const Timer timer;
+    Recipe recipe = film_recipe(0);
+    recipe.pixels = {};
+    const bool whole = passes_->begin(*task_.world, recipe, timed() ? left() : 0, sinks_);
+    seconds_["features"] += timer.seconds();
+    return whole;
+  }
+
   void set_size() {
     int eighths = next_eighths_;
     if (timed()) {
@@ -136,10 +153,7 @@ class PassRun {
     tracer_.set_size(eighths);
   }
 
-  double left() const {
-    return asked_.time - passes_->denoising().seconds() - clock_() -
-           (done_ == 0 ? pilot_->features_expected() : 0);
-  }
+  double left() const { return asked_.time - passes_->denoising().seconds() - clock_(); }
 
   bool wants_more() {
     if (picture_->by_paths()) return false;
@@ -161,20 +175,16 @@ class PassRun {
     if (!add_rest(took.total())) return false;
     passes_seconds_ += clock_() - begin;
     plan_.took(tracer_.eighths(), clock_() - begin, seconds_drawing() - drawn_before);
-    Recipe of_film = tracer_.recipe_of(static_cast<std::uint64_t>(number), view_);
-    of_film.seed = hash_ids(asked_.seed, Stage::film_samples, of_film.pass);
+    Recipe of_film = film_recipe(number);
     // A pass has as many samples as its size.
     const double weight = static_cast<double>(tracer_.eighths()) / PassPlan::kWhole;
     const PassPicture::Pass shown{number / tracer_.parts(), wanted_, weight,
                                   of_film.pixels.in_window(view_.crop_x, view_.crop_y),
                                   number % tracer_.parts() == 0};
     of_film.pixels = {};
-    // The first of a round does not tell what is left after it: later ones are planned by what features took.
-    const double left_for_features = tracer_.parts() > 1 ? pilot_->left_for_features() : left();
     const Timer timer;
     if (!passes_->add(shown, image,
-                      {*task_.world, view_, of_film, *tracer_.prepared()->rows, tracer_.traced()},
-                      timed() ? left_for_features : 0, sinks_))
+                      {*task_.world, view_, of_film, *tracer_.prepared()->rows, tracer_.traced()}, sinks_))
       return false;
     seconds_["features"] += timer.seconds();
     report_progress(number + 1);

@@ -44,7 +44,7 @@ class PictureDenoising {
   // where none are wanted.
   double seconds_of_feature(const world::World& world, const View& view, const Recipe& recipe,
                             const Sinks& sinks) const;
-  // What features are expected to take after the first pass, `left` seconds before the end of a budget, where
+  // What features are expected to take, `left` seconds before the end of a budget, where
   // one film sample in each pixel takes so long.
   double feature_seconds(double one_sample, double left) const;
   // With the filter that denoised pictures have: a wider one makes the noise of neighbors alike, and a

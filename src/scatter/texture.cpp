@@ -186,6 +186,33 @@ struct MeanVisitor {
   Rgb operator()(const VertexColorTexture&) const { return Rgb(1); }
 };
 
+Vec2f finer(Vec2f a, Vec2f b) { return {std::max(a.x, b.x), std::max(a.y, b.y)}; }
+
+struct TexelVisitor {
+  const std::vector<Vec2f>& before;  // of textures before this one
+
+  Vec2f of(int input) const { return before[static_cast<std::size_t>(input)]; }
+
+  // Of a grid so fine in the texture's own coordinates.
+  static Vec2f along_uv(const float m[6], float width, float height) {
+    return {std::max(std::abs(m[0]) * width, std::abs(m[3]) * height),
+            std::max(std::abs(m[1]) * width, std::abs(m[4]) * height)};
+  }
+  Vec2f operator()(const ConstantTexture&) const { return {}; }
+  Vec2f operator()(const BitmapTexture& t) const {
+    return along_uv(t.to_uv, static_cast<float>(t.pixels->width), static_cast<float>(t.pixels->height));
+  }
+  Vec2f operator()(const CheckerboardTexture& t) const {
+    return finer(along_uv(t.to_uv, 4, 4), finer(of(t.color0), of(t.color1)));
+  }
+  Vec2f operator()(const ScaleTexture& t) const { return of(t.input); }
+  Vec2f operator()(const ProductTexture& t) const { return finer(of(t.a), of(t.b)); }
+  Vec2f operator()(const MixTexture& t) const { return finer(of(t.amount), finer(of(t.a), of(t.b))); }
+  Vec2f operator()(const RootTexture& t) const { return of(t.input); }
+  Vec2f operator()(const ThresholdTexture& t) const { return of(t.input); }
+  Vec2f operator()(const VertexColorTexture&) const { return {}; }
+};
+
 const Texture& checked(const std::vector<Texture>& textures, int index) {
   if (index < 0 || static_cast<std::size_t>(index) >= textures.size())
     throw InternalError("texture index " + std::to_string(index) + " of " + std::to_string(textures.size()));
@@ -209,5 +236,14 @@ Vec2f TextureSet::gradient(int texture, const SurfaceUv& at) const {
 }
 
 Rgb TextureSet::mean(int texture) const { return std::visit(MeanVisitor{*this}, checked(textures, texture)); }
+
+Vec2f TextureSet::texels(int texture) const {
+  checked(textures, texture);
+  // One after the other: a texture may have its inputs by many ways.
+  std::vector<Vec2f> known;
+  for (int k = 0; k <= texture; ++k)
+    known.push_back(std::visit(TexelVisitor{known}, textures[static_cast<std::size_t>(k)]));
+  return known.back();
+}
 
 }  // namespace lumirank::scatter

@@ -73,8 +73,11 @@ struct TextureSet {
   // ∂(lookup_float)/∂u and /∂v, for bump maps: of a bitmap that is interpolated its own slope; of one that is
   // not, by central differences of one texel.
   Vec2f gradient(int texture, const SurfaceUv& at) const;
-  // Mean over the unit square: for powers of textured emitters.
+  // Mean over the unit square.
   Rgb mean(int texture) const;
+  // How many texels, or halves of a checkerboard's squares, lie along a unit of u and of v: of the finest
+  // texture that it is made of; 0 where none depends on uv.
+  Vec2f texels(int texture) const;
 };
 
 }  // namespace lumirank::scatter

@@ -1,4 +1,5 @@
 // A description → a world, in steps: what is placed, its materials and textures, its light, the ray scene.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "base/hash_text.h"
 #include "base/parallel.h"
 #include "world/colored_glass.h"
+#include "world/emission_mesh.h"
 #include "world/impl.h"
 #include "world/lights.h"
 #include "world/material_builder.h"
@@ -37,6 +39,9 @@ geometry::Blocking blocking(scatter::MaterialSet::Passage passage) {
   }
   return geometry::Blocking::opaque;
 }
+
+// All meshes together that shine by pictures are divided into about so many triangles at most.
+constexpr std::size_t kTrianglesOfPictures = std::size_t{1} << 15;
 
 // Triangles of a mesh that is worth it: fewer are built in a twentieth of a second.
 constexpr std::size_t kRefitLimit = std::size_t{1} << 16;
@@ -225,6 +230,14 @@ class World::Builder {
   void add_area_emitter(std::size_t i) {
     const sd::ShapeDesc& shape = *geometry_.placed[i].shape;
     auto& placement = geometry_.placements[i];
+    if (const int texture = radiance_of_[i].texture; texture >= 0) {
+      geometry::TriangleMesh& mesh = geometry_.meshes[placement.mesh];
+      const auto share = kTrianglesOfPictures /
+                         static_cast<std::size_t>(std::count_if(
+                             radiance_of_.begin(), radiance_of_.end(),
+                             [](const scatter::ColorInput& radiance) { return radiance.texture >= 0; }));
+      mesh = divided_by_texture(std::move(mesh), texture, w_.materials.textures, share);
+    }
     emitters::AreaEmitter area =
         make_area_emitter(geometry_.meshes[placement.mesh], static_cast<std::uint32_t>(i), radiance_of_[i],
                           w_.materials.textures);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "emitters/area.h"
+#include "world/emission_mesh.h"
 #include "world/environment_builder.h"
 #include "world/profile_builder.h"
 #include "world/surface.h"
@@ -27,39 +28,57 @@ void EmitterNames::name(em::Emitter& emitter, const std::string& wanted, const S
   } while (!taken_.insert(emitter.name).second);  // a made name may itself be an id of the scene
 }
 
+namespace {
+
+// The mean over the centroids of equal parts of the triangle, about as fine as the texels.
+Rgb mean_radiance(const geometry::TriangleMesh& mesh, std::uint32_t triangle, int texture,
+                  const scatter::TextureSet& textures, Vec2f texels) {
+  constexpr int kMinParts = 4, kMaxParts = 64;
+  const int parts =
+      static_cast<int>(std::clamp(texels_along(mesh, triangle, texels), 1.0f * kMinParts, 1.0f * kMaxParts));
+  Rgb sum;
+  for (int i = 0; i < parts; ++i) {
+    Rgb of_strip;
+    for (int j = 0; i + j < parts; ++j) {
+      const auto add = [&](float du, float dv) {
+        const Vec2f b{(static_cast<float>(i) + du) / static_cast<float>(parts),
+                      (static_cast<float>(j) + dv) / static_cast<float>(parts)};
+        of_strip += textures.lookup(texture, interpolate_uv(mesh, triangle, b));
+      };
+      add(1.0f / 3, 1.0f / 3);
+      if (i + j < parts - 1) add(2.0f / 3, 2.0f / 3);
+    }
+    sum += of_strip;
+  }
+  return sum / static_cast<float>(parts * parts);
+}
+
+}  // namespace
+
 em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint32_t placement,
                                   const scatter::ColorInput& radiance, const scatter::TextureSet& textures) {
-  constexpr int kTriangleParts = 4;  // a triangle's mean is taken over the centroids of kParts² equal parts
   em::AreaEmitter emitter;
   emitter.placement = placement;
   emitter.triangles.resize(mesh.triangle_count());
-  parallel_for(emitter.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      auto& out = emitter.triangles[t];
-      const Vec3f p0 = mesh.positions[mesh.indices[3 * t]];
-      out.p0 = p0;
-      out.e1 = mesh.positions[mesh.indices[3 * t + 1]] - p0;
-      out.e2 = mesh.positions[mesh.indices[3 * t + 2]] - p0;
-      out.area = 0.5f * length(mesh.area_vector(t));
-      out.normal = outside_normal(mesh, t);
-      if (out.normal == Vec3f{}) out.area = 0;
-      out.mesh_triangle = static_cast<std::uint32_t>(t);
-      out.mean_radiance = radiance.value;
-      if (radiance.texture < 0) continue;
-      Rgb sum;
-      for (int i = 0; i < kTriangleParts; ++i)
-        for (int j = 0; i + j < kTriangleParts; ++j) {
-          const auto add = [&](float du, float dv) {
-            const Vec2f b{(static_cast<float>(i) + du) / kTriangleParts,
-                          (static_cast<float>(j) + dv) / kTriangleParts};
-            sum += textures.lookup(radiance.texture, interpolate_uv(mesh, static_cast<std::uint32_t>(t), b));
-          };
-          add(1.0f / 3, 1.0f / 3);
-          if (i + j < kTriangleParts - 1) add(2.0f / 3, 2.0f / 3);
+  const Vec2f texels = radiance.texture < 0 ? Vec2f{} : textures.texels(radiance.texture);
+  parallel_for(
+      emitter.triangles.size(), radiance.texture < 0 ? 4096 : 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+          auto& out = emitter.triangles[t];
+          const Vec3f p0 = mesh.positions[mesh.indices[3 * t]];
+          out.p0 = p0;
+          out.e1 = mesh.positions[mesh.indices[3 * t + 1]] - p0;
+          out.e2 = mesh.positions[mesh.indices[3 * t + 2]] - p0;
+          out.area = 0.5f * length(mesh.area_vector(t));
+          out.normal = outside_normal(mesh, t);
+          if (out.normal == Vec3f{}) out.area = 0;
+          out.mesh_triangle = static_cast<std::uint32_t>(t);
+          out.mean_radiance = radiance.value;
+          if (radiance.texture >= 0)
+            out.mean_radiance =
+                mean_radiance(mesh, static_cast<std::uint32_t>(t), radiance.texture, textures, texels);
         }
-      out.mean_radiance = sum / static_cast<float>(kTriangleParts * kTriangleParts);
-    }
-  });
+      });
   em::finish(emitter);
   return emitter;
 }
