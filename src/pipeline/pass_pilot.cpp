@@ -188,6 +188,11 @@ bool PassPilot::small_paths_are_better(const View& small, const image::Image& fi
     by_passes.picture.pixels[p] = 0.5f * (first.pixels[p] + second.pixels[p]);
     by_passes.difference.pixels[p] = first.pixels[p] - second.pixels[p];
   }
+  if (rest_.plan().paths > 0) {
+    RestTracing rest(task_.world, settings_, rest_.plan());
+    if (!rest.add_paths(small, kTrialPasses, sinks_)) throw Cancelled();
+    rest.add_to(by_passes.picture), rest.add_difference_to(by_passes.difference);
+  }
   PathsBeside paths(*task_.world, small, settings_, sinks_);
   do {
     if (!paths.add(2, sinks_)) throw Cancelled();

@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "denoise/enlarging.h"
 #include "denoise/fireflies.h"
+#include "denoise/overshoot.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -149,7 +150,8 @@ std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& pi
   const PixelFeatures features = this->features();
   const image::Image albedo = denoise::reduced(features.albedo, picture.width, picture.height),
                      normal = denoise::reduced(features.normal, picture.width, picture.height);
-  image::Image clean = denoiser_->denoise(picture, &albedo, &normal, features_are_);
+  image::Image clean =
+      denoise::without_overshoot(picture, denoiser_->denoise(picture, &albedo, &normal, features_are_));
   if (difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
   return denoise::shrink(picture, clean, difference);
 }
