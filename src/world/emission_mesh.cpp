@@ -16,9 +16,9 @@ namespace {
 // A part of so many texels a side needs no further division.
 constexpr float kTexelsOfPart = 8;
 // A picture of which no place is so much brighter than its mean needs none either. It is looked up about once
-// for each texel, but no more often than this in all.
+// for each texel, but no more often than this for each triangle that there may be.
 constexpr float kUneven = 2;
-constexpr double kMaxLookups = 4e6;
+constexpr double kLookupsOfTriangle = 128;
 
 // Corners of the parts of a triangle by (i, j), i + j ≤ n: i steps of n towards corner 1, j towards corner 2.
 struct Weights {
@@ -55,12 +55,13 @@ T weighted(const std::vector<T>& of, const std::uint32_t* corners, const std::ui
   return sum;
 }
 
-bool is_uneven(const TriangleMesh& mesh, int texture, const scatter::TextureSet& textures, float texels) {
+bool is_uneven(const TriangleMesh& mesh, int texture, const scatter::TextureSet& textures, float texels,
+               double max_lookups) {
   double sum = 0;
   float brightest = 0;
   const std::size_t triangles = mesh.triangle_count();
   const int n = static_cast<int>(std::min(
-      std::ceil(texels), static_cast<float>(std::sqrt(2 * kMaxLookups / static_cast<double>(triangles)))));
+      std::ceil(texels), static_cast<float>(std::sqrt(2 * max_lookups / static_cast<double>(triangles)))));
   for (std::size_t t = 0; t < triangles; ++t)
     for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j) {
@@ -129,7 +130,9 @@ TriangleMesh divided_by_texture(TriangleMesh mesh, int texture, const scatter::T
   const double affordable = std::sqrt(static_cast<double>(max_triangles) / static_cast<double>(triangles));
   const int n =
       static_cast<int>(std::min(affordable, std::ceil(static_cast<double>(longest / kTexelsOfPart))));
-  if (n < 2 || !is_uneven(mesh, texture, textures, longest)) return mesh;
+  if (n < 2 ||
+      !is_uneven(mesh, texture, textures, longest, kLookupsOfTriangle * static_cast<double>(max_triangles)))
+    return mesh;
   return divided(mesh, n);
 }
 

@@ -30,12 +30,13 @@ void EmitterNames::name(em::Emitter& emitter, const std::string& wanted, const S
 
 namespace {
 
-// The mean over the centroids of equal parts of the triangle, about as fine as the texels.
+// Of a triangle whose radiance is a texture: at least so many parts a side, and at most; and no more of all
+// triangles than take a second of lookups.
+constexpr float kMinParts = 4, kMaxParts = 64, kMaxPartsOfAll = 1 << 24;
+
+// The mean over the centroids of equal parts of the triangle, so many a side.
 Rgb mean_radiance(const geometry::TriangleMesh& mesh, std::uint32_t triangle, int texture,
-                  const scatter::TextureSet& textures, Vec2f texels) {
-  constexpr int kMinParts = 4, kMaxParts = 64;
-  const int parts =
-      static_cast<int>(std::clamp(texels_along(mesh, triangle, texels), 1.0f * kMinParts, 1.0f * kMaxParts));
+                  const scatter::TextureSet& textures, int parts) {
   Rgb sum;
   for (int i = 0; i < parts; ++i) {
     Rgb of_strip;
@@ -60,25 +61,28 @@ em::AreaEmitter make_area_emitter(const geometry::TriangleMesh& mesh, std::uint3
   em::AreaEmitter emitter;
   emitter.placement = placement;
   emitter.triangles.resize(mesh.triangle_count());
-  const Vec2f texels = radiance.texture < 0 ? Vec2f{} : textures.texels(radiance.texture);
-  parallel_for(
-      emitter.triangles.size(), radiance.texture < 0 ? 4096 : 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-          auto& out = emitter.triangles[t];
-          const Vec3f p0 = mesh.positions[mesh.indices[3 * t]];
-          out.p0 = p0;
-          out.e1 = mesh.positions[mesh.indices[3 * t + 1]] - p0;
-          out.e2 = mesh.positions[mesh.indices[3 * t + 2]] - p0;
-          out.area = 0.5f * length(mesh.area_vector(t));
-          out.normal = outside_normal(mesh, t);
-          if (out.normal == Vec3f{}) out.area = 0;
-          out.mesh_triangle = static_cast<std::uint32_t>(t);
-          out.mean_radiance = radiance.value;
-          if (radiance.texture >= 0)
-            out.mean_radiance =
-                mean_radiance(mesh, static_cast<std::uint32_t>(t), radiance.texture, textures, texels);
-        }
-      });
+  const bool textured = radiance.texture >= 0;
+  const auto triangles = static_cast<float>(std::max<std::size_t>(1, emitter.triangles.size()));
+  const float max_parts = std::clamp(std::sqrt(kMaxPartsOfAll / triangles), kMinParts, kMaxParts);
+  const Vec2f texels = textured ? textures.texels(radiance.texture) : Vec2f{};
+  const auto fill = [&](std::uint32_t t) {
+    auto& out = emitter.triangles[t];
+    const Vec3f p0 = mesh.positions[mesh.indices[3 * t]];
+    out.p0 = p0;
+    out.e1 = mesh.positions[mesh.indices[3 * t + 1]] - p0;
+    out.e2 = mesh.positions[mesh.indices[3 * t + 2]] - p0;
+    out.area = 0.5f * length(mesh.area_vector(t));
+    out.normal = outside_normal(mesh, t);
+    if (out.normal == Vec3f{}) out.area = 0;
+    out.mesh_triangle = t;
+    out.mean_radiance = radiance.value;
+    if (!textured) return;
+    const float parts = std::clamp(texels_along(mesh, t, texels), kMinParts, max_parts);
+    out.mean_radiance = mean_radiance(mesh, t, radiance.texture, textures, static_cast<int>(parts));
+  };
+  parallel_for(emitter.triangles.size(), textured ? 64 : 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) fill(static_cast<std::uint32_t>(t));
+  });
   em::finish(emitter);
   return emitter;
 }
