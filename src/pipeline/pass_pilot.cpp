@@ -13,8 +13,8 @@ namespace lumirank::pipeline {
 namespace {
 
 constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
-// What the rest takes of a pass's seconds, before that is known; what a pass takes is foretold to the second
-// factor.
+// What the rest takes of a pass's seconds at least, before that is known; what a pass takes is foretold to
+// the second factor.
 constexpr double kRestOfPass = 0.3, kUnsure = 1.25;
 // What is compared of a small film. Its passes have fewer lights, whose noise they share, and look worse than
 // those of the whole one: of seventeen scenes paths were better in the nine where they look 1.8 times worse
@@ -89,7 +89,12 @@ bool PassPilot::resizes() const {
   return settings_.time > 0 && settings_.passes == 0 && settings_.view.spp.value_or(0) == 0 &&
          !settings_.method.parameters.contains("samples") && task_.info->name == kMethodOfPasses;
 }
-double PassPilot::with_rest() const { return 1 + (rest_.plan().paths > 0 ? kRestOfPass : 0); }
+double PassPilot::with_rest() const {
+  if (rest_.plan().paths == 0) return 1;
+  const double pass = expected_.total(), path = rest_.seconds_of_path(view_);
+  if (!(pass > 0 && path > 0)) return 1 + kRestOfPass;
+  return 1 + std::max(kRestOfPass, rest_.paths_beside_pass(view_, pass, kNoiseOfPass) * path / pass);
+}
 double PassPilot::left() const {
   return settings_.time - picture_.denoising().seconds() - task_.timer.seconds() - features_expected_;
 }

@@ -18,6 +18,8 @@ namespace lumirank::pipeline {
 // Fewer than so many passes of the whole film tell little, and are of interleaved pixels or of a smaller
 // film. Numbers of passes end before kMaxPasses; those from there on are the pilot's.
 inline constexpr int kFewPasses = 4, kMaxPasses = 65536;
+// How noisy a pass is (relative L1), before that is known.
+inline constexpr double kNoiseOfPass = 0.5;
 
 class PassPilot {
  public:

@@ -27,9 +27,8 @@ namespace lumirank::pipeline {
 namespace {
 
 constexpr int kDefaultPasses = 16;
-// Paths of the rest for each pass: without a budget; and within one at least, at most. How noisy a pass is,
-// before that is known.
-constexpr double kRestUntimed = 2, kMinRest = 0.25, kMaxRest = 8, kNoiseOfPass = 0.5;
+// Paths of the rest for each pass without a budget.
+constexpr double kRestUntimed = 2;
 // Paths go alone where the rest is more of the light than this.
 constexpr double kRestForPaths = 0.2;
 // What of all that is done for a pixel draws of lights are, before it is known.
@@ -202,22 +201,18 @@ class PassRun {
       throttle_.show(sized_for(picture_->complete(picture_->with_all_noise()), task_.view));
   }
 
-  // Two sorts of noise are least together, for their seconds, where each has samples in proportion to its
-  // deviation over the root of what a sample takes.
   double rest_per_pass(double pass_seconds) const {
-    const double all = static_cast<double>(view_.width) * static_cast<double>(view_.height) *
-                       rest_->plan().pilot.path_seconds;
-    if (!timed() || !(all > 0)) return kRestUntimed;
+    if (!timed() || !(rest_->seconds_of_path(view_) > 0)) return kRestUntimed;
     const double of_pass = rounds() >= kFewPasses ? passes_->noise() * std::sqrt(rounds()) : kNoiseOfPass;
-    return std::clamp(rest_->plan().pilot.deviation / of_pass * std::sqrt(pass_seconds / all), kMinRest,
-                      kMaxRest);
+    return rest_->paths_beside_pass(view_, pass_seconds, of_pass);
   }
   bool add_rest(double pass_seconds) {
     if (rest_->plan().paths == 0) return true;
     rest_due_ += rest_per_pass(tracer_.parts() * pass_seconds) / tracer_.parts();
     int paths = std::max(done_ == 0 ? 1 : 0, static_cast<int>(rest_due_));
     if (timed()) {
-      if (const auto earlier = choices_.earlier("rest_of_pass", static_cast<int>(kMaxRest) + 1))
+      if (const auto earlier =
+              choices_.earlier("rest_of_pass", static_cast<int>(RestTracing::kMaxBesidePass) + 1))
         paths = static_cast<int>(*earlier);
       choices_.record("rest_of_pass", paths);
     }

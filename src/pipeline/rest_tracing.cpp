@@ -70,6 +70,11 @@ bool RestTracing::add_paths(const View& view, int paths, const Sinks& sinks) {
   return whole;
 }
 
+double RestTracing::paths_beside_pass(const View& view, double pass_seconds, double noise_of_pass) const {
+  return std::clamp(plan_.pilot.deviation / noise_of_pass * std::sqrt(pass_seconds / seconds_of_path(view)),
+                    kMinBesidePass, kMaxBesidePass);
+}
+
 bool RestTracing::trace_all(const View& view, const Sinks& sinks) {
   if (plan_.paths == 0) return true;
   const Timer timer;

@@ -22,7 +22,11 @@ class RestTracing {
 
   const RestPlan& plan() const { return plan_; }
   double pilot_seconds() const { return pilot_seconds_; }
-  // Of a path of all light for each pixel, as the pilot says; 0: there was none.
+  // Of one of its paths for each pixel, as the pilot says; 0: there was none.
+  double seconds_of_path(const View& view) const {
+    return plan_.pilot.path_seconds * static_cast<double>(view.width) * static_cast<double>(view.height);
+  }
+  // Of a path of all light for each pixel.
   double seconds_of_whole_path(const View& view) const {
     return plan_.pilot.whole_path_seconds * static_cast<double>(view.width) *
            static_cast<double>(view.height);
@@ -38,6 +42,12 @@ class RestTracing {
   bool add_paths(const View& view, int paths, const Sinks& sinks);
   // Without a budget all at once, after the method. False if it was interrupted.
   bool trace_all(const View& view, const Sinks& sinks);
+
+  // Paths beside a pass that takes so many seconds and has so much noise (relative L1): two sorts of noise
+  // are least together, for their seconds, where each has samples in proportion to its deviation over the
+  // root of what a sample takes. Needs a pilot.
+  double paths_beside_pass(const View& view, double pass_seconds, double noise_of_pass) const;
+  static constexpr double kMinBesidePass = 0.25, kMaxBesidePass = 8;
 
   double light_paths() const { return options_.light_paths; }  // beside each of them
   int paths() const { return paths_; }                         // traced, per pixel
