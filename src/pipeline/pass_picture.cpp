@@ -62,12 +62,7 @@ image::Image PassPicture::with_mirrored(image::Image sent) const {
 
 image::Image PassPicture::with_mirrored_as_noise(image::Image difference) const {
   if (!denoising_.traced() || !parts_.emission) return difference;
-  const image::Image shown =
-      denoise::reduced(denoising_.features().mirrored, difference.width, difference.height);
-  for (std::size_t p = 0; p < shown.pixels.size(); ++p)
-    for (int c = 0; c < 3; ++c)
-      difference.pixels[p][c] = std::abs(difference.pixels[p][c]) + 2 * shown.pixels[p][c];
-  return difference;
+  return denoising_.with_mirrored_as_noise(std::move(difference));
 }
 
 image::Image PassPicture::with_emission(image::Image sent) const {

@@ -54,8 +54,7 @@ class PassPicture {
   image::Image with_emission(image::Image sent) const;
   // The same of the size that was asked for, where that is larger: without noise.
   image::Image enlarged_with_emission(image::Image sent) const;
-  // A difference of halves (twice the noise) that has with_mirrored()'s part for noise, since that of few
-  // film samples is not known.
+  // A difference of halves that has with_mirrored()'s part for noise.
   image::Image with_mirrored_as_noise(image::Image difference) const;
 
  private:

@@ -1,6 +1,7 @@
 #include "pipeline/picture_denoising.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/timer.h"
@@ -162,6 +163,14 @@ image::Image PictureDenoising::mirrored(const image::Image& sent) const {
   const double usual = sum / static_cast<double>(sent.pixels.size());
   return without_fireflies(denoise::reduced(features().mirrored, sent.width, sent.height),
                            static_cast<float>(usual));
+}
+
+image::Image PictureDenoising::with_mirrored_as_noise(image::Image difference) const {
+  const image::Image shown = denoise::reduced(features().mirrored, difference.width, difference.height);
+  for (std::size_t p = 0; p < shown.pixels.size(); ++p)
+    for (int c = 0; c < 3; ++c)
+      difference.pixels[p][c] = std::abs(difference.pixels[p][c]) + 2 * shown.pixels[p][c];
+  return difference;
 }
 
 image::Image PictureDenoising::enlarged(image::Image sent) const {

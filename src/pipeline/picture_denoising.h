@@ -62,6 +62,9 @@ class PictureDenoising {
   // What mirrors and glass show of lamps, of the size of `sent`, what surfaces send: without outliers of what
   // is usual in there. Needs trace_first().
   image::Image mirrored(const image::Image& sent) const;
+  // A difference of halves (twice the noise) of a picture to which that was added, all of it for noise: that
+  // of few film samples is not known.
+  image::Image with_mirrored_as_noise(image::Image difference) const;
   bool traced() const { return features_.has_value(); }
 
   // Without its noise; nothing if there is no denoiser, or nothing that it could do. `difference` is twice
