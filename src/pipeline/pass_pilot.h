@@ -3,7 +3,6 @@
 // the pixels.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 
