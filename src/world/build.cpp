@@ -1,5 +1,4 @@
 // A description → a world, in steps: what is placed, its materials and textures, its light, the ray scene.
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -163,6 +162,7 @@ class World::Builder {
     for (const Placed& p : geometry_.placed) {
       material_of_.push_back(material_of(p));
       radiance_of_.push_back(radiance_of(p));
+      if (radiance_of_.back().texture >= 0) ++shining_pictures_;
     }
     w_.materials.materials = materials_.take();
     // Heights of bumps are lengths.
@@ -232,11 +232,8 @@ class World::Builder {
     auto& placement = geometry_.placements[i];
     if (const int texture = radiance_of_[i].texture; texture >= 0) {
       geometry::TriangleMesh& mesh = geometry_.meshes[placement.mesh];
-      const auto share = kTrianglesOfPictures /
-                         static_cast<std::size_t>(std::count_if(
-                             radiance_of_.begin(), radiance_of_.end(),
-                             [](const scatter::ColorInput& radiance) { return radiance.texture >= 0; }));
-      mesh = divided_by_texture(std::move(mesh), texture, w_.materials.textures, share);
+      mesh = divided_by_texture(std::move(mesh), texture, w_.materials.textures,
+                                kTrianglesOfPictures / shining_pictures_);
     }
     emitters::AreaEmitter area =
         make_area_emitter(geometry_.meshes[placement.mesh], static_cast<std::uint32_t>(i), radiance_of_[i],
@@ -330,6 +327,7 @@ class World::Builder {
   std::vector<geometry::SharedMesh> meshes_;
   std::vector<int> material_of_;                  // of each of geometry_.placed
   std::vector<scatter::ColorInput> radiance_of_;  // where it shines
+  std::size_t shining_pictures_ = 0;              // of these, by a texture
   std::unique_ptr<Impl> impl_ = std::make_unique<Impl>();
   Impl& w_ = *impl_;
 };
