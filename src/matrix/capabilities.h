@@ -69,6 +69,7 @@ struct MethodContract {
   // What rays in media are to be for it, unless its settings say otherwise (MethodInfo::segments_wanted).
   enum class Segments {
     pieces,          // eye rays in pieces
+    light_pieces,    // eye rays as they are, light rays in pieces
     whole,           // eye rays as they are
     groups,          // eye rays in pieces that know their slices (RowFeatures::slice)
     groups_and_tree  // the same, and light rays in pieces that know their tree (ColumnFeatures::branch)

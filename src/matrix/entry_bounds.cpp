@@ -55,6 +55,7 @@ ColumnSet join(const ColumnSet& a, const ColumnSet& b) {
   set.cone = join(a.cone, b.cone);
   set.radius = std::max(a.radius, b.radius);
   set.min_radius = std::min(a.min_radius, b.min_radius);
+  set.min_length = std::min(a.min_length, b.min_length);
   set.direct = a.direct && b.direct;
   set.intensity += b.intensity;
   set.ceiling += b.ceiling;

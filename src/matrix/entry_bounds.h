@@ -22,12 +22,13 @@ struct Cone {
 // A cone that holds both; the least one, but for rounding to the safe side (4e-7 of the cosine).
 Cone join(const Cone& a, const Cone& b);
 
-// How a column sends light. Columns that differ in it, or of which only one is spherical, do not share a
-// node.
+// How a column sends light. Columns that differ in it, of which only one is spherical, or that scatter in
+// different media, do not share a node.
 enum class Emission : std::uint8_t {
   omni,         // from its position, in all directions alike or bounded by the same number
   oriented,     // the same times the cosine with its normal, nothing behind
   directional,  // from infinitely far
+  ray,          // scattered in a medium out of what flies along a line within its box
 };
 
 // A set of columns of one kind, as bounds see it.
@@ -37,16 +38,21 @@ struct ColumnSet {
   // All of them stand for emitters: rows may take part of such light from elsewhere, where it is not in the
   // entries.
   bool direct = false;
-  Bounds3f box;                      // positions; not used if directional
-  Cone cone;                         // oriented: normals; directional: directions towards the light
+  Bounds3f box;  // positions; not used if directional
+  // oriented: normals; directional: directions towards the light; ray: of the flights
+  Cone cone;
   float radius = 0, min_radius = 0;  // of the largest and the smallest sphere
   // Sum over the columns of the greatest radiant intensity that each has in any direction, before the cosine
-  // (directional: irradiance).
+  // (directional: irradiance; ray: flux that is scattered along it at most, whatever the direction).
   Rgb intensity{0};
+  // ray: the medium, which columns of a node have in common, and the least of the lengths along which each
+  // scatters its flux where it scatters at its greatest rate all along.
+  std::int16_t medium = -1;
+  float min_length = 0;
   // Sum over the columns of the greatest entry that clamping leaves; infinite where it leaves any.
   Rgb ceiling{kInfinity};
 };
-// Both must be of one kind (emission and spherical).
+// Both must be of one kind (emission, spherical and medium).
 ColumnSet join(const ColumnSet& a, const ColumnSet& b);
 
 // A bound apart from what distance makes of it.
@@ -61,8 +67,9 @@ class RowBounds {
   virtual ~RowBounds() = default;
   // The rows of which the following questions ask. Costs O(rows); keeps its buffers.
   virtual void set_rows(std::span<const Index> rows) = 0;
-  // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i. Finite unless a row may lie in the
-  // set's box and nothing is clamped (nor spherical).
+  // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i; of entries that are estimates of an
+  // integral, at least these integrals. Finite unless a row may lie in the set's box and nothing is clamped
+  // (nor spherical).
   virtual Rgb bound(const ColumnSet& set) const = 0;
   // The same in parts, for guesses at what a set sends rather than at what it sends at most.
   virtual BoundParts parts(const ColumnSet& set) const { return {bound(set)}; }

@@ -27,6 +27,11 @@ Medium::Medium(Form form, Field first, Field second, Field emission, const Phase
       emission_(std::move(emission)),
       phase_(phase) {
   const bool sum = form == Form::absorption_and_scattering;
+  if (!sum) {
+    max_albedo_ = not_negative(second_.scale);
+    if (second_.grid) max_albedo_ *= not_negative(second_.grid->range(Vec3f{}, Vec3f{1, 1, 1}).most);
+    max_albedo_ = clamp_below(max_albedo_, 1);
+  }
   if (!first_.grid && !(sum && second_.grid)) {
     even_ = extinction({});
     return;
@@ -67,6 +72,20 @@ Coefficients Medium::at(Vec3f place) const {
     out.scattering = second;
   }
   if (emits()) out.emission = emission_.at(place);
+  return out;
+}
+
+Medium::Scattering Medium::max_scattering(Vec3f origin, Vec3f direction, float length) const {
+  Scattering out{Rgb(0), Rgb(0)};
+  Walk walk(*this, origin, direction, length);
+  Walk::Piece piece;
+  while (walk.next(piece)) {
+    // Of what is the same everywhere it is known what of it scatters.
+    const bool known = homogeneous() && form_ == Form::absorption_and_scattering && !second_.grid;
+    const Rgb most = known ? not_negative(second_.scale) : piece.extinction.most * max_albedo_;
+    out.total += most * std::max(0.0f, piece.end - piece.begin);
+    for (int c = 0; c < 3; ++c) out.most[c] = std::max(out.most[c], most[c]);
+  }
   return out;
 }
 

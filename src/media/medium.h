@@ -97,6 +97,12 @@ class Medium {
     float next_t_[3]{}, delta_t_[3]{};
   };
 
+  // What scatters along a ray's way at most: over all of it, and where it is most per length.
+  struct Scattering {
+    Rgb total, most;
+  };
+  Scattering max_scattering(Vec3f origin, Vec3f direction, float length) const;
+
   std::size_t memory_bytes() const;  // without its grids, which media may share
 
  private:
@@ -107,6 +113,7 @@ class Medium {
   std::optional<ExtinctionBounds> bounds_;
   Transform to_unit_;  // of the box of bounds_
   Rgb even_;
+  Rgb max_albedo_{1};
 };
 
 inline bool Medium::Walk::next(Piece& piece) {

@@ -82,12 +82,13 @@ Vec3f PhaseFunction::sample(Vec3f forward, int channel, float u_lobe, Vec2f u) c
   return Frame::from_normal(forward).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
 }
 
-Rgb PhaseFunction::max_value() const {
-  // Each lobe has its maximum straight ahead or straight back; the sum of maxima bounds the sum.
+Rgb PhaseFunction::max_value(float min_cosine, float max_cosine) const {
+  // Each lobe is greatest at one end or the other; the sum of maxima bounds the sum.
   Rgb sum{0};
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
     for (int c = 0; c < 3; ++c)
-      sum[c] += lobes[k].weight * value(lobes[k].kind, lobes[k].g[c], lobes[k].g[c] < 0 ? -1.0f : 1.0f);
+      sum[c] +=
+          lobes[k].weight * value(lobes[k].kind, lobes[k].g[c], lobes[k].g[c] < 0 ? min_cosine : max_cosine);
   return sum;
 }
 

@@ -33,7 +33,8 @@ struct PhaseFunction {
   // A direction in which a path goes on that came along `forward` (unit), with the density eval() of one
   // channel.
   Vec3f sample(Vec3f forward, int channel, float u_lobe, Vec2f u) const;
-  Rgb max_value() const;  // at least eval() of all angles
+  // At least eval() of all cosines in between; of one lobe no more than that.
+  Rgb max_value(float min_cosine = -1, float max_cosine = 1) const;
   bool isotropic() const { return count == 1 && is_black(lobes[0].g); }
   bool gray() const;  // alike for all channels
 };

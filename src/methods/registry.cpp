@@ -5,6 +5,7 @@
 #include "methods/column_completion/column_completion.h"
 #include "methods/instant_radiosity/instant_radiosity.h"
 #include "methods/lightcuts/lightcuts.h"
+#include "methods/lightcuts/scalable_virtual_ray_lights.h"
 #include "methods/lightslice/lightslice.h"
 #include "methods/method.h"
 #include "methods/multidimensional_lightcuts/multidimensional_lightcuts.h"
@@ -50,7 +51,8 @@ const std::vector<MethodInfo>& all_methods() {
       {brute_force_info(), instant_radiosity_info(), power_sampling_info(), row_guided_sampling_info(),
        row_column_info(), lightcuts_info(), multidimensional_lightcuts_info(), stochastic_lightcuts_info(),
        lightslice_info(), sampling_recovery_info(), slice_cuts_info(), visibility_completion_info(),
-       column_completion_info(), adaptive_lightslice_info(), virtual_ray_lights_info()});
+       column_completion_info(), adaptive_lightslice_info(), virtual_ray_lights_info(),
+       scalable_virtual_ray_lights_info()});
   return methods;
 }
 

@@ -11,6 +11,7 @@
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
 #include "transport/cpu/media_matrix.h"
+#include "transport/lights/cut_rays.h"
 #include "transport/lights/ray_lights.h"
 #include "transport/lights/ray_tree.h"
 #include "transport/rows/eye_groups.h"
@@ -20,6 +21,10 @@ namespace {
 
 // Parts of a ray's way through a medium (Huo et al. 2016, section 4.1: 16 points).
 constexpr int kSegmentsPerRay = 17;
+
+// Pieces of light rays for methods that go by bounds: as many as made cuts better in the hall of the
+// experiments.
+constexpr double kPiecesOfLightRays = 4;
 
 // At so many places of a segment at least the light of all emitters together is estimated: one place for the
 // sun made noise of its shafts.
@@ -74,6 +79,10 @@ class MediaRun {
     const methods::MethodInfo& info = *task_.info;
     return info.segments_wanted ? info.segments_wanted(asked_.method.parameters) : info.contract.segments;
   }
+  int pieces_of_eye_rays() const {
+    if (of_method() == Segments::whole || of_method() == Segments::light_pieces) return 1;
+    return asked_.time > 0 && of_method() == Segments::pieces ? kSegmentsOfAPass : kSegmentsPerRay;
+  }
   bool in_groups() const {
     return of_method() == Segments::groups || of_method() == Segments::groups_and_tree;
   }
@@ -116,10 +125,8 @@ class MediaRun {
   void rows() {
     const Timer timer;
     transport::ReceiverSettings settings = receiver_settings(recipe_, task_.view);
-    settings.eye_medium = task_.view.sensor.medium,
-    settings.segments = of_method() == Segments::whole                       ? 1
-                        : asked_.time > 0 && of_method() == Segments::pieces ? kSegmentsOfAPass
-                                                                             : kSegmentsPerRay;
+    settings.eye_medium = task_.view.sensor.medium;
+    settings.segments = pieces_of_eye_rays();
     rows_ = transport::trace_receivers(*task_.world, world::Camera(task_.view.sensor, task_.world->units()),
                                        settings, sinks_);
     seconds_["receivers"] += timer.seconds();
@@ -146,8 +153,12 @@ class MediaRun {
     lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
     whole_rays_ = lights_.rays.size();
     seconds_["lights"] += timer.seconds();
-    if (of_method() == Segments::groups_and_tree) {
-      timer = {};
+    timer = {};
+    if (of_method() == Segments::light_pieces) {
+      lights_.rays =
+          transport::cut_evenly(*task_.world, lights_.rays, kPiecesOfLightRays, recipe_.light_seed);
+      seconds_["segments"] += timer.seconds();
+    } else if (of_method() == Segments::groups_and_tree) {
       transport::RayTreeSettings tree;
       tree.seed = recipe_.light_seed;
       transport::build_ray_tree(*task_.world, tree, lights_.rays, sinks_);

@@ -8,8 +8,8 @@ namespace lumirank::pipeline {
 // Whether a medium of the scene may scatter. Those that only absorb need no rows and columns of their own.
 bool some_scatter(const scenedesc::SceneDesc& desc);
 
-// Throws InputError for what a picture in empty space can be asked for and one with media cannot: methods
-// that need bounds on lights, layers, light traced beside the columns, spherical lights.
+// Throws InputError for what a picture in empty space can be asked for and one with media cannot: layers,
+// light traced beside the columns, spherical lights.
 void check_media(const methods::MethodInfo& method, const RenderSettings& settings);
 
 // The method for such a scene, where "auto" is row-column-sampling; `why` (may be nullptr) says so.

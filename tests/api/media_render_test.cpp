@@ -54,13 +54,14 @@ std::vector<double> values_of(const Picture& picture) {
 
 // All columns, means over seeds, agree with the path tracer, in the mean over each of four blocks of the
 // picture.
-void expect_agreement(const std::string& text, LightPart only, const char* what) {
+void expect_agreement(const std::string& text, LightPart only, const char* what,
+                      const MethodSettings& method = {.name = "brute-force"}) {
   const Scene scene = load_text(text);
   RenderSettings settings;
   settings.view.only = only;
   settings.view.spp = 4;
   settings.view.max_depth = 5;
-  settings.method.name = "brute-force";
+  settings.method = method;
   settings.lights.count = 300;
   settings.lights.clamp = 0;
   constexpr int kSeeds = 24;
@@ -106,6 +107,38 @@ TEST(MediaRender, ABallOfSmokeAgreesWithThePathTracer) {
   expect_agreement(room(fog("1.5, 2, 3", 0.4), false), LightPart::all, "a ball of smoke");
 }
 
+// What every eye ray sums over is all pieces of light rays then, so this is about the pieces.
+TEST(MediaRender, PiecesOfLightRaysAgreeWithThePathTracer) {
+  const MethodSettings all{.name = "scalable-virtual-ray-lights",
+                           .parameters = {{"error-bound", "0"}, {"max-nodes", "100000"}}};
+  expect_agreement(room(fog("1.5, 2, 3", 0.4), false), LightPart::indirect, "pieces of light rays", all);
+}
+
+// By bounds, each in its own way: with all nodes they sum the same entries.
+TEST(MediaRender, CutsEndInTheSameSums) {
+  const Scene scene = load_text(room(fog("0.5, 0.6, 0.8", 0.3), true));
+  RenderSettings settings;
+  settings.view.spp = 1;
+  settings.lights.count = 200;
+  const auto sums = [&](const MethodSettings& method) {
+    settings.method = method;
+    return values_of(render(scene, settings).picture);
+  };
+  const auto all = sums(
+      {.name = "scalable-virtual-ray-lights", .parameters = {{"error-bound", "0"}, {"max-nodes", "100000"}}});
+  const auto expect_same = [&](const MethodSettings& method) {
+    const auto other = sums(method);
+    for (std::size_t k = 0; k < all.size(); ++k)
+      ASSERT_NEAR(other[k], all[k], 1e-4 * all[k] + 1e-7) << method.name << ' ' << k;
+  };
+  expect_same({.name = "lightcuts",
+               .parameters = {{"error-bound", "0"}, {"max-nodes", "100000"}, {"reconstruction", "off"}}});
+  expect_same(
+      {.name = "multidimensional-lightcuts", .parameters = {{"error-bound", "0"}, {"max-pairs", "1000000"}}});
+  expect_same({.name = "slice-cuts",
+               .parameters = {{"alpha", "0"}, {"initial-columns", "100000"}, {"max-columns", "100000"}}});
+}
+
 TEST(MediaRender, RowsAndColumnsConvergeToAllColumns) {
   const Scene scene = load_text(room(fog("0.5, 0.6, 0.8", 0), true));
   RenderSettings settings;
@@ -135,7 +168,6 @@ TEST(MediaRender, SaysWhatItCannotDo) {
     change(settings);
     EXPECT_THROW(render(scene, settings), InputError);
   };
-  refused([](RenderSettings& s) { s.method.name = "slice-cuts"; });
   refused([](RenderSettings& s) { s.layers = {"direct"}; });
   refused([](RenderSettings& s) { s.traced.compensate = 4; });
   refused([](RenderSettings& s) { s.lights.type = LightType::sphere; });

@@ -16,6 +16,7 @@
 #include "methods/common/light_tree/light_tree.h"
 #include "methods/common/turns.h"
 #include "methods/lightcuts/block_painter.h"
+#include "methods/lightcuts/lightcuts_method.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {
@@ -23,16 +24,6 @@ namespace lumirank::methods {
 namespace {
 
 using matrix::Index;
-
-enum class Reconstruction { on, off };
-
-struct LightcutsSettings {
-  double error_bound = 0.02;
-  std::size_t max_nodes = 1000;
-  Reconstruction reconstruction = Reconstruction::on;
-  double interpolation_tolerance = 0.005;
-  double similarity = 0.95;
-};
 
 const Fields<LightcutsSettings> kLightcutsFields{
     number_field<LightcutsSettings>({"error-bound", "",
@@ -99,65 +90,56 @@ void write_costs(const LightcutsPool& pool, const matrix::LightingMatrix& matrix
   numbers["interpolated"] = interpolated / std::max(1.0, static_cast<double>(matrix.rows()));
 }
 
-class Lightcuts final : public Method {
- public:
-  explicit Lightcuts(const LightcutsSettings& settings) : settings_(settings) {}
-
-  Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    const RunClock timer(options);
-    Estimate estimate;
-    estimate.sums.assign(matrix.rows(), Rgb(0));
-    Turns turns(matrix, options, timer, estimate.sums);
-    RowsForError rows(matrix, options, timer);
-    const double before_tree = timer.seconds();
-    const LightTree tree(matrix, options.seed);
-    estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
-    {
-      LightcutsPool pool([&] { return std::make_unique<LightcutsWorkspace>(matrix, tree, settings_); });
-      const RowGroupControl control{options, timer, 0, "columns"};
-      const RowGroupResult pass = run_pass(matrix, control, turns, pool, estimate.sums);
-      turns.write(estimate.trace);
-      note_stop(pass, estimate);
-      estimate.trace.numbers["seconds.columns"] = pass.seconds;
-      write_costs(pool, matrix, estimate.trace);
-    }
-    if (!estimate.interrupted)
-      rows.state(estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
-    if (options.on_estimate) options.on_estimate(estimate.sums);
-    return estimate;
-  }
-
- private:
-  // A coarser or a finer cut is no other draw of the same, so turns replace each other.
-  RowGroupResult run_pass(const matrix::LightingMatrix& matrix, const RowGroupControl& control, Turns& turns,
-                          LightcutsPool& pool, std::span<Rgb> all_sums) const {
-    const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
-    const auto limits = [this](const Turn& turn) {
-      return CutLimits{std::min(1.0, settings_.error_bound / turn.quality), turn.scaled(settings_.max_nodes)};
-    };
-    const bool image = matrix.rows() > 0 && !matrix.row_features().pixel.empty();
-    if (settings_.reconstruction == Reconstruction::on && image) {
-      const ImageBlocks blocks(matrix);
-      return run_in_turns(
-          turns, blocks.row_groups(), control, method, all_sums, pool,
-          [&](std::size_t group, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
-            w.cuts.limit(limits(turn));
-            w.painter.paint(blocks, group, w.cuts, *w.reader, sums);
-          });
-    }
-    const RowGroups row_groups = stretches(matrix.rows());
-    return run_in_turns(turns, row_groups, control, method, all_sums, pool,
+// A coarser or a finer cut is no other draw of the same, so turns replace each other.
+RowGroupResult run_cuts(const LightcutsSettings& settings, const matrix::LightingMatrix& matrix,
+                        const RowGroupControl& control, Turns& turns, LightcutsPool& pool,
+                        std::span<Rgb> all_sums) {
+  const TurnMethod method{.averaged = false, .entries_per_row = kEntriesPerRow};
+  const auto limits = [&](const Turn& turn) {
+    return CutLimits{std::min(1.0, settings.error_bound / turn.quality), turn.scaled(settings.max_nodes)};
+  };
+  const bool image = matrix.rows() > 0 && !matrix.row_features().pixel.empty();
+  if (settings.reconstruction == Reconstruction::on && image) {
+    const ImageBlocks blocks(matrix);
+    return run_in_turns(turns, blocks.row_groups(), control, method, all_sums, pool,
                         [&](std::size_t group, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
                           w.cuts.limit(limits(turn));
-                          w.cuts.cut(row_groups[group], *w.reader,
-                                     [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
+                          w.painter.paint(blocks, group, w.cuts, *w.reader, sums);
                         });
   }
-
-  LightcutsSettings settings_;
-};
+  const RowGroups row_groups = stretches(matrix.rows());
+  return run_in_turns(turns, row_groups, control, method, all_sums, pool,
+                      [&](std::size_t group, LightcutsWorkspace& w, const Turn& turn, std::span<Rgb> sums) {
+                        w.cuts.limit(limits(turn));
+                        w.cuts.cut(row_groups[group], *w.reader,
+                                   [&](std::size_t, const Cut& cut) { sums[cut.row()] = cut.total(); });
+                      });
+}
 
 }  // namespace
+
+Estimate Lightcuts::run(const matrix::LightingMatrix& matrix, const RunOptions& options) const {
+  const RunClock timer(options);
+  Estimate estimate;
+  estimate.sums.assign(matrix.rows(), Rgb(0));
+  Turns turns(matrix, options, timer, estimate.sums);
+  RowsForError rows(matrix, options, timer);
+  const double before_tree = timer.seconds();
+  const LightTree tree(matrix, options.seed);
+  estimate.trace.numbers["seconds.tree"] = timer.seconds() - before_tree;
+  {
+    LightcutsPool pool([&] { return std::make_unique<LightcutsWorkspace>(matrix, tree, settings_); });
+    const RowGroupControl control{options, timer, 0, "columns"};
+    const RowGroupResult pass = run_cuts(settings_, matrix, control, turns, pool, estimate.sums);
+    turns.write(estimate.trace);
+    note_stop(pass, estimate);
+    estimate.trace.numbers["seconds.columns"] = pass.seconds;
+    write_costs(pool, matrix, estimate.trace);
+  }
+  if (!estimate.interrupted) rows.state(estimate.sums, estimate.trace.numbers.at("columns"), estimate.trace);
+  if (options.on_estimate) options.on_estimate(estimate.sums);
+  return estimate;
+}
 
 MethodInfo lightcuts_info() {
   return method_info<Lightcuts>(
@@ -166,7 +148,7 @@ MethodInfo lightcuts_info() {
        "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg: Lightcuts: a scalable approach to "
        "illumination, SIGGRAPH 2005",
        "error-bound or max-nodes",
-       {{matrix::Ability::bounds}}},
+       {.needs = {matrix::Ability::bounds}, .segments = matrix::MethodContract::Segments::light_pieces}},
       kLightcutsFields);
 }
 

@@ -197,7 +197,10 @@ MethodInfo multidimensional_lightcuts_info() {
        "For each pixel a cut through pairs of its receivers and a tree of lights.",
        "Walter, Arbree, Bala, Greenberg: Multidimensional lightcuts, SIGGRAPH 2006",
        "error-bound or max-pairs",
-       {.needs = {matrix::Ability::bounds}, .sums_of_pixels = true, .instants = true}},
+       {.needs = {matrix::Ability::bounds},
+        .sums_of_pixels = true,
+        .instants = true,
+        .segments = matrix::MethodContract::Segments::light_pieces}},
       kMultidimensionalFields);
 }
 

@@ -95,7 +95,8 @@ MethodInfo sampling_recovery_info() {
        "Samples few visibilities of every slice of receivers and recovers the others.",
        "Huo et al. 2015, A matrix sampling-and-recovery approach for many-lights rendering",
        "",
-       {{matrix::Ability::binary_visibility, matrix::Ability::bounds}}},
+       {.needs = {matrix::Ability::binary_visibility, matrix::Ability::bounds},
+        .segments = matrix::MethodContract::Segments::light_pieces}},
       recovery_fields());
 }
 

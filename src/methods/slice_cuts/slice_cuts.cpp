@@ -76,7 +76,7 @@ MethodInfo slice_cuts_info() {
        "Cuts the light tree for every slice of receivers, and traces a visibility per pixel's surface.",
        "The light clusters of Huo et al. 2015 (section 4), without their recovery",
        "",
-       {{matrix::Ability::bounds}}},
+       {.needs = {matrix::Ability::bounds}, .segments = matrix::MethodContract::Segments::light_pieces}},
       slice_cut_fields());
 }
 

@@ -190,7 +190,7 @@ MethodInfo stochastic_lightcuts_info() {
        "Yuksel: Stochastic Lightcuts, HPG 2019; Stochastic Lightcuts for Sampling Many Lights, IEEE TVCG "
        "2020",
        "nodes or error-bound",
-       {{matrix::Ability::bounds}}},
+       {.needs = {matrix::Ability::bounds}, .segments = matrix::MethodContract::Segments::light_pieces}},
       kStochasticFields);
 }
 

@@ -9,6 +9,7 @@
 
 #include "matrix/lighting_tensor.h"
 #include "methods/tensor_clustering/cluster_columns.h"
+#include "methods/tensor_clustering/cluster_reader.h"
 #include "methods/tensor_clustering/row_mapping.h"
 
 namespace lumirank::methods {

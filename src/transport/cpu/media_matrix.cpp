@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "transport/cpu/media_batch.h"
 #include "transport/cpu/scene_matrix.h"
+#include "transport/pairs/media_row_bounds.h"
 
 namespace lumirank::transport {
 
@@ -256,6 +257,20 @@ matrix::ColumnFeatures MediaMatrix::column_features() const {
           m.column_group,    m.column_indirect, m.column_half,
           m.column_emitted,  m.column_id,       {},
           m.column_branch};
+}
+
+matrix::ColumnSet MediaMatrix::column_set(Index j) const {
+  const Impl& m = *impl_;
+  if (m.is_point(j)) return m.points.column_set(j);
+  const RayLights& rays = m.lights.rays;
+  const std::size_t k = j - m.point_count;
+  return ray_set(m.world.media()[static_cast<std::size_t>(rays.medium[k])], rays.medium[k], rays.origin[k],
+                 rays.direction[k], rays.length[k], rays.power[k]);
+}
+
+std::unique_ptr<matrix::RowBounds> MediaMatrix::row_bounds() const {
+  return std::make_unique<MediaRowBounds>(impl_->world, impl_->receivers,
+                                          BoundRules{impl_->settings.spheres, 0});
 }
 
 std::size_t MediaMatrix::memory_bytes() const {

@@ -39,12 +39,13 @@ class MediaMatrix final : public matrix::LightingMatrix {
                        std::span<Rgb> out, matrix::Part part) const override;
   matrix::Cost accumulate(std::span<const matrix::ScaledColumn> columns, std::span<Rgb> sums,
                           const Sinks& sinks) const override;
-  // All but bounds.
-  static constexpr matrix::Capabilities kCapabilities =
-      matrix::Capabilities::all().without({matrix::Ability::bounds});
+  static constexpr matrix::Capabilities kCapabilities = matrix::Capabilities::all();
   matrix::Capabilities capabilities() const override { return kCapabilities; }
   matrix::RowFeatures row_features() const override;
   matrix::ColumnFeatures column_features() const override;
+  // Of rays and segments bounds are those of the integrals (media_row_bounds.h).
+  matrix::ColumnSet column_set(matrix::Index j) const override;
+  std::unique_ptr<matrix::RowBounds> row_bounds() const override;
   std::size_t memory_bytes() const;
 
  private:

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "media/tracking.h"
+#include "transport/lights/cut_rays.h"
 #include "transport/segments/cut_points.h"
 #include "transport/segments/segment_graph.h"
 #include "transport/segments/segment_groups.h"
@@ -24,14 +25,6 @@ struct CutRays {
   std::vector<Segment> segments;
 };
 
-void append(RayLights& to, const RayLights& from, std::size_t j, float offset, float length, Rgb power,
-            std::uint64_t id) {
-  to.origin.push_back(from.origin[j] + from.direction[j] * offset), to.direction.push_back(from.direction[j]);
-  to.length.push_back(length), to.medium.push_back(from.medium[j]), to.power.push_back(power);
-  to.emitter.push_back(from.emitter[j]), to.depth.push_back(from.depth[j]), to.path.push_back(from.path[j]);
-  to.half.push_back(from.half[j]), to.id.push_back(id);
-}
-
 const media::Medium& medium_of(const world::World& world, const RayLights& rays, std::size_t j) {
   return world.media()[static_cast<std::size_t>(rays.medium[j])];
 }
@@ -40,24 +33,18 @@ const media::Medium& medium_of(const world::World& world, const RayLights& rays,
 CutRays cut(const world::World& world, const RayLights& rays, const RayTreeSettings& settings) {
   CutRays out;
   std::vector<float> ends;
+  std::vector<Rgb> passed;
   for (std::size_t j = 0; j < rays.size(); ++j) {
-    const media::Medium& medium = medium_of(world, rays, j);
     Rng rng(settings.seed, Stage::segments, rays.id[j]);
-    const auto random = [&rng] { return rng.next_float(); };
-    cut_points(medium, rays.origin[j], rays.direction[j], rays.length[j], settings.pieces, rng, ends);
+    cut_points(medium_of(world, rays, j), rays.origin[j], rays.direction[j], rays.length[j], settings.pieces,
+               rng, ends);
     ends.push_back(rays.length[j]);
-    Rgb power = rays.power[j];
-    float from = 0;
-    for (std::size_t k = 0; k < ends.size() && !is_black(power); ++k) {
-      const float part = ends[k] - from;
-      append(out.lights, rays, j, from, part, power, mix64(rays.id[j] + k + 1));
-      const Rgb left = media::transmittance(medium, rays.origin[j] + rays.direction[j] * from,
-                                            rays.direction[j], part, random);
-      out.segments.push_back(
-          {out.lights.origin.back(), rays.direction[j], part, rays.medium[j], mean(left), Vec2f{}, k > 0});
-      power *= left;
-      from = ends[k];
-    }
+    const std::size_t first = out.lights.size();
+    passed.clear();
+    append_pieces(world, rays, j, ends, rng, out.lights, passed);
+    for (std::size_t k = 0; k < passed.size(); ++k)
+      out.segments.push_back({out.lights.origin[first + k], rays.direction[j], out.lights.length[first + k],
+                              rays.medium[j], mean(passed[k]), Vec2f{}, k > 0});
   }
   return out;
 }
@@ -80,7 +67,7 @@ CutRays regrouped(const world::World& world, const CutRays& rays, const SegmentS
                                     rays.lights.direction[j], piece.offset, random);
     }
     if (is_black(power)) continue;
-    append(out.lights, rays.lights, j, piece.offset, piece.length, power, id);
+    append_piece(rays.lights, j, piece.offset, piece.length, power, id, out.lights);
     const Segment& source = rays.segments[j];
     out.segments.push_back(
         {out.lights.origin.back(), source.direction, piece.length, source.medium,

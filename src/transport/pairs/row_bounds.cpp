@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "transport/pairs/bound_geometry.h"
+
 namespace lumirank::transport {
 
 using matrix::ColumnSet;
@@ -13,64 +15,12 @@ using scatter::DirectionCone;
 
 namespace {
 
-// Entries are products of some ten floats.
-constexpr float kRounding = 1 + 4e-6f;
-// Of cosines, absolutely: they are sums of three products.
-constexpr float kCosineSlack = 3e-7f;
-
-// The box of all differences from a row to a light.
-struct Differences {
-  Vec3f center, half;
-  float distance2;  // least
-};
-Differences differences(const Bounds3f& rows, const Bounds3f& lights) {
-  Differences d;
-  const Vec3f lo = lights.lo - rows.hi, hi = lights.hi - rows.lo;
-  d.distance2 = length_squared(max(max(lo, -hi), Vec3f{}));
-  d.center = (lo + hi) * 0.5f;
-  // Of a single pair the box is a point, whose place is exact; else there are roundings.
-  d.half = (hi - lo) * 0.500001f;
-  return d;
-}
-
-// At least the cosine between `axis` and any w in the box of differences. Turned so that the axis is z, w has
-// z of at most that of the box, and is off the axis by at least, or where all z are negative by at most, what
-// the box is in the direction across in which its center lies. If all z are negative and `front`, no more is
-// said.
-float max_cosine(Vec3f axis, const Differences& d, bool front) {
-  const auto extent = [&](Vec3f v) {
-    return std::abs(v.x) * d.half.x + std::abs(v.y) * d.half.y + std::abs(v.z) * d.half.z;
-  };
-  const float z = dot(axis, d.center);
-  const float top =
-      z + extent(axis) + kCosineSlack * (std::abs(d.center.x) + std::abs(d.center.y) + std::abs(d.center.z));
-  if (top <= 0 && front) return -1;
-  const Vec3f across = d.center - axis * z;
-  const float off2 = length_squared(across);
-  if (top > 0) {
-    const float min_off = off2 - extent(across);  // times off
-    return min_off > 0 ? top / std::sqrt(top * top + min_off * min_off / off2) : 1.0f;
-  }
-  const float max_off = std::sqrt(off2) + length(d.half);
-  return max_off > 0 ? top / std::sqrt(top * top + max_off * max_off) : -1.0f;
-}
-
-// cos(max(0, angle - spread)).
-float towards(float cosine, float cos_spread, float sin_spread) {
-  if (cos_spread >= 1) return cosine;
-  if (cosine >= cos_spread) return 1;
-  return cosine * cos_spread + std::sqrt(std::max(0.0f, 1 - cosine * cosine)) * sin_spread;
-}
-float sine_of(float cosine) { return std::sqrt(std::max(0.0f, 1 - cosine * cosine)); }
-
 // Solid angle of a sphere over π times its radius squared, where it is largest; from inside, a hemisphere's.
 float sphere_geometry(float distance2, float radius, float min_radius, float beyond) {
   distance2 = std::max(distance2, square(beyond * min_radius));
   if (distance2 <= radius * radius) return 2 / std::max(distance2, min_radius * min_radius);
   return 2 / (distance2 * (1 + std::sqrt(1 - radius * radius / distance2)));
 }
-
-Rgb greater(Rgb a, Rgb b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
 
 }  // namespace
 
@@ -162,7 +112,7 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
   // Lobes have a roughness of 1 at most: above it, all direct light is traced.
   if (box_.empty() || (set.direct && rules_.traced_direct_below > 1)) return parts;
   DirectionCone cone;
-  float cosine, factor = kRounding;
+  float cosine, factor = kBoundSlack;
   if (set.emission == Emission::directional) {
     cone.axis = set.cone.axis;
     if (!closures_.empty())
@@ -172,18 +122,12 @@ matrix::BoundParts SceneRowBounds::parts(const ColumnSet& set) const {
     cosine = towards(std::min(cosine, 1.0f), normals_.cosine, normals_sine_);
   } else {
     Differences d = differences(box_, set.box);
-    const Vec3f farthest{std::abs(d.center.x) + d.half.x, std::abs(d.center.y) + d.half.y,
-                         std::abs(d.center.z) + d.half.z};
-    parts.far = 1 / std::max({length_squared(farthest), d.distance2, 1e-30f});
+    parts.far = 1 / max_distance2(d);
     // A sphere sends light from all of its box.
     if (set.spherical) d.half += Vec3f{set.radius, set.radius, set.radius};
     cosine = towards(max_cosine(normals_.axis, d, normals_.cosine >= 1), normals_.cosine, normals_sine_);
     if (cosine <= 0 && closures_.empty() && !behind_) return {Rgb(0)};
-    if (!closures_.empty()) {
-      const float radius = length(d.half), far = length(d.center);
-      if (far > 0) cone.axis = d.center / far;
-      if (radius < far) cone.angle = radius > 0 ? std::asin(radius / far) : 0.0f;
-    }
+    if (!closures_.empty()) cone = directions(d);
     bool has_cosine = set.emission == Emission::oriented;
     if (!set.spherical) {
       parts.near = d.distance2 > 0 ? 1 / d.distance2 : kInfinity;
@@ -212,7 +156,7 @@ Rgb SceneRowBounds::bound(const ColumnSet& set) const {
   const matrix::BoundParts at = parts(set);
   Rgb bound;
   for (int c = 0; c < 3; ++c)
-    bound[c] = at.reflected[c] > 0 ? std::min(at.reflected[c] * at.near, set.ceiling[c] * kRounding) : 0.0f;
+    bound[c] = at.reflected[c] > 0 ? std::min(at.reflected[c] * at.near, set.ceiling[c] * kBoundSlack) : 0.0f;
   return bound;
 }
 

@@ -28,7 +28,8 @@ class SceneRowBounds final : public matrix::RowBounds {
 
   void set_rows(std::span<const matrix::Index> rows) override;
   Rgb bound(const matrix::ColumnSet& set) const override;
-  matrix::BoundParts parts(const matrix::ColumnSet& set) const override;
+  matrix::BoundParts parts(const matrix::ColumnSet& set) const override;  // of any set but rays
+  const Bounds3f& box() const { return box_; }                            // of the rows
 
  private:
   // Rows with more closures than that know only their greatest values.

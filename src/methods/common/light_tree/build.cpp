@@ -77,7 +77,8 @@ struct LightTree::Builder {
     inner.begin = begin, inner.end = end, inner.left_size = left_size, inner.parent = parent;
     inner.emission = static_cast<std::uint32_t>(set.emission) & 3u;
     inner.spherical = set.spherical, inner.direct = set.direct;
-    if (set.spherical) tree.radii_[node] = {set.radius, set.min_radius};
+    if (!tree.extents_.empty())
+      tree.extents_[node] = {set.radius, set.min_radius, set.min_length, set.medium};
     const Node left = tree.left(node), right = tree.right(node);
     inner.emitted = tree.emitted(left) + tree.emitted(right);
     const Index first = tree.representative(left), second = tree.representative(right);
@@ -98,13 +99,15 @@ struct LightTree::Builder {
 namespace {
 
 // What columns must have in common to stand in one tree; kDark: they send nothing.
-using Kind = std::uint32_t;
-constexpr Kind kDark = 0xffffffffu;
+using Kind = std::uint64_t;
+constexpr Kind kDark = ~Kind{0};
 Kind kind_of(const ColumnSet& set, std::uint16_t group) {
   if (is_black(set.intensity)) return kDark;
-  return Kind{group} << 4 | static_cast<Kind>(set.emission) << 2 | Kind{set.spherical} << 1 |
-         Kind{set.direct};
+  return Kind{static_cast<std::uint16_t>(set.medium)} << 20 | Kind{group} << 4 |
+         static_cast<Kind>(set.emission) << 2 | Kind{set.spherical} << 1 | Kind{set.direct};
 }
+
+bool is_extended(Kind kind) { return (kind & 2) != 0 || (kind >> 2 & 3) == static_cast<Kind>(Emission::ray); }
 
 SplitLight split_light(const ColumnSet& set, Index column) {
   const bool directional = set.emission == Emission::directional;
@@ -142,11 +145,11 @@ LightTree::LightTree(const matrix::LightingMatrix& matrix, std::uint64_t seed)
   std::vector<std::uint32_t> firsts{0};
   for (const auto& [kind, size] : sizes) next[kind] = firsts.back(), firsts.push_back(firsts.back() + size);
   order_.resize(firsts.back());
-  bool spherical = false;
+  bool extended = false;  // some are spheres or rays
   for (std::size_t j = 0; j < n; ++j) {
     if (kinds[j] == kDark) continue;
     order_[next[kinds[j]]++] = static_cast<Index>(j);
-    spherical = spherical || (kinds[j] & 2);
+    extended = extended || is_extended(kinds[j]);
   }
   kinds = {};
 
@@ -163,7 +166,7 @@ LightTree::LightTree(const matrix::LightingMatrix& matrix, std::uint64_t seed)
   });
   const std::size_t trees = firsts.size() - 1;
   nodes_.resize(lights.size() - trees);
-  if (spherical) radii_.resize(nodes_.size());
+  if (extended) extents_.resize(nodes_.size());
   leaf_parent_.resize(lights.size());
   roots_.resize(trees);
   parallel_for(trees, 1, [&](std::size_t from, std::size_t to) {

@@ -31,7 +31,11 @@ ColumnSet LightTree::set(Node node) const {
   set.emission = static_cast<matrix::Emission>(n.emission);
   set.spherical = n.spherical, set.direct = n.direct;
   set.box = n.box, set.cone = n.cone, set.intensity = n.intensity, set.ceiling = n.ceiling;
-  if (n.spherical) set.radius = radii_[node].max, set.min_radius = radii_[node].min;
+  if (!extents_.empty()) {
+    const Extent& extent = extents_[node];
+    set.radius = extent.max_radius, set.min_radius = extent.min_radius;
+    set.min_length = extent.min_length, set.medium = extent.medium;
+  }
   return set;
 }
 Rgb LightTree::emitted(Node node) const {
@@ -74,7 +78,7 @@ Rgb LightTree::scale_to(Rgb whole, Index j) const {
 
 std::size_t LightTree::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return bytes(nodes_) + bytes(radii_) + bytes(order_) + bytes(leaf_parent_) + bytes(roots_);
+  return bytes(nodes_) + bytes(extents_) + bytes(order_) + bytes(leaf_parent_) + bytes(roots_);
 }
 
 }  // namespace lumirank::methods

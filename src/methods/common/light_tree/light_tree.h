@@ -85,8 +85,10 @@ class LightTree {
     Node parent;
     matrix::Index representative;
   };
-  struct Radii {
-    float max = 0, min = 0;
+  // What spheres and rays are beside.
+  struct Extent {
+    float max_radius = 0, min_radius = 0, min_length = 0;
+    std::int16_t medium = -1;
   };
   struct Builder;
 
@@ -98,7 +100,7 @@ class LightTree {
   const matrix::LightingMatrix& matrix_;
   matrix::ColumnFeatures features_;
   std::vector<Inner> nodes_;
-  std::vector<Radii> radii_;  // by inner node, where columns are spherical; else empty
+  std::vector<Extent> extents_;  // by inner node, where columns are spherical or rays; else empty
   std::vector<matrix::Index> order_;
   std::vector<Node> leaf_parent_;  // by place
   std::vector<Node> roots_;
