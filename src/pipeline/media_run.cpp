@@ -6,29 +6,13 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "matrix/metered_matrix.h"
-#include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
+#include "pipeline/media_parts.h"
 #include "pipeline/preview_throttle.h"
 #include "pipeline/report.h"
-#include "transport/cpu/media_matrix.h"
-#include "transport/lights/cut_rays.h"
-#include "transport/lights/ray_lights.h"
-#include "transport/lights/ray_tree.h"
-#include "transport/rows/eye_groups.h"
 
 namespace lumirank::pipeline {
 namespace {
-
-// Parts of a ray's way through a medium (Huo et al. 2016, section 4.1: 16 points).
-constexpr int kSegmentsPerRay = 17;
-
-// Pieces of light rays for methods that go by bounds: as many as made cuts better in the hall of the
-// experiments.
-constexpr double kPiecesOfLightRays = 4;
-
-// At so many places of a segment at least the light of all emitters together is estimated: one place for the
-// sun made noise of its shafts.
-constexpr std::size_t kLeastDirect = 32;
 
 class MediaRun {
  public:
@@ -39,11 +23,12 @@ class MediaRun {
         throttle_(preview),
         previews_(static_cast<bool>(preview)),
         recipe_(make_recipe(asked, task_.view)) {
-    // Receivers are the film samples: what is seen of a medium belongs to no surface that others could share.
-    recipe_.film_samples = 0;
     // Noise of rows goes away over passes as well.
     if (asked.time > 0 && !asked.view.spp) recipe_.spp = 1;
     if (!asked.choices.empty()) choices_ = methods::TimedChoices(asked.choices);
+    plan_ = {segments_for(*task_.info, asked.method.parameters),
+             asked.time > 0 && !asked.lights.count ? kLightsOfAPass : lights_for(*task_.info, asked),
+             asked.time > 0};
   }
 
   RenderResult run() {
@@ -72,20 +57,6 @@ class MediaRun {
   // What a pass of many needs less of than a picture by itself: noise is averaged over them.
   static std::map<std::string, std::string> of_a_pass() { return {{"rows", "100"}, {"columns", "200"}}; }
   static constexpr std::size_t kLightsOfAPass = 4000;
-  static constexpr int kSegmentsOfAPass = 4;
-
-  using Segments = matrix::MethodContract::Segments;
-  Segments of_method() const {
-    const methods::MethodInfo& info = *task_.info;
-    return info.segments_wanted ? info.segments_wanted(asked_.method.parameters) : info.contract.segments;
-  }
-  int pieces_of_eye_rays() const {
-    if (of_method() == Segments::whole || of_method() == Segments::light_pieces) return 1;
-    return asked_.time > 0 && of_method() == Segments::pieces ? kSegmentsOfAPass : kSegmentsPerRay;
-  }
-  bool in_groups() const {
-    return of_method() == Segments::groups || of_method() == Segments::groups_and_tree;
-  }
 
   // Rows, columns and sums, with random numbers of their own; the picture so far is the mean of all.
   void pass() {
@@ -95,12 +66,13 @@ class MediaRun {
       recipe_.seed = hash_ids(first.seed, Stage::passes, number);
       recipe_.light_seed = hash_ids(first.light_seed, Stage::passes, number);
     }
-    rows();
-    columns();
+    prepared_.reset();  // before the next takes its memory
+    prepared_ = prepare_in_media(task_.world, task_.view, recipe_, plan_, sinks_);
+    for (const auto& [stage, seconds] : prepared_->seconds) seconds_[stage] += seconds;
     sums();
     if (result_.interrupted && passes_ > 0) return;  // the passes before are whole
     const Timer timer;
-    image::Image image = image_of(estimate_.sums);
+    image::Image image = picture_of(*prepared_, estimate_.sums);
     const float share = 1 / static_cast<float>(passes_ + 1);
     if (passes_ == 0)
       image_ = std::move(image);
@@ -122,64 +94,6 @@ class MediaRun {
     return passed + each <= asked_.time;
   }
 
-  void rows() {
-    const Timer timer;
-    transport::ReceiverSettings settings = receiver_settings(recipe_, task_.view);
-    settings.eye_medium = task_.view.sensor.medium;
-    settings.segments = pieces_of_eye_rays();
-    rows_ = transport::trace_receivers(*task_.world, world::Camera(task_.view.sensor, task_.world->units()),
-                                       settings, sinks_);
-    seconds_["receivers"] += timer.seconds();
-    if (!in_groups()) return;
-    const Timer grouping;
-    transport::EyeGroupSettings groups;
-    groups.seed = recipe_.seed;
-    transport::group_eye_segments(*task_.world, rows_.film, groups, rows_.segments, sinks_);
-    seconds_["segments"] += grouping.seconds();
-  }
-
-  void columns() {
-    Timer timer;
-    transport::MediaLightSettings settings;
-    settings.seed = recipe_.light_seed;
-    settings.count =
-        asked_.time > 0 && !asked_.lights.count ? kLightsOfAPass : lights_for(*task_.info, asked_);
-    settings.max_depth = recipe_.max_depth;
-    settings.eye_medium = task_.view.sensor.medium;
-    settings.direct = recipe_.only != LightPart::indirect,
-    settings.indirect = recipe_.only != LightPart::direct;
-    settings.least_direct = kLeastDirect;
-    asked_lights_ = settings.count;
-    lights_ = transport::trace_lights_in_media(*task_.world, settings, sinks_);
-    whole_rays_ = lights_.rays.size();
-    seconds_["lights"] += timer.seconds();
-    timer = {};
-    if (of_method() == Segments::light_pieces) {
-      lights_.rays =
-          transport::cut_evenly(*task_.world, lights_.rays, kPiecesOfLightRays, recipe_.light_seed);
-      seconds_["segments"] += timer.seconds();
-    } else if (of_method() == Segments::groups_and_tree) {
-      transport::RayTreeSettings tree;
-      tree.seed = recipe_.light_seed;
-      transport::build_ray_tree(*task_.world, tree, lights_.rays, sinks_);
-      seconds_["segments"] += timer.seconds();
-    }
-    timer = {};
-    matrix_ = std::make_unique<transport::MediaMatrix>(
-        *task_.world, rows_, lights_, transport::MediaMatrixSettings{matrix_settings(recipe_), in_groups()});
-    seconds_["matrix"] += timer.seconds();
-  }
-
-  image::Image image_of(std::span<const Rgb> sums) const {
-    const FilmParts parts{
-        .emission = asked_.view.only == LightPart::all, .traced_direct = false, .traced_indirect = false};
-    std::vector<Rgb> values = sample_values(rows_, {}, sums.first(rows_.size()), parts);
-    const transport::EyeSegments& segments = rows_.segments;
-    for (std::size_t k = 0; k < segments.size(); ++k)
-      values[segments.sample[k]] += segments.weight[k] * sums[rows_.size() + k];
-    return develop(task_.view, rows_, values);
-  }
-
   void sums() {
     methods::RunOptions run;
     run.seed = asked_.method.seed ? asked_.method.seed : asked_.seed;
@@ -188,15 +102,15 @@ class MediaRun {
     run.sinks = sinks_;
     if (previews_ && passes_ == 0)
       run.on_estimate = [&](std::span<const Rgb> sums) {
-        if (throttle_.due()) throttle_.show(to_picture(image_of(sums)));
+        if (throttle_.due()) throttle_.show(to_picture(picture_of(*prepared_, sums)));
       };
     const Timer timer;
-    const matrix::MeteredMatrix metered(*matrix_);
+    const matrix::MeteredMatrix metered(*prepared_->matrix);
     estimate_ = task_.method->run(metered, run);
     cost_ += metered.total();
     seconds_["method"] += timer.seconds();
     result_.interrupted = estimate_.interrupted;
-    const ErrorAsked asked{asked_.method.target_error, asked_lights_, "--lights",
+    const ErrorAsked asked{asked_.method.target_error, plan_.lights, "--lights",
                            task_.info->error_parameters};
     if (const std::string advice = error_advice(asked, estimate_.trace.numbers); !advice.empty()) {
       sinks_.warn(advice);
@@ -205,6 +119,9 @@ class MediaRun {
   }
 
   void report() {
+    const transport::Receivers& rows = prepared_->rows;
+    const transport::LightsInMedia& lights = prepared_->lights;
+    const transport::MediaMatrix& sampled = *prepared_->matrix;
     Report& report = result_.report = begin_report(task_.info->name, asked_);
     report.numbers = estimate_.trace.numbers, report.notes = estimate_.trace.notes;
     report.notes["method.why"] = task_.why;
@@ -213,11 +130,11 @@ class MediaRun {
     report.numbers["passes"] = passes_;
     report.choices = choices_.made();
     report.numbers["clamp.removed_fraction"] = matrix::clamped_fraction(cost_);
-    report.numbers["eye_segments"] = static_cast<double>(rows_.segments.size());
-    report.numbers["ray_lights"] = static_cast<double>(whole_rays_);
-    report.numbers["light_segments"] = static_cast<double>(lights_.rays.size());
+    report.numbers["eye_segments"] = static_cast<double>(rows.segments.size());
+    report.numbers["ray_lights"] = static_cast<double>(prepared_->whole_rays);
+    report.numbers["light_segments"] = static_cast<double>(lights.rays.size());
     const double all =
-        static_cast<double>(matrix_->rows()) * static_cast<double>(matrix_->columns()) * std::max(1, passes_);
+        static_cast<double>(sampled.rows()) * static_cast<double>(sampled.columns()) * std::max(1, passes_);
     Report::Cost cost{cost_.entries, cost_.culled, cost_.rays, 0};
     if (const auto own = report.numbers.find("sampling_rate"); own != report.numbers.end())
       cost.sampling_rate = own->second, report.numbers.erase(own);
@@ -226,13 +143,13 @@ class MediaRun {
     report.cost = cost;
     report.sizes = Report::Sizes{
         static_cast<std::uint64_t>(task_.view.width) * static_cast<std::uint64_t>(task_.view.height),
-        matrix_->rows(),
-        matrix_->columns(),
-        asked_lights_,
-        lights_.points.direct_count,
-        lights_.points.paths};
-    report.memory = {peak_memory_bytes(), task_.world->info().memory_bytes, rows_.memory_bytes(),
-                     lights_.points.memory_bytes() + lights_.rays.memory_bytes(), matrix_->memory_bytes()};
+        sampled.rows(),
+        sampled.columns(),
+        plan_.lights,
+        lights.points.direct_count,
+        lights.points.paths};
+    report.memory = {peak_memory_bytes(), task_.world->info().memory_bytes, rows.memory_bytes(),
+                     lights.points.memory_bytes() + lights.rays.memory_bytes(), sampled.memory_bytes()};
     seconds_["build"] = task_.build_seconds;
     seconds_["total"] = task_.timer.seconds();
     report.seconds = seconds_;
@@ -244,10 +161,8 @@ class MediaRun {
   PreviewThrottle throttle_;
   bool previews_;
   Recipe recipe_;
-  transport::Receivers rows_;
-  transport::LightsInMedia lights_;
-  std::size_t asked_lights_ = 0, whole_rays_ = 0;
-  std::unique_ptr<transport::MediaMatrix> matrix_;
+  MediaPlan plan_;
+  std::shared_ptr<const PreparedMedia> prepared_;
   image::Image image_;
   int passes_ = 0;  // that image_ is the mean of
   std::optional<std::int64_t> wanted_passes_;

@@ -19,6 +19,8 @@
 #include "matrix/metered_matrix.h"
 #include "pages/page.h"
 #include "pipeline/error_advice.h"
+#include "pipeline/media_parts.h"
+#include "pipeline/media_run.h"
 #include "pipeline/memory.h"
 #include "pipeline/noise_metric.h"
 #include "pipeline/prepared.h"
@@ -27,6 +29,7 @@
 #include "study/run_plan.h"
 #include "study/singular_values.h"
 #include "study/study_reference.h"
+#include "study/subject.h"
 
 namespace lumirank::study {
 namespace {
@@ -43,16 +46,21 @@ class Study {
         folder_(folder),
         sinks_(sinks),
         plan_(plan_runs(settings)),
+        in_media_(some_scatter(scene.desc)),
         world_(std::make_shared<world::World>(
-            world::World::build(scene.desc, {.strict = scene.strict, .media = false}, warnings_, sinks))),
+            world::World::build(scene.desc, {.strict = scene.strict, .media = in_media_}, warnings_, sinks))),
         view_(make_view(scene.desc, settings.base.view)),
-        reference_(settings, view_) {
+        reference_(settings, view_),
+        subjects_(settings, world_, view_, in_media_) {
     const fs::path file = fs::absolute(scene.desc.source_file);
     results_.scene = (file.parent_path().filename() / file.filename()).string();
     results_.version = program_version();
     results_.width = view_.width, results_.height = view_.height;
     for (const PlannedRun& run : plan_)
-      methods::require_capabilities(methods::find_method(run.method), transport::SceneMatrix::kCapabilities);
+      if (const methods::MethodInfo& info = methods::find_method(run.method); in_media_)
+        check_media(info, settings.base);
+      else
+        methods::require_capabilities(info, transport::SceneMatrix::kCapabilities);
     require_memory_of_runs();
     require_outputs(scene.files);
   }
@@ -104,21 +112,15 @@ class Study {
 
   std::string path(const std::string& name) const { return (fs::path(folder_) / name).string(); }
 
-  // Receivers and lights for a run; kept while the next run wants the same.
-  void prepare(std::size_t lights, int spp, std::uint64_t light_seed) {
-    Recipe recipe = make_recipe(settings_.base, view_);
-    recipe.spp = spp;
-    recipe.film_samples = 0;  // what is compared are sums of rows, all of them the film's
-    recipe.light_seed = light_seed;
-    prepared_ = pipeline::prepare(world_, view_, recipe, lights, prepared_, sinks_);
+  // Runs against all columns sample the very matrix that these were summed of.
+  void prepare(SubjectWanted wanted, const PlannedRun* run = nullptr) {
+    if (run && !reference_.is_of_columns())
+      wanted.segments = segments_for(methods::find_method(run->method), run->method_settings);
+    subject_ = subjects_.make(wanted, sinks_);
   }
   void prepare_as_asked() {
-    prepare(settings_.base.lights.count_or_default(), settings_.base.view.spp_or_default(),
-            settings_.base.seed);
-  }
-
-  image::Image image_of(std::span<const Rgb> sums) const {
-    return picture_of(view_, *prepared_, settings_.base.view, sums);
+    prepare({settings_.base.lights.count_or_default(), settings_.base.view.spp_or_default(),
+             settings_.base.seed});
   }
 
   void save(const std::string& name, const image::Image& image) const {
@@ -170,7 +172,7 @@ class Study {
   }
 
   void make_reference() {
-    reference_.make(world_, prepared_, sinks_, results_);
+    reference_.make(*world_, *subject_, sinks_, results_);
     if (!reference_.is_picture()) return;
     results_.reference_image = "reference.png";
     image::FilesTogether together;
@@ -182,33 +184,34 @@ class Study {
 
   // Methods without a clock of their own get as many columns as fit into the budget, by the pace of a few.
   void fit_to_time(PlannedRun& run, std::map<std::string, std::string>& method_settings) {
-    if (run.time <= 0 || (run.method != "instant-radiosity" && run.method != "power-sampling")) return;
+    const bool by_lights = run.method == "instant-radiosity" || run.method == "virtual-ray-lights";
+    if (run.time <= 0 || (!by_lights && run.method != "power-sampling")) return;
     if (columns_per_second_ <= 0) {
       std::vector<matrix::ScaledColumn> few;
       for (std::uint64_t k = 0; k < 48; ++k)
         few.push_back(
             {static_cast<matrix::Index>(
-                 Rng(settings_.base.seed, Stage::benchmark, k).next_below(prepared_->matrix->columns())),
+                 Rng(settings_.base.seed, Stage::benchmark, k).next_below(subject_->matrix().columns())),
              Rgb(1)});
-      std::vector<Rgb> sums(prepared_->matrix->rows());
+      std::vector<Rgb> sums(subject_->matrix().rows());
       const Timer timer;
-      prepared_->matrix->accumulate(few, sums, sinks_);
+      subject_->matrix().accumulate(few, sums, sinks_);
       columns_per_second_ = 48 / timer.seconds();
     }
     const auto fitting = static_cast<std::size_t>(std::max(1.0, columns_per_second_ * run.time));
-    method_settings[run.method == "instant-radiosity" ? "lights" : "columns"] = std::to_string(fitting);
+    method_settings[by_lights ? "lights" : "columns"] = std::to_string(fitting);
   }
 
   bool run_one(PlannedRun run) {
     const methods::MethodInfo& info = methods::find_method(run.method);
     // Otherwise all runs sample the reference's own matrix.
     const bool new_lights = !reference_.is_of_columns();
-    prepare(run.lights, run.spp, new_lights ? run.seed : settings_.base.seed);
+    prepare({run.lights, run.spp, new_lights ? run.seed : settings_.base.seed}, &run);
     auto method_settings = run.method_settings;
     fit_to_time(run, method_settings);
     if (info.lights_wanted)
       if (const std::size_t wanted = info.lights_wanted(method_settings); wanted > 0)
-        prepare(wanted, run.spp, run.seed);
+        prepare({wanted, run.spp, run.seed}, &run);
 
     methods::RunOptions options;
     options.seed = run.seed;
@@ -216,23 +219,23 @@ class Study {
     options.target_error = settings_.base.method.target_error;
     options.sinks = sinks_;
     options.sinks.progress = {};
-    const matrix::MeteredMatrix metered(*prepared_->matrix);
+    const matrix::MeteredMatrix metered(subject_->matrix());
     const Timer timer;
     const methods::Estimate estimate = info.make(method_settings)->run(metered, options);
     if (estimate.interrupted) return false;
 
     ComparisonRun result;
     result.seconds = timer.seconds();
-    for (const auto& [stage, seconds] : prepared_->seconds) result.setup_seconds += seconds;
+    for (const auto& [stage, seconds] : subject_->seconds()) result.setup_seconds += seconds;
     result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
     result.settings = method_settings;
-    result.settings["lights"] = std::to_string(prepared_->lights().size());
+    result.settings["lights"] = std::to_string(subject_->lights());
     result.settings["spp"] = std::to_string(run.spp);
     const matrix::Cost cost = metered.total();
     result.rays = static_cast<double>(cost.rays);
     result.entries = static_cast<double>(cost.entries);
-    result.sampling_rate = result.entries / (static_cast<double>(prepared_->matrix->rows()) *
-                                             static_cast<double>(prepared_->matrix->columns()));
+    result.sampling_rate = result.entries / (static_cast<double>(subject_->matrix().rows()) *
+                                             static_cast<double>(subject_->matrix().columns()));
     result.numbers = estimate.trace.numbers;
     for (const auto& [key, value] : estimate.trace.numbers)
       if (key.starts_with("seconds."))
@@ -240,7 +243,7 @@ class Study {
       else if (key == "rows" || key == "columns")
         result.settings[key] = std::to_string(static_cast<long long>(value));
 
-    const image::Image image = image_of(estimate.sums);
+    const image::Image image = subject_->picture(estimate.sums);
     const std::string stem = stem_of(results_.runs.size());
     image::FilesTogether together;
     result.image_file = stem + ".png";
@@ -262,7 +265,7 @@ class Study {
 
   void find_singular_values() {
     prepare_as_asked();
-    results_.singular_values = singular_values_of(*prepared_->matrix, settings_.base.seed);
+    results_.singular_values = singular_values_of(subject_->matrix(), settings_.base.seed);
   }
 
   void finish(bool whole) {
@@ -281,10 +284,12 @@ class Study {
   Sinks sinks_;
   std::vector<PlannedRun> plan_;
   std::vector<scenedesc::Warning> warnings_;
+  bool in_media_;
   SharedWorld world_;
   View view_;
   StudyReference reference_;
-  SharedPrepared prepared_;
+  SubjectMaker subjects_;
+  SharedSubject subject_;
   double columns_per_second_ = 0;
   bool written_ = false;  // something is in the folder
   Comparison results_;

@@ -1,7 +1,9 @@
 #include "study/sampled_truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -28,7 +30,12 @@ SampledTruth::SampledTruth(const matrix::LightingMatrix& matrix, const Film& fil
   count = std::min(count, n);
   if (count == 0)
     throw InputError("no receiver is seen, so there is nothing to compare", "check the scene's camera");
-  const auto pixel = [&](std::size_t i) { return film.samples[i] / film.per_pixel; };
+  // Rows in the order of pixels: in media those of a pixel are not all in a stretch.
+  const auto pixel_of = [&](matrix::Index row) { return film.samples[row] / film.per_pixel; };
+  std::vector<matrix::Index> order(n);
+  std::iota(order.begin(), order.end(), matrix::Index{0});
+  std::ranges::stable_sort(order, {}, pixel_of);
+  const auto pixel = [&](std::size_t i) { return pixel_of(order[i]); };
   std::vector<Rgb> row(matrix.columns());
   Rng rng(seed, Stage::benchmark, 3);
   const std::size_t strata = (count + film.per_pixel - 1) / film.per_pixel;
@@ -42,11 +49,11 @@ SampledTruth::SampledTruth(const matrix::LightingMatrix& matrix, const Film& fil
     first_.push_back(static_cast<std::uint32_t>(rows_.size()));
     for (next = i; next < n && pixel(next) == pixel(i); ++next) {
       if (sinks.cancelled()) throw Cancelled();
-      matrix.row(static_cast<matrix::Index>(next), row);
-      const Rgb weight = film.weights[next];
+      matrix.row(order[next], row);
+      const Rgb weight = film.weights[order[next]];
       for (const Rgb& a : row)
         for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(a[c]) * static_cast<double>(weight[c]);
-      rows_.push_back(static_cast<matrix::Index>(next));
+      rows_.push_back(order[next]);
       weights_.push_back(weight);
     }
     truth_.push_back({static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])});

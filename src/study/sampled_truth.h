@@ -17,7 +17,7 @@ class SampledTruth {
  public:
   struct Film {
     std::span<const Rgb> weights;            // what the film makes of a row (one per row)
-    std::span<const std::uint32_t> samples;  // film sample of each row, ascending
+    std::span<const std::uint32_t> samples;  // film sample of each row
     std::size_t per_pixel;                   // film samples
   };
   // Sums over all columns of the rows of whole pixels, about `count` rows in all; the pixels are drawn one

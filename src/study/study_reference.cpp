@@ -6,7 +6,6 @@
 #include "base/timer.h"
 #include "image/image_io.h"
 #include "pathtrace/reference.h"
-#include "pipeline/develop.h"
 #include "pipeline/recipe.h"
 
 namespace lumirank::study {
@@ -17,12 +16,6 @@ using Kind = ComparisonReference::Kind;
 constexpr std::size_t kMinReceivers = 64;
 
 }  // namespace
-
-image::Image picture_of(const pipeline::View& view, const pipeline::Prepared& prepared,
-                        const ViewSettings& as, std::span<const Rgb> sums) {
-  return pipeline::develop({*prepared.world, view, prepared.recipe, prepared.receivers(), prepared.traced},
-                           sums, pipeline::wanted_parts(as.only));
-}
 
 StudyReference::StudyReference(const CompareSettings& settings, const pipeline::View& view)
     : settings_(settings), wanted_(settings.reference), view_(view) {
@@ -54,18 +47,18 @@ void StudyReference::read_file() {
                      "give --size or another reference");
 }
 
-void StudyReference::make(const pipeline::SharedWorld& world, const pipeline::SharedPrepared& prepared,
-                          const Sinks& sinks, Comparison& results) {
+void StudyReference::make(const world::World& world, const Subject& subject, const Sinks& sinks,
+                          Comparison& results) {
   const Timer timer;
   switch (wanted_.kind) {
     case Kind::path:
-      trace(*world, sinks, results);
+      trace(world, sinks, results);
       break;
     case Kind::brute_force:
-      sum_columns(*prepared, sinks, results);
+      sum_columns(subject, sinks, results);
       break;
     case Kind::receivers:
-      sum_at_receivers(*prepared, sinks, results);
+      sum_at_receivers(subject, sinks, results);
       break;
     case Kind::file:
       results.reference_kind = std::filesystem::path(wanted_.file).filename().string();
@@ -75,35 +68,34 @@ void StudyReference::make(const pipeline::SharedWorld& world, const pipeline::Sh
 }
 
 void StudyReference::trace(const world::World& world, const Sinks& sinks, Comparison& results) {
+  // In media what columns carry is not told from what they do not.
+  const bool media = !world.media().empty();
   const auto traced = pathtrace::path_trace(
       world, view_,
-      pipeline::reference_options(settings_.base.view.only, settings_.base.seed, ReferencePaths::columns),
+      pipeline::reference_options(settings_.base.view.only, settings_.base.seed,
+                                  media ? ReferencePaths::all : ReferencePaths::columns),
       {.time = wanted_.seconds}, sinks);
   if (traced.interrupted) throw Cancelled();
   picture_ = traced.image;
   results.reference_error = traced.error;
-  results.reference_kind =
-      "path tracing, " + std::to_string(traced.spp) + " paths per pixel, paths that columns carry";
+  results.reference_kind = "path tracing, " + std::to_string(traced.spp) + " paths per pixel" +
+                           (media ? "" : ", paths that columns carry");
 }
 
-void StudyReference::sum_columns(const pipeline::Prepared& prepared, const Sinks& sinks,
-                                 Comparison& results) {
-  std::vector<matrix::ScaledColumn> columns(prepared.matrix->columns());
+void StudyReference::sum_columns(const Subject& subject, const Sinks& sinks, Comparison& results) {
+  std::vector<matrix::ScaledColumn> columns(subject.matrix().columns());
   for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
-  std::vector<Rgb> sums(prepared.matrix->rows());
-  prepared.matrix->accumulate(columns, sums, sinks);
+  std::vector<Rgb> sums(subject.matrix().rows());
+  subject.matrix().accumulate(columns, sums, sinks);
   if (sinks.cancelled()) throw Cancelled();
-  picture_ = picture_of(view_, prepared, settings_.base.view, sums);
+  picture_ = subject.picture(sums);
   results.reference_kind = "all " + std::to_string(columns.size()) + " columns";
 }
 
-void StudyReference::sum_at_receivers(const pipeline::Prepared& prepared, const Sinks& sinks,
-                                      Comparison& results) {
-  const SampledTruth::Film film{prepared.receivers().weight, prepared.receivers().sample,
-                                static_cast<std::size_t>(settings_.base.view.spp_or_default())};
-  sampled_ =
-      std::make_unique<SampledTruth>(*prepared.matrix, film, wanted_.receivers, settings_.base.seed, sinks);
-  results.reference_kind = "all " + std::to_string(prepared.matrix->columns()) + " columns at " +
+void StudyReference::sum_at_receivers(const Subject& subject, const Sinks& sinks, Comparison& results) {
+  sampled_ = std::make_unique<SampledTruth>(subject.matrix(), subject.film(), wanted_.receivers,
+                                            settings_.base.seed, sinks);
+  results.reference_kind = "all " + std::to_string(subject.matrix().columns()) + " columns at " +
                            std::to_string(sampled_->rows()) + " receivers of " +
                            std::to_string(sampled_->pixels()) + " stratified pixels";
 }

@@ -6,14 +6,9 @@
 
 #include "image/image.h"
 #include "lumirank/compare.h"
-#include "pipeline/prepared.h"
-#include "study/sampled_truth.h"
+#include "study/subject.h"
 
 namespace lumirank::study {
-
-// The picture that row sums give, with what was traced beside the columns.
-image::Image picture_of(const pipeline::View& view, const pipeline::Prepared& prepared,
-                        const ViewSettings& as, std::span<const Rgb> sums);
 
 class StudyReference {
  public:
@@ -28,16 +23,15 @@ class StudyReference {
   bool is_picture() const { return wanted_.kind != ComparisonReference::Kind::receivers; }
 
   // Makes what is not a file; fills the reference's part of `results`. Throws Cancelled.
-  void make(const pipeline::SharedWorld& world, const pipeline::SharedPrepared& prepared, const Sinks& sinks,
-            Comparison& results);
+  void make(const world::World& world, const Subject& subject, const Sinks& sinks, Comparison& results);
   const image::Image& picture() const { return picture_; }
   const SampledTruth* sampled() const { return sampled_.get(); }
 
  private:
   void read_file();
   void trace(const world::World& world, const Sinks& sinks, Comparison& results);
-  void sum_columns(const pipeline::Prepared& prepared, const Sinks& sinks, Comparison& results);
-  void sum_at_receivers(const pipeline::Prepared& prepared, const Sinks& sinks, Comparison& results);
+  void sum_columns(const Subject& subject, const Sinks& sinks, Comparison& results);
+  void sum_at_receivers(const Subject& subject, const Sinks& sinks, Comparison& results);
 
   const CompareSettings& settings_;
   const ComparisonReference& wanted_;

@@ -1,6 +1,7 @@
 // Pictures of participating media by columns, against the volume path tracer.
 #include <gtest/gtest.h>
 
+#include "lumirank/compare.h"
 #include "lumirank/lumirank.h"
 #include "support/scene_file.h"
 #include "support/statistics.h"
@@ -157,6 +158,27 @@ TEST(MediaRender, RowsAndColumnsConvergeToAllColumns) {
   const double few = error(40), many = error(300);
   EXPECT_LT(many, 0.6 * few);
   EXPECT_LT(many, 0.05);
+}
+
+// In media each method against all columns, at all rows of some pixels and at all rows.
+TEST(MediaRender, MethodsAreCompared) {
+  const test::TemporaryFolder folder;
+  const Scene scene = load_text(room(fog("0.5, 0.6, 0.8", 0.3), true));
+  CompareSettings settings;
+  settings.base.view.spp = 1;
+  settings.base.lights.count = 300;
+  settings.methods = {"row-column-sampling", "lightcuts", "virtual-ray-lights", "brute-force"};
+  settings.reference = {ComparisonReference::Kind::receivers, 60, 64, ""};
+  const Comparison sampled = compare(scene, settings, folder / "sampled");
+  ASSERT_EQ(sampled.runs.size(), 4u);
+  for (const ComparisonRun& run : sampled.runs) EXPECT_LT(run.error.relative_l1, 0.4) << run.method;
+  EXPECT_LT(sampled.runs[3].error.relative_l1, 1e-5);
+  settings.reference = {ComparisonReference::Kind::brute_force, 60, 0, ""};
+  settings.methods = {"brute-force"};
+  const Comparison whole = compare(scene, settings, folder / "whole");
+  EXPECT_LT(whole.runs.at(0).error.relative_l1, 1e-6);
+  // Rows are eye segments as well as the 64 receivers.
+  EXPECT_GT(whole.runs[0].entries / 300, 1.5 * 64);
 }
 
 TEST(MediaRender, SaysWhatItCannotDo) {

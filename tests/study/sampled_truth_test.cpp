@@ -61,6 +61,17 @@ TEST_F(SampledTruthOfMadeUpMatrix, RelMseIsThatOfPictures) {
   EXPECT_NEAR(all.error_of(sums).metrics.relmse, expected, 1e-6);
 }
 
+// In media a pixel's eye segments come after all receivers.
+TEST_F(SampledTruthOfMadeUpMatrix, PixelsNeedNotLieTogether) {
+  for (std::uint32_t i = 0; i < 400; ++i) samples_[i] = 4 * (i % 100) + i / 100;
+  std::vector<Rgb> sums = matrix_.exact_sums();
+  const SampledTruth some = truth(200);
+  EXPECT_EQ(some.rows(), 4 * some.pixels());
+  EXPECT_LT(some.error_of(sums).metrics.relative_l1, 1e-6);
+  for (std::size_t i = 300; i < 400; ++i) sums[i] *= 2;
+  EXPECT_GT(some.error_of(sums).metrics.relative_l1, 0.1);
+}
+
 // What belongs to a pixel may lie in any of its rows.
 TEST_F(SampledTruthOfMadeUpMatrix, LooksAtPixelsNotAtRows) {
   std::vector<Rgb> sums = matrix_.exact_sums();
