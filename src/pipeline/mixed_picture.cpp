@@ -26,10 +26,19 @@ image::Image MixedPicture::enlarged(image::Image image) const {
   return passes_.enlarged_with_emission(std::move(image));
 }
 
+SampledNoise MixedPicture::sampled_noise() const {
+  SampledNoise noise;
+  if (!by_paths() || paths_->paths() < PictureDenoising::kPathsForNoise) return noise;
+  noise.difference =
+      with_share_of_noise(has_own_emission() ? paths_->difference() : paths_->sent_difference());
+  noise.deviation = paths_->film().sent_deviation();
+  for (float& deviation : noise.deviation) deviation *= 1 - share_;
+  noise.mirrored = !own_emission_;
+  return noise;
+}
 image::Image MixedPicture::difference() const {
-  if (!by_paths() || paths_->paths() < PictureDenoising::kPathsForNoise) return {};
-  if (has_own_emission()) return with_share_of_noise(paths_->difference());
-  return passes_.with_mirrored_as_noise(with_share_of_noise(paths_->sent_difference()));
+  SampledNoise noise = sampled_noise();
+  return noise.mirrored ? passes_.with_mirrored_as_noise(std::move(noise.difference)) : noise.difference;
 }
 double MixedPicture::noise(ErrorMetric metric) const {
   if (metric == ErrorMetric::l1) {

@@ -32,7 +32,8 @@ class MixedPicture {
   image::Image complete(image::Image image) const;
   image::Image enlarged(image::Image image) const;
   // Twice the noise of what is denoised; empty where it is not known well: halves of few passes may agree on
-  // a speck, which would stay.
+  // a speck, which would stay. Of what was sampled, and with what mirrors show of lamps where that is noise.
+  SampledNoise sampled_noise() const;
   image::Image difference() const;
   // As the metric counts it.
   double noise(ErrorMetric metric) const;

@@ -175,10 +175,12 @@ class PathRun {
     image::Image traced = without_fireflies(*film_, options_.emission && !apart);
     if (apart) image::add_to(traced, denoising_.mirrored(traced));
     const image::Image difference = paths() < PictureDenoising::kPathsForNoise ? image::Image{}
-                                    : apart ? denoising_.with_mirrored_as_noise(film_->sent_difference())
-                                            : film_->halves_difference();
-    if (task_.features && denoising_.traced()) *task_.features = {denoising_.features(), difference};
-    if (const auto denoised = denoising_.denoised(traced, difference)) {
+                                    : apart                                    ? film_->sent_difference()
+                                                                               : film_->halves_difference();
+    if (task_.features && denoising_.traced())
+      *task_.features = {denoising_.features(),
+                         apart ? denoising_.with_mirrored_as_noise(difference) : difference};
+    if (const auto denoised = denoising_.denoised(traced, {difference, film_->sent_deviation(), apart})) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       image::Image whole = denoising_.enlarged(denoised->picture);
       if (apart) image::add_to(whole, denoising_.features().emission);

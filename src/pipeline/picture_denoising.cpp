@@ -7,6 +7,7 @@
 #include "base/timer.h"
 #include "denoise/enlarging.h"
 #include "denoise/fireflies.h"
+#include "denoise/outliers.h"
 #include "denoise/overshoot.h"
 
 namespace lumirank::pipeline {
@@ -144,7 +145,7 @@ int PictureDenoising::samples_for(const char* choice, double one, double left, S
 }
 
 std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& picture,
-                                                          const image::Image& difference) const {
+                                                          const SampledNoise& noise) const {
   if (!features_ || std::min(picture.width, picture.height) < kSmallestDenoised ||
       std::all_of(picture.pixels.begin(), picture.pixels.end(), [](Rgb c) { return is_black(c); }))
     return {};
@@ -153,7 +154,9 @@ std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& pi
                      normal = denoise::reduced(features.normal, picture.width, picture.height);
   image::Image clean =
       denoise::without_overshoot(picture, denoiser_->denoise(picture, &albedo, &normal, features_are_));
-  if (difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
+  if (noise.difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
+  image::Image difference = denoise::with_outliers(noise.difference, picture, clean, noise.deviation);
+  if (noise.mirrored) difference = with_mirrored_as_noise(std::move(difference));
   return denoise::shrink(picture, clean, difference);
 }
 
@@ -166,6 +169,7 @@ image::Image PictureDenoising::mirrored(const image::Image& sent) const {
 }
 
 image::Image PictureDenoising::with_mirrored_as_noise(image::Image difference) const {
+  if (difference.pixels.empty()) return difference;
   const image::Image shown = denoise::reduced(features().mirrored, difference.width, difference.height);
   for (std::size_t p = 0; p < shown.pixels.size(); ++p)
     for (int c = 0; c < 3; ++c)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "denoise/denoiser.h"
 #include "denoise/shrinkage.h"
@@ -20,6 +21,13 @@ namespace lumirank::pipeline {
 // What the paths say of the picture, without fireflies (denoise/fireflies.h); with the emission that they
 // see, or what surfaces send alone.
 image::Image without_fireflies(const pathtrace::PathFilm& film, bool with_emission);
+
+// What is known of the noise of a picture that is to be denoised.
+struct SampledNoise {
+  image::Image difference;       // of halves of what was sampled: twice the noise; empty: not known
+  std::vector<float> deviation;  // of each pixel's luminance, as its own paths say; empty: not known
+  bool mirrored = false;         // all that mirrors show of lamps is noise as well
+};
 
 class PictureDenoising {
  public:
@@ -63,13 +71,13 @@ class PictureDenoising {
   // is usual in there. Needs trace_first().
   image::Image mirrored(const image::Image& sent) const;
   // A difference of halves (twice the noise) of a picture to which that was added, all of it for noise: that
-  // of few film samples is not known.
+  // of few film samples is not known. Nothing of nothing.
   image::Image with_mirrored_as_noise(image::Image difference) const;
   bool traced() const { return features_.has_value(); }
 
-  // Without its noise; nothing if there is no denoiser, or nothing that it could do. `difference` is twice
-  // the picture's noise: what is no noise stays (denoise/shrinkage.h). Empty where that is not known.
-  std::optional<denoise::Shrunk> denoised(const image::Image& picture, const image::Image& difference) const;
+  // Without its noise; nothing if there is no denoiser, or nothing that it could do. What is no noise
+  // stays (denoise/shrinkage.h).
+  std::optional<denoise::Shrunk> denoised(const image::Image& picture, const SampledNoise& noise) const;
   // Made as large as the features, if it has fewer pixels: without emission that is seen straight, and
   // denoised. Needs trace_first().
   image::Image enlarged(image::Image sent) const;
