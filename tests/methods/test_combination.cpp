@@ -45,10 +45,11 @@ TEST_P(Combination, AlsoOfAPartThatWasCutShort) {
 }
 
 // Columns of their own for receivers, pixels or slices: no one sum.
-const std::set<std::string> kLocal{"adaptive-lightslice",  "column-completion", "lightcuts",
-                                   "row-guided-sampling",  "lightslice",        "multidimensional-lightcuts",
-                                   "sampling-recovery",    "slice-cuts",        "stochastic-lightcuts",
-                                   "visibility-completion"};
+const std::set<std::string> kLocal{
+    "adaptive-lightslice",         "column-completion",    "lightcuts",
+    "row-guided-sampling",         "lightslice",           "multidimensional-lightcuts",
+    "sampling-recovery",           "slice-cuts",           "stochastic-lightcuts",
+    "scalable-virtual-ray-lights", "visibility-completion"};
 
 std::vector<std::string> names_with_a_combination() {
   std::vector<std::string> n;
