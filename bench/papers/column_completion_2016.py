@@ -33,14 +33,16 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 # Methods and parameters, as the program names them.
 OURS, SLICES, ALL, PLAIN, TRUTH = "column-completion", "adaptive-lightslice", "virtual-ray-lights", "row-column-sampling", "brute-force"
+CUTS = "scalable-virtual-ray-lights"
 PARTITIONS = ("graph", "k-means", "places", "stretches")
 SIGMAS, RHOS = (0.05, 0.01, 0.005), (0.1, 0.05, 0.01)
 STATUE = [(g, rho) for g in (0, 0.5, 0.9) for rho in (0.1, 0.2)]
 EVERY_COLUMN = {"beta": 0}  # section 6.2: completion alone, without choosing among columns
-AT_EQUAL_TIME = {OURS: {}, SLICES: {}, ALL: {}, PLAIN: {"rows": 100, "columns": 200}}
+AT_EQUAL_TIME = {OURS: {}, SLICES: {}, CUTS: {}, ALL: {}, PLAIN: {"rows": 100, "columns": 200}}
 LADDERS = {  # of part scaling, from poor to good
     OURS: [{"samples": n} for n in (3, 5, 10, 20, 40)],
     SLICES: [{"error": e} for e in (0.2, 0.1, 0.05, 0.02, 0.01)],
+    CUTS: [{"max-nodes": n} for n in (250, 500, 1000, 2000, 4000)],
     PLAIN: [{"rows": r, "columns": 3 * r} for r in (50, 100, 200, 400, 800)],
 }
 TOLD = ("sampling_rate", "completion.rank", "columns", "passes")  # numbers of the report that tables show where there are such

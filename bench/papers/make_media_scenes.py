@@ -38,7 +38,7 @@ class MediaScene(Scene):
     def __init__(self, comment, camera, fov, film):
         super().__init__(comment, camera, fov, film, DEPTH)
         self.lines = [line.replace('type="path"', 'type="volpath"') for line in self.lines]
-        self.grids, self.inside, self.others = {}, {}, {}
+        self.grids, self.others = {}, {}
 
     def medium(self, name, body, around_camera=False):
         """Before the sensor, which may refer to it."""
@@ -57,7 +57,7 @@ class MediaScene(Scene):
         """A mesh that is full of the medium."""
         mesh = self.material(f"body_{medium}", boundary)
         self.lines[-1] = "\t" + with_id(boundary, f"body_{medium}")  # boundaries have an inside: not twosided
-        self.inside[f"body_{medium}"] = medium
+        self.inside[f"body_{medium}"] = f'<ref name="interior" id="{medium}"/>'
         return mesh
 
     def grid(self, name, size, lo, hi, values):
@@ -78,11 +78,7 @@ class MediaScene(Scene):
 
     def write(self, folder):
         total = super().write(folder)
-        file = folder / "scene.xml"
-        written = file.read_text()
-        for mesh, medium in self.inside.items():
-            written = written.replace(f'<ref id="{mesh}"/></shape>', f'<ref id="{mesh}"/><ref name="interior" id="{medium}"/></shape>')
-        file.write_text(written)
+        written = (folder / "scene.xml").read_text()
         for name, changes in self.others.items():
             other = written
             for old, new in changes:
