@@ -16,8 +16,7 @@ namespace {
 // noise is averaged over passes.
 constexpr int kSegmentsPerRay = 17, kSegmentsOfAPass = 4;
 
-// Pieces of a light ray, about, for methods that go by bounds (docs/participating-media.md has what others
-// gave).
+// Pieces of a light ray, about, for methods that go by bounds (docs/decisions.md has what whole ones gave).
 constexpr double kPiecesOfLightRays = 4;
 
 // At so many places of a segment at least the light of all emitters together is estimated: one place for the
