@@ -67,9 +67,9 @@ class RowBounds {
   virtual ~RowBounds() = default;
   // The rows of which the following questions ask. Costs O(rows); keeps its buffers.
   virtual void set_rows(std::span<const Index> rows) = 0;
-  // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i; of entries that are estimates of an
-  // integral, at least these integrals. Finite unless a row may lie in the set's box and nothing is clamped
-  // (nor spherical).
+  // Per channel, at least Σ_j∈set E(i, j) for every one of the rows i; of entries that estimate an integral,
+  // at least these integrals, but of rays that nearly touch (media_row_bounds.h). Finite unless a row may
+  // lie in the set's box and nothing is clamped (nor spherical).
   virtual Rgb bound(const ColumnSet& set) const = 0;
   // The same in parts, for guesses at what a set sends rather than at what it sends at most.
   virtual BoundParts parts(const ColumnSet& set) const { return {bound(set)}; }

@@ -77,11 +77,11 @@ Coefficients Medium::at(Vec3f place) const {
 
 Medium::Scattering Medium::max_scattering(Vec3f origin, Vec3f direction, float length) const {
   Scattering out{Rgb(0), Rgb(0)};
+  // Of what is the same everywhere it is known what of it scatters.
+  const bool known = homogeneous() && form_ == Form::absorption_and_scattering && !second_.grid;
   Walk walk(*this, origin, direction, length);
   Walk::Piece piece;
   while (walk.next(piece)) {
-    // Of what is the same everywhere it is known what of it scatters.
-    const bool known = homogeneous() && form_ == Form::absorption_and_scattering && !second_.grid;
     const Rgb most = known ? not_negative(second_.scale) : piece.extinction.most * max_albedo_;
     out.total += most * std::max(0.0f, piece.end - piece.begin);
     for (int c = 0; c < 3; ++c) out.most[c] = std::max(out.most[c], most[c]);

@@ -193,13 +193,16 @@ BoundParts MediaRowBounds::of_piece(const Piece& piece, const ColumnSet& set) co
   return parts;
 }
 
-template <typename Of>
-Rgb MediaRowBounds::greatest(Of&& of) const {
-  Rgb most{0}, sum{0};
+MediaRowBounds::Sums MediaRowBounds::greatest(const ColumnSet& set) const {
+  Sums most, sum;
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
-    if (k > 0 && pieces_[k].sum != pieces_[k - 1].sum) sum = Rgb(0);
-    sum += of(k);
-    most = greater(most, sum);
+    if (k > 0 && pieces_[k].sum != pieces_[k - 1].sum) sum = {};
+    const BoundParts parts = of_piece(pieces_[k], set);
+    sum.reflected += parts.reflected;
+    sum.near += scaled_by(parts.reflected, parts.near);
+    sum.far += scaled_by(parts.reflected, parts.far);
+    most.reflected = greater(most.reflected, sum.reflected);
+    most.near = greater(most.near, sum.near), most.far = greater(most.far, sum.far);
   }
   return most;
 }
@@ -208,30 +211,23 @@ Rgb MediaRowBounds::bound(const ColumnSet& set) const {
   const BoundParts surfaces = of_surfaces(set);
   Rgb bound = scaled_by(surfaces.reflected, surfaces.near);
   for (int c = 0; c < 3; ++c) bound[c] = std::min(bound[c], set.ceiling[c] * kBoundSlack);
-  return greater(bound, greatest([&](std::size_t k) {
-                   const BoundParts parts = of_piece(pieces_[k], set);
-                   return scaled_by(parts.reflected, parts.near);
-                 }));
+  return greater(bound, greatest(set).near);
 }
 
 BoundParts MediaRowBounds::parts(const ColumnSet& set) const {
-  BoundParts parts = of_surfaces(set);
-  if (pieces_.empty()) return parts;
-  std::vector<BoundParts> all;
-  for (const Piece& piece : pieces_) all.push_back(of_piece(piece, set));
-  const auto brightness = [&](auto&& factor) {
-    return luminance(greatest([&](std::size_t k) { return scaled_by(all[k].reflected, factor(all[k])); }));
-  };
+  const BoundParts surfaces = of_surfaces(set);
+  if (pieces_.empty()) return surfaces;
+  const Sums sums = greatest(set);
   BoundParts segments;
-  segments.reflected = greatest([&](std::size_t k) { return all[k].reflected; });
-  if (const float one = luminance(segments.reflected); one > 0) {
-    segments.near = brightness([](const BoundParts& p) { return p.near; }) / one;
-    segments.far = std::min(segments.near, brightness([](const BoundParts& p) { return p.far; }) / one);
+  segments.reflected = sums.reflected;
+  if (const float one = luminance(sums.reflected); one > 0) {
+    segments.near = luminance(sums.near) / one;
+    segments.far = std::min(segments.near, luminance(sums.far) / one);
   }
   if (on_surfaces_.empty()) return segments;
   // Of rows of both kinds what is greater of either.
-  return {greater(parts.reflected, segments.reflected), std::max(parts.near, segments.near),
-          std::max(parts.far, segments.far)};
+  return {greater(surfaces.reflected, segments.reflected), std::max(surfaces.near, segments.near),
+          std::max(surfaces.far, segments.far)};
 }
 
 }  // namespace lumirank::transport

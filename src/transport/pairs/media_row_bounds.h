@@ -48,9 +48,12 @@ class MediaRowBounds final : public matrix::RowBounds {
   }
   matrix::BoundParts of_surfaces(const matrix::ColumnSet& set) const;
   matrix::BoundParts of_piece(const Piece& piece, const matrix::ColumnSet& set) const;
-  // Of each row the sum over its pieces, and of these the greatest.
-  template <typename Of>
-  Rgb greatest(Of&& of) const;
+  // Of each row the sum over its pieces, and of these the greatest: apart from distances, and at the least
+  // and the greatest of these.
+  struct Sums {
+    Rgb reflected{0}, near{0}, far{0};
+  };
+  Sums greatest(const matrix::ColumnSet& set) const;
 
   const world::World& world_;
   const Receivers& receivers_;
