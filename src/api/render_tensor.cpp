@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "api/build_world.h"
 #include "api/scene.h"
@@ -11,6 +12,8 @@
 #include "base/version.h"
 #include "methods/tensor_clustering/tensor_clustering.h"
 #include "pipeline/develop.h"
+#include "pipeline/media_parts.h"
+#include "pipeline/media_run.h"
 #include "pipeline/memory.h"
 #include "pipeline/noise_metric.h"
 #include "pipeline/report.h"
@@ -59,11 +62,12 @@ methods::TensorClusteringSettings inner(const TensorSettings& t) {
 }
 
 // Every column of every frame, on the same lights: what clusterings are measured against.
-methods::TensorEstimate all_columns(const std::vector<pipeline::SharedPrepared>& frames, const Sinks& sinks) {
+methods::TensorEstimate all_columns(const matrix::LightingTensor& tensor, const Sinks& sinks) {
   const Timer timer;
   methods::TensorEstimate estimate;
-  for (const pipeline::SharedPrepared& frame : frames) {
-    const matrix::LightingMatrix& whole = *frame->matrix;
+  for (std::size_t k = 0; k < tensor.frames(); ++k) {
+    const auto frame = tensor.frame(k);
+    const matrix::LightingMatrix& whole = *frame;
     std::vector<matrix::ScaledColumn> columns(whole.columns());
     for (std::size_t j = 0; j < columns.size(); ++j) columns[j].column = static_cast<matrix::Index>(j);
     estimate.sums.emplace_back(whole.rows(), Rgb(0));
@@ -85,8 +89,10 @@ void warn_of_error(double target, const methods::TensorEstimate& estimate, const
   sinks.warn(text);
 }
 
-Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate& estimate, std::size_t k,
-                 std::size_t frames, const RenderSettings& settings, const TensorSettings& tensor) {
+// `seconds`: what preparing the frame took, by stage.
+Report report_of(const matrix::LightingMatrix& frame, const std::map<std::string, double>& seconds,
+                 const methods::TensorEstimate& estimate, std::size_t k, std::size_t frames,
+                 const RenderSettings& settings, const TensorSettings& tensor) {
   Report report;
   report.method = methods::kMethodOfShots;
   report.version = program_version();
@@ -94,7 +100,7 @@ Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate&
   report.settings = settings;
   report.settings.method.name = report.method;
   report.settings.method.parameters = parameters_of(tensor);
-  report.seconds = frame.seconds;
+  report.seconds = seconds;
   // Of the chunk, a frame's part of it.
   const auto part = static_cast<double>(frames);
   for (const auto& [key, value] : estimate.trace.numbers)
@@ -105,8 +111,8 @@ Report report_of(const pipeline::Prepared& frame, const methods::TensorEstimate&
   Report::Cost cost;
   cost.entries = estimate.spent.entries / frames, cost.culled = estimate.spent.culled / frames;
   cost.shadow_rays = estimate.spent.rays / frames;
-  cost.sampling_rate = static_cast<double>(cost.entries) / (static_cast<double>(frame.matrix->rows()) *
-                                                            static_cast<double>(frame.matrix->columns()));
+  cost.sampling_rate = static_cast<double>(cost.entries) /
+                       (static_cast<double>(frame.rows()) * static_cast<double>(frame.columns()));
   report.cost = cost;
   report.numbers["clusters"] = static_cast<double>(estimate.clusters) / part;
   report.numbers["clusters.carried"] = estimate.carried ? 1 : 0;
@@ -171,10 +177,113 @@ int frames_within_memory(const std::vector<Scene>& first, const RenderSettings& 
   return static_cast<int>(std::min<double>(t.chunk, length));
 }
 
+namespace {
+
+// What a part of a shot is rendered of.
+struct Part {
+  const std::vector<pipeline::SharedWorld>& worlds;
+  const std::vector<pipeline::View>& views;
+  const RenderSettings& settings;
+  const TensorSettings& tensor;
+  double build_seconds;  // of a frame
+  const Sinks& sinks;
+};
+
+// Empty if it was cancelled.
+std::optional<methods::TensorEstimate> estimate(const Part& part, const matrix::LightingTensor& shot,
+                                                const methods::TensorClusteringSettings& how,
+                                                TensorFrames& made) {
+  methods::RunOptions options;
+  options.seed = part.settings.seed;
+  options.sinks = part.sinks;
+  methods::TensorEstimate estimate =
+      part.tensor.columns == 0 ? all_columns(shot, part.sinks) : methods::estimate_tensor(shot, how, options);
+  if (estimate.interrupted) return std::nullopt;
+  made.rectangles = std::move(estimate.rectangles);
+  made.lights = shot.columns();
+  warn_of_error(how.target_error, estimate, part.sinks);
+  return estimate;
+}
+
+methods::TensorClusteringSettings how_for(const Part& part) {
+  methods::TensorClusteringSettings how = inner(part.tensor);
+  how.target_error = part.settings.method.target_error;
+  return how;
+}
+
+void render_in_space(const Part& part, TensorFrames& made) {
+  const auto& [worlds, views, settings, tensor, build_seconds, sinks] = part;
+  Sinks silent;
+  silent.cancel = sinks.cancel;
+  pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
+  recipe.row_albedo = true;
+  if (recipe.lights.placement == LightPlacement::automatic) recipe.lights.placement = LightPlacement::gather;
+  const auto frames =
+      pipeline::prepare_shot(worlds, views, recipe, settings.lights.count_or_default(), sinks);
+  const pipeline::ShotTensor shot(frames);
+  const auto found = estimate(part, shot, how_for(part), made);
+  if (!found) return;
+  // Whether the rest of the light matters is asked once, so that it does not come and go.
+  const std::size_t middle = frames.size() / 2;
+  const pipeline::RestPlan rest_plan =
+      pipeline::plan_rest(*worlds[middle], views[middle], settings, pipeline::LightPaths::beside, silent);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const pipeline::Prepared& frame = *frames[k];
+    RenderResult result;
+    pipeline::FilmFits fits;
+    image::Image image = pipeline::develop(pipeline::film_input(frame), found->sums[k],
+                                           pipeline::wanted_parts(settings.view.only), &fits);
+    pipeline::RestTracing rest(frame.world, settings, rest_plan);
+    if (!rest.trace_all(frame.view, silent)) throw Cancelled();
+    rest.add_to(image);
+    result.picture = pipeline::to_picture(image);
+    result.report = report_of(*frame.matrix, frame.seconds, *found, k, frames.size(), settings, tensor);
+    pipeline::add_film_numbers(result.report.numbers, recipe,
+                               pipeline::seen_rows(frame.receivers(), frame.traced), fits);
+    if (rest_plan.piloted) result.report.numbers["rest.share"] = rest_plan.pilot.share;
+    result.report.numbers["rest.paths"] = rest.paths();
+    result.report.seconds["build"] = build_seconds;
+    result.report.seconds["rest"] = rest.seconds();
+    result.report.numbers["lights.in_all_frames"] = shot.common_share();
+    made.frames.push_back(std::move(result));
+  }
+}
+
+void render_in_media(const Part& part, TensorFrames& made) {
+  pipeline::check_media(part.settings);
+  if (part.settings.method.target_error > 0)
+    throw InputError(
+        "tensor clustering finds no number of columns for an error in a scene with "
+        "participating media",
+        "leave out --error; --set columns=… decides");
+  const auto frames = pipeline::prepare_shot_in_media(
+      part.worlds, part.views, pipeline::make_recipe(part.settings, part.views.front()),
+      part.settings.lights.count_or_default(), part.sinks);
+  methods::TensorClusteringSettings how = how_for(part);
+  // What a row is, a piece of an eye ray with what scatters in it, no other frame has.
+  how.carrying = methods::Carrying::never;
+  how.two_of_a_place = true;
+  const auto found = estimate(part, pipeline::MediaShotTensor(frames), how, made);
+  if (!found) return;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const pipeline::PreparedMedia& frame = *frames[k];
+    RenderResult result;
+    result.picture = pipeline::to_picture(pipeline::picture_of(frame, found->sums[k]));
+    result.report =
+        report_of(*frame.matrix, frame.seconds, *found, k, frames.size(), part.settings, part.tensor);
+    result.report.numbers["eye_segments"] = static_cast<double>(frame.rows.segments.size());
+    result.report.numbers["ray_lights"] = static_cast<double>(frame.lights.rays.size());
+    result.report.seconds["build"] = part.build_seconds;
+    made.frames.push_back(std::move(result));
+  }
+}
+
+}  // namespace
+
 TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSettings& settings,
                            const TensorSettings& tensor, const Sinks& sinks) {
   TensorFrames made;
-  std::vector<RenderResult>& results = made.frames;
+  const bool in_media = pipeline::some_scatter(scenes.front().impl().desc);
   pipeline::within_memory(pipeline::kSmallerPicture, [&] {
     with_threads(settings.threads, [&] {
       const Timer timer;
@@ -183,8 +292,9 @@ TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSetting
       Sinks silent;
       silent.cancel = sinks.cancel;
       for (const Scene& scene : scenes) {
-        worlds.push_back(build_world(scene, worlds.empty() ? sinks : silent,
-                                     {.before = worlds.empty() ? nullptr : worlds.back().get()}));
+        worlds.push_back(
+            build_world(scene, worlds.empty() ? sinks : silent,
+                        {.before = worlds.empty() ? nullptr : worlds.back().get(), .media = in_media}));
         views.push_back(pipeline::make_view(scene.impl().desc, settings.view));
         if (worlds.size() != std::min(kWorldsToKnow, scenes.size())) continue;
         pipeline::require_memory(
@@ -193,51 +303,14 @@ TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSetting
             "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
       }
       const double build_seconds = timer.seconds() / static_cast<double>(scenes.size());
-      pipeline::Recipe recipe = pipeline::make_recipe(settings, views.front());
-      recipe.row_albedo = true;
-      if (recipe.lights.placement == LightPlacement::automatic)
-        recipe.lights.placement = LightPlacement::gather;
+      const Part part{worlds, views, settings, tensor, build_seconds, sinks};
       try {
-        const auto frames =
-            pipeline::prepare_shot(worlds, views, recipe, settings.lights.count_or_default(), sinks);
-        const pipeline::ShotTensor shot(frames);
-        methods::RunOptions options;
-        options.seed = settings.seed;
-        options.sinks = sinks;
-        methods::TensorClusteringSettings how = inner(tensor);
-        how.target_error = settings.method.target_error;
-        methods::TensorEstimate estimate =
-            tensor.columns == 0 ? all_columns(frames, sinks) : methods::estimate_tensor(shot, how, options);
-        if (estimate.interrupted) return;
-        made.rectangles = std::move(estimate.rectangles);
-        made.lights = shot.columns();
-        warn_of_error(how.target_error, estimate, sinks);
-        // Whether the rest of the light matters is asked once, so that it does not come and go.
-        const std::size_t middle = frames.size() / 2;
-        const pipeline::RestPlan rest_plan = pipeline::plan_rest(*worlds[middle], views[middle], settings,
-                                                                 pipeline::LightPaths::beside, silent);
-        for (std::size_t k = 0; k < frames.size(); ++k) {
-          const pipeline::Prepared& frame = *frames[k];
-          RenderResult result;
-          pipeline::FilmFits fits;
-          image::Image image = pipeline::develop(pipeline::film_input(frame), estimate.sums[k],
-                                                 pipeline::wanted_parts(settings.view.only), &fits);
-          pipeline::RestTracing rest(frame.world, settings, rest_plan);
-          if (!rest.trace_all(frame.view, silent)) throw Cancelled();
-          rest.add_to(image);
-          result.picture = pipeline::to_picture(image);
-          result.report = report_of(frame, estimate, k, frames.size(), settings, tensor);
-          pipeline::add_film_numbers(result.report.numbers, recipe,
-                                     pipeline::seen_rows(frame.receivers(), frame.traced), fits);
-          if (rest_plan.piloted) result.report.numbers["rest.share"] = rest_plan.pilot.share;
-          result.report.numbers["rest.paths"] = rest.paths();
-          result.report.seconds["build"] = build_seconds;
-          result.report.seconds["rest"] = rest.seconds();
-          result.report.numbers["lights.in_all_frames"] = shot.common_share();
-          results.push_back(std::move(result));
-        }
+        if (in_media)
+          render_in_media(part, made);
+        else
+          render_in_space(part, made);
       } catch (const Cancelled&) {
-        results.clear();
+        made.frames.clear();
       }
     });
   });

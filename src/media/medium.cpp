@@ -89,6 +89,18 @@ Medium::Scattering Medium::max_scattering(Vec3f origin, Vec3f direction, float l
   return out;
 }
 
+float Medium::Walk::places_per_length() const {
+  float most = 0;
+  for (const Field* field : {&medium_.first_, &medium_.second_}) {
+    if (!field->grid) continue;
+    const Vec3f along = field->to_unit.vector(direction_);
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::abs(along[axis]) *
+                                static_cast<float>(field->grid->size()[static_cast<std::size_t>(axis)]));
+  }
+  return most;
+}
+
 std::size_t Medium::memory_bytes() const { return sizeof(Medium) + (bounds_ ? bounds_->memory_bytes() : 0); }
 
 Medium::Walk::Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_max)

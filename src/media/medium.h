@@ -79,6 +79,8 @@ class Medium {
     // `direction`: unit.
     Walk(const Medium& medium, Vec3f origin, Vec3f direction, float t_max);
     bool next(Piece& piece);
+    // Numbers of the grid along a unit of the ray, where the extinction has one.
+    float places_per_length() const;
     // At origin + t·direction, which lies in one of the pieces.
     Rgb extinction(float t) const {
       const bool one = medium_.form_ == Form::extinction_and_albedo;

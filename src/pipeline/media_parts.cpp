@@ -1,8 +1,10 @@
 #include "pipeline/media_parts.h"
 
+#include "base/error.h"
 #include "base/timer.h"
 #include "pipeline/develop.h"
 #include "transport/lights/cut_rays.h"
+#include "transport/lights/lights_of_moments.h"
 #include "transport/lights/ray_tree.h"
 #include "transport/rows/eye_groups.h"
 
@@ -16,6 +18,10 @@ namespace {
 // noise is averaged over passes.
 constexpr int kSegmentsPerRay = 17, kSegmentsOfAPass = 4;
 
+// Of an eye ray in a frame of a shot: pieces that go along with the medium need to be fewer
+// (docs/decisions.md).
+constexpr int kSegmentsOfShot = 8;
+
 // Pieces of a light ray, about, for methods that go by bounds (docs/decisions.md has what whole ones gave).
 constexpr double kPiecesOfLightRays = 4;
 
@@ -24,6 +30,7 @@ constexpr double kPiecesOfLightRays = 4;
 constexpr std::size_t kLeastDirect = 32;
 
 int pieces_of_eye_rays(const MediaPlan& plan) {
+  if (plan.of_shot) return kSegmentsOfShot;
   switch (plan.segments) {
     case Segments::whole:
     case Segments::light_pieces:
@@ -46,6 +53,7 @@ void make_rows(PreparedMedia& made, const Sinks& sinks) {
   transport::ReceiverSettings settings = receiver_settings(made.recipe, made.view);
   settings.eye_medium = made.view.sensor.medium;
   settings.segments = pieces_of_eye_rays(made.plan);
+  settings.segments_by_depth = made.plan.of_shot;
   made.rows = transport::trace_receivers(*made.world, world::Camera(made.view.sensor, made.world->units()),
                                          settings, sinks);
   made.seconds["receivers"] = timer.seconds();
@@ -57,18 +65,24 @@ void make_rows(PreparedMedia& made, const Sinks& sinks) {
   made.seconds["segments"] += grouping.seconds();
 }
 
+transport::MediaLightSettings light_settings_in_media(const Recipe& recipe, const View& view,
+                                                      std::size_t count) {
+  transport::MediaLightSettings settings;
+  settings.seed = recipe.light_seed;
+  settings.count = count;
+  settings.max_depth = recipe.max_depth;
+  settings.eye_medium = view.sensor.medium;
+  settings.direct = recipe.only != LightPart::indirect;
+  settings.indirect = recipe.only != LightPart::direct;
+  settings.least_direct = kLeastDirect;
+  return settings;
+}
+
 void make_columns(PreparedMedia& made, const Sinks& sinks) {
   const Timer timer;
   const std::uint64_t seed = made.recipe.light_seed;
-  transport::MediaLightSettings settings;
-  settings.seed = seed;
-  settings.count = made.plan.lights;
-  settings.max_depth = made.recipe.max_depth;
-  settings.eye_medium = made.view.sensor.medium;
-  settings.direct = made.recipe.only != LightPart::indirect;
-  settings.indirect = made.recipe.only != LightPart::direct;
-  settings.least_direct = kLeastDirect;
-  made.lights = transport::trace_lights_in_media(*made.world, settings, sinks);
+  made.lights = transport::trace_lights_in_media(
+      *made.world, light_settings_in_media(made.recipe, made.view, made.plan.lights), sinks);
   made.whole_rays = made.lights.rays.size();
   made.seconds["lights"] = timer.seconds();
   const Timer cutting;
@@ -84,6 +98,22 @@ void make_columns(PreparedMedia& made, const Sinks& sinks) {
   made.seconds["segments"] += cutting.seconds();
 }
 
+std::shared_ptr<PreparedMedia> begin(const SharedWorld& world, const View& view, const Recipe& recipe,
+                                     const MediaPlan& plan) {
+  auto made = std::make_shared<PreparedMedia>();
+  made->world = world, made->view = view, made->recipe = recipe, made->plan = plan;
+  made->recipe.film_samples = 0;
+  return made;
+}
+
+void make_matrix(PreparedMedia& made) {
+  const Timer timer;
+  made.matrix = std::make_unique<transport::MediaMatrix>(
+      *made.world, made.rows, made.lights,
+      transport::MediaMatrixSettings{matrix_settings(made.recipe), in_groups(made.plan)});
+  made.seconds["matrix"] = timer.seconds();
+}
+
 }  // namespace
 
 Segments segments_for(const methods::MethodInfo& method,
@@ -94,17 +124,39 @@ Segments segments_for(const methods::MethodInfo& method,
 std::shared_ptr<const PreparedMedia> prepare_in_media(const SharedWorld& world, const View& view,
                                                       const Recipe& recipe, const MediaPlan& plan,
                                                       const Sinks& sinks) {
-  auto made = std::make_shared<PreparedMedia>();
-  made->world = world, made->view = view, made->recipe = recipe, made->plan = plan;
-  made->recipe.film_samples = 0;
+  auto made = begin(world, view, recipe, plan);
   make_rows(*made, sinks);
   make_columns(*made, sinks);
-  const Timer timer;
-  made->matrix = std::make_unique<transport::MediaMatrix>(
-      *world, made->rows, made->lights,
-      transport::MediaMatrixSettings{matrix_settings(made->recipe), in_groups(plan)});
-  made->seconds["matrix"] = timer.seconds();
+  make_matrix(*made);
   return made;
+}
+
+std::vector<std::shared_ptr<const PreparedMedia>> prepare_shot_in_media(
+    const std::vector<SharedWorld>& worlds, const std::vector<View>& views, const Recipe& recipe,
+    std::size_t count, const Sinks& sinks) {
+  std::vector<const world::World*> seen;
+  for (const SharedWorld& world : worlds) seen.push_back(world.get());
+  if (!transport::only_media_differ(seen))
+    throw InputError(
+        "tensor clustering in participating media needs surfaces and lights that stand still, and "
+        "some of this scene's move",
+        "name another --method");
+  const Timer timer;
+  std::vector<transport::LightsInMedia> lights =
+      transport::trace_lights_of_moments(seen, light_settings_in_media(recipe, views.front(), count), sinks);
+  const double light_seconds = timer.seconds() / static_cast<double>(worlds.size());
+  std::vector<std::shared_ptr<const PreparedMedia>> frames;
+  for (std::size_t k = 0; k < worlds.size(); ++k) {
+    auto made = begin(worlds[k], views[k], recipe, {Segments::pieces, count, false, true});
+    make_rows(*made, sinks);
+    made->lights = std::move(lights[k]);
+    made->whole_rays = made->lights.rays.size();
+    made->seconds["lights"] = light_seconds;
+    make_matrix(*made);
+    frames.push_back(std::move(made));
+    sinks.report("frames", static_cast<double>(k + 1) / static_cast<double>(worlds.size()));
+  }
+  return frames;
 }
 
 image::Image picture_of(const PreparedMedia& prepared, std::span<const Rgb> sums) {

@@ -5,7 +5,10 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "matrix/lighting_tensor.h"
 #include "methods/method.h"
 #include "pipeline/prepared.h"
 #include "transport/cpu/media_matrix.h"
@@ -16,6 +19,7 @@ struct MediaPlan {
   matrix::MethodContract::Segments segments = matrix::MethodContract::Segments::pieces;
   std::size_t lights = 0;  // points and rays
   bool pass = false;       // one of several, of which the mean is shown
+  bool of_shot = false;    // eye rays are cut so that their pieces go along with media that move
   bool operator==(const MediaPlan&) const = default;
 };
 // What a method with these parameters has rays be.
@@ -40,6 +44,26 @@ struct PreparedMedia {
 std::shared_ptr<const PreparedMedia> prepare_in_media(const SharedWorld& world, const View& view,
                                                       const Recipe& recipe, const MediaPlan& plan,
                                                       const Sinks& sinks);
+// What is prepared for every frame of a shot: the same lights, whose power follows the media, and rows that
+// do. Throws InputError where anything but media and the camera moves.
+std::vector<std::shared_ptr<const PreparedMedia>> prepare_shot_in_media(
+    const std::vector<SharedWorld>& worlds, const std::vector<View>& views, const Recipe& recipe,
+    std::size_t count, const Sinks& sinks);
+// Frames as a tensor: columns have the same numbers in all of them.
+class MediaShotTensor : public matrix::LightingTensor {
+ public:
+  explicit MediaShotTensor(std::vector<std::shared_ptr<const PreparedMedia>> frames)
+      : frames_(std::move(frames)) {}
+  std::size_t frames() const override { return frames_.size(); }
+  std::size_t columns() const override { return frames_.empty() ? 0 : frames_.front()->matrix->columns(); }
+  std::shared_ptr<const matrix::LightingMatrix> frame(std::size_t k) const override {
+    return {frames_[k], frames_[k]->matrix.get()};
+  }
+
+ private:
+  std::vector<std::shared_ptr<const PreparedMedia>> frames_;
+};
+
 image::Image picture_of(const PreparedMedia& prepared, std::span<const Rgb> sums);
 
 }  // namespace lumirank::pipeline

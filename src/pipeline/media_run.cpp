@@ -184,8 +184,12 @@ bool some_scatter(const scenedesc::SceneDesc& desc) {
 }
 
 void check_media(const methods::MethodInfo& method, const RenderSettings& settings) {
-  const std::string there = " in a scene with participating media";
   methods::require_capabilities(method, transport::MediaMatrix::kCapabilities);
+  check_media(settings);
+}
+
+void check_media(const RenderSettings& settings) {
+  const std::string there = " in a scene with participating media";
   if (!settings.layers.empty())
     throw InputError("there is no layer '" + settings.layers.front() + "'" + there,
                      "leave out --aov; 'reference' has direct, indirect and emission");

@@ -11,6 +11,7 @@ bool some_scatter(const scenedesc::SceneDesc& desc);
 // Throws InputError for what a picture in empty space can be asked for and one with media cannot: layers,
 // light traced beside the columns, spherical lights.
 void check_media(const methods::MethodInfo& method, const RenderSettings& settings);
+void check_media(const RenderSettings& settings);  // whatever the method
 
 // The method for such a scene, where "auto" is row-column-sampling; `why` (may be nullptr) says so.
 const methods::MethodInfo& chosen_method_in_media(const RenderSettings& settings, std::string* why = nullptr);

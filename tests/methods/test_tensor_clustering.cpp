@@ -133,6 +133,39 @@ TEST(TensorClustering, CarriesLightWhereClustersLast) {
   EXPECT_LT(before, 1e-6);  // every light in every frame
 }
 
+// Where nothing is carried a frame costs the clusters that act in it: they are counted.
+TEST(TensorClustering, ShadesAsManyClustersAsWereAskedFor) {
+  constexpr std::size_t kFrames = 6, kColumns = 24;
+  const DenseTensor tensor = smooth_tensor(90, 60, kFrames, 15, 0.15);
+  TensorClusteringSettings settings = settings_of(kColumns);
+  settings.carrying = Carrying::never;
+  const TensorEstimate estimate = estimate_tensor(tensor, settings, {});
+  const double acting = std::accumulate(estimate.active.begin(), estimate.active.end(), 0.0);
+  EXPECT_LE(acting, kColumns * kFrames);
+  EXPECT_GT(acting, (kColumns - 1) * kFrames);
+  EXPECT_FALSE(estimate.carried);
+}
+
+// Rows of one place on the film, as pieces of one eye ray are: only the first is always read, unless two are
+// asked for.
+TEST(TensorClustering, ReadsTwoRowsOfAPlace) {
+  constexpr std::size_t kPlaces = 16, kRowsOfPlace = 4, kLights = 30;
+  std::vector<Rgb> entries(kPlaces * kRowsOfPlace * kLights, Rgb(0));
+  // What is told by other rows than the first: 6 sorts of light.
+  for (std::size_t i = 0; i < kPlaces * kRowsOfPlace; ++i)
+    for (std::size_t j = 0; j < kLights; ++j)
+      entries[i * kLights + j] = Rgb(i < kPlaces ? 1.0f : (i + j) % 6 == 0 ? 3.0f : 0.5f);
+  const auto frame = std::make_shared<DenseMatrix>(kPlaces * kRowsOfPlace, kLights, std::move(entries));
+  for (std::size_t i = 0; i < kPlaces * kRowsOfPlace; ++i)
+    frame->pixel.push_back({static_cast<float>(i % kPlaces % 4), static_cast<float>(i % kPlaces / 4)});
+  const DenseTensor tensor({frame});
+  TensorClusteringSettings settings = settings_of(15);
+  settings.rows = kPlaces, settings.carrying = Carrying::never;
+  EXPECT_GT(worst_error(tensor, estimate_tensor(tensor, settings, {})), 0.1);
+  settings.two_of_a_place = true;
+  EXPECT_LT(worst_error(tensor, estimate_tensor(tensor, settings, {})), 1e-6);
+}
+
 TEST(TensorClustering, SixteenAndThirtyTwoBitsAgree) {
   const DenseTensor tensor = smooth_tensor(90, 60, 10, 15, 0.15);
   TensorClusteringSettings settings = settings_of(20);

@@ -16,10 +16,13 @@
 
 namespace lumirank::transport::testing {
 
-inline world::World build_world(scenedesc::SceneDesc desc) {
+// `before`: the same scene at another moment.
+inline world::World build_world(scenedesc::SceneDesc desc, const world::World* before = nullptr) {
   desc.sensors.resize(1);
   std::vector<scenedesc::Warning> warnings;
-  return world::World::build(desc, {}, warnings);
+  world::BuildOptions options;
+  options.before = before;
+  return world::World::build(desc, options, warnings);
 }
 
 template <typename Kind>

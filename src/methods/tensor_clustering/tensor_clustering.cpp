@@ -24,9 +24,10 @@ namespace {
 using linalg::RectangleClustering;
 using matrix::Index;
 
-// One row in each of count × count bins of the picture: the nearest to its middle (section 5); rows without
+// One row in each of count × count bins of the picture: the nearest to its middle (section 5); with
+// `others_too` and where several rows have that place, one more of them, each in its turn. Rows without
 // places on the film: evenly by index.
-std::vector<Index> rows_of_bins(const matrix::LightingMatrix& m, std::size_t count) {
+std::vector<Index> rows_of_bins(const matrix::LightingMatrix& m, std::size_t count, bool others_too = false) {
   const auto pixel = m.row_features().pixel;
   std::vector<Index> chosen;
   if (pixel.empty()) {
@@ -41,16 +42,26 @@ std::vector<Index> rows_of_bins(const matrix::LightingMatrix& m, std::size_t cou
       static_cast<double>(std::max(width, 1.0f)) / static_cast<double>(std::max(height, 1.0f));
   const auto across = std::max(1.0, std::round(std::sqrt(static_cast<double>(count) * aspect)));
   const auto down = std::max(1.0, std::round(static_cast<double>(count) / across));
-  std::map<std::pair<int, int>, std::pair<float, Index>> nearest;
+  struct Nearest {
+    float distance;
+    std::vector<Index> rows;
+  };
+  std::map<std::pair<int, int>, Nearest> nearest;
   for (std::size_t i = 0; i < pixel.size(); ++i) {
     const double x = static_cast<double>(pixel[i].x / (width + 1)) * across,
                  y = static_cast<double>(pixel[i].y / (height + 1)) * down;
     const double dx = x - std::floor(x) - 0.5, dy = y - std::floor(y) - 0.5;
-    const std::pair<float, Index> here{static_cast<float>(dx * dx + dy * dy), static_cast<Index>(i)};
-    const auto [found, fresh] = nearest.try_emplace({static_cast<int>(y), static_cast<int>(x)}, here);
-    if (!fresh) found->second = std::min(found->second, here);
+    const auto distance = static_cast<float>(dx * dx + dy * dy);
+    Nearest& best =
+        nearest.try_emplace({static_cast<int>(y), static_cast<int>(x)}, Nearest{distance, {}}).first->second;
+    if (distance < best.distance) best = {distance, {}};
+    if (distance == best.distance) best.rows.push_back(static_cast<Index>(i));
   }
-  for (const auto& [bin, row] : nearest) chosen.push_back(row.second);
+  std::size_t turn = 0;
+  for (const auto& [bin, best] : nearest) {
+    chosen.push_back(best.rows.front());
+    if (others_too && best.rows.size() > 1) chosen.push_back(best.rows[1 + turn++ % (best.rows.size() - 1)]);
+  }
   return chosen;
 }
 
@@ -155,7 +166,10 @@ class TensorRun {
     if (!timed("rows", [&] { return explore(settings_.rows); })) return false;
     return timed("clustering", [&] {
       start_clusters();
-      split_to(settings_.columns);
+      if (settings_.carrying == Carrying::never)
+        split_to_shaded(settings_.columns);
+      else
+        split_to(settings_.columns);
       return true;
     });
   }
@@ -211,7 +225,7 @@ class TensorRun {
     std::vector<std::vector<Index>> rows(frames);
     std::size_t max_rows = 0;
     for (std::size_t k = 0; k < frames; ++k) {
-      rows[k] = rows_of_bins(*tensor_.frame(k), wanted);
+      rows[k] = rows_of_bins(*tensor_.frame(k), wanted, settings_.two_of_a_place);
       max_rows = std::max(max_rows, rows[k].size());
     }
     reduced_ = std::make_unique<linalg::ReducedTensor>(
@@ -250,8 +264,9 @@ class TensorRun {
       if (!sketch_->is_zero(j)) lit.push_back(static_cast<std::uint32_t>(j));
     linalg::Partition start;
     if (!lit.empty()) {
-      const std::size_t wanted =
-          std::min(settings_.initial_clusters, std::max<std::size_t>(1, least * tensor_.frames() / 4));
+      // Of clusters that are shaded in every frame so many fit into a frame, of others into all of them.
+      const std::size_t all = settings_.carrying == Carrying::never ? least : least * tensor_.frames();
+      const std::size_t wanted = std::min(settings_.initial_clusters, std::max<std::size_t>(1, all / 4));
       const auto initial = linalg::cluster(points, norms, lit, {},
                                            {linalg::ClusteringAlgorithm::sampling, wanted, options_.seed});
       start = initial.partition();
@@ -262,6 +277,23 @@ class TensorRun {
 
   void split_to(std::size_t columns) {
     clustering_->split_to(columns * tensor_.frames());
+    find_columns();
+  }
+
+  // Until so many clusters act in each frame in the mean, for each of which every cluster is computed: a
+  // split in time costs nothing then.
+  void split_to_shaded(std::size_t columns) {
+    const std::size_t frames = tensor_.frames(), wanted = columns * frames;
+    for (bool more = true; more;) {
+      std::size_t shaded = 0;
+      for (const auto& r : clustering_->rectangles()) shaded += r.end - r.begin;
+      const std::size_t missing = wanted > shaded ? (wanted - shaded) / frames : 0;
+      more = missing > 0 && clustering_->split_to(clustering_->rectangles().size() + missing);
+    }
+    find_columns();
+  }
+
+  void find_columns() {
     const auto& rectangles = clustering_->rectangles();
     clusters_.assign(rectangles.size(), {});
     const ClusterColumns columns_of(*reduced_, settings_.representatives);

@@ -37,8 +37,9 @@ enum class Carrying {
 };
 
 struct TensorClusteringSettings {
-  std::size_t rows = 100;     // of every frame
-  std::size_t columns = 200;  // clusters per frame, in the mean
+  std::size_t rows = 100;       // of every frame
+  bool two_of_a_place = false;  // where several rows have one place on the film (pieces of an eye ray)
+  std::size_t columns = 200;    // clusters per frame, in the mean; never carried: that act in a frame
   // Of lights, in all frames; at most a quarter of all clusters, so that there is something to split. The
   // paper has 100.
   std::size_t initial_clusters = 1000;

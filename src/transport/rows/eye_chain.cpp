@@ -142,7 +142,12 @@ Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& 
   // Without a surface behind it a ray ends where the scene does.
   if (!std::isfinite(length))
     length = 2 * world_.bounds().radius() + lumirank::length(s.ray.origin - world_.bounds().center());
-  cut_points(medium, s.ray.origin, direction, length, settings_.segments, rng, cuts_);
+  if (settings_.segments_by_depth) {
+    profile_.follow(medium, s.ray.origin, direction, length);
+    cut_points_by_depth(profile_, length, settings_.segments, cuts_);
+  } else {
+    cut_points(medium, s.ray.origin, direction, length, settings_.segments, rng, cuts_);
+  }
   cuts_.push_back(length);
   Rgb emitted{0};
   float from = 0;
@@ -168,7 +173,9 @@ Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& 
       emitted += s.weight * media::transmittance(medium, origin, direction, t, random) *
                  medium.at(origin + direction * t).emission * part;
     }
-    s.weight *= media::transmittance(medium, origin, direction, part, random);
+    s.weight *= settings_.segments_by_depth
+                    ? media::exp_minus(profile_.depth(cuts_[k]) - profile_.depth(from))
+                    : media::transmittance(medium, origin, direction, part, random);
     from = cuts_[k];
     if (is_black(s.weight)) break;
   }

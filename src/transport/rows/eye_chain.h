@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "media/depth_profile.h"
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
 #include "transport/rows/eye_segments.h"
@@ -43,6 +44,9 @@ struct ChainSettings {
   // Participating media: the one around the camera (-1: none), and into how many parts a ray's way through
   // one is cut at most; 0: they are not asked for.
   int eye_medium = -1, segments = 0;
+  // Cut without chance (cut_points.h), and what comes through them known instead of estimated
+  // (depth_profile.h).
+  bool segments_by_depth = false;
 };
 
 // Light that passes straight through (null surfaces, cut-outs, thin glass) meets no vertex: it counts neither
@@ -90,6 +94,7 @@ class EyeChain {
   std::vector<EyeSegment> segments_;
   Rgb straight_emission_;
   std::vector<float> cuts_;
+  media::DepthProfile profile_;
 };
 
 }  // namespace lumirank::transport

@@ -126,8 +126,8 @@ class ReceiverTracer {
 
   void trace_piece(std::size_t begin, std::size_t end) {
     Piece& piece = pieces_[begin / kTilesPerPiece];
-    EyeChain chain(world_,
-                   {settings_.max_depth, settings_.max_splits, settings_.eye_medium, settings_.segments});
+    EyeChain chain(world_, {settings_.max_depth, settings_.max_splits, settings_.eye_medium,
+                            settings_.segments, settings_.segments_by_depth});
     for (std::size_t t = begin; t < end; ++t) {
       const auto first_of_tile = static_cast<std::ptrdiff_t>(piece.vertices.size());
       std::size_t sample = order_.tiles[t].first_pixel * spp();

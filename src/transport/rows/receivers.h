@@ -39,6 +39,7 @@ struct ReceiverSettings {
   film::PixelLattice pixels;
   // Of participating media, as in ChainSettings.
   int eye_medium = -1, segments = 0;
+  bool segments_by_depth = false;
 };
 
 struct EyeVertex;
