@@ -29,9 +29,12 @@ namespace {
 constexpr double kBytesOfRow = 90, kBytesOfLight = 100, kBytesOfProgram = 160e6;
 
 // Of a frame, without its world.
-double bytes_of_frame(const pipeline::View& view, const RenderSettings& settings, const TensorSettings& t) {
+double bytes_of_frame(const pipeline::View& view, const RenderSettings& settings, const TensorSettings& t,
+                      bool in_media) {
+  const double of_sample = in_media ? 1 + pipeline::kSegmentsOfShot : 1;
   const double lights = static_cast<double>(settings.lights.count_or_default()),
-               rows = static_cast<double>(view.width) * view.height * settings.view.spp_or_default();
+               rows =
+                   static_cast<double>(view.width) * view.height * settings.view.spp_or_default() * of_sample;
   const double read = settings.method.target_error > 0
                           ? static_cast<double>(methods::TensorClusteringSettings{}.max_rows)
                           : t.rows;
@@ -154,15 +157,17 @@ void check(const TensorSettings& t, const RenderSettings& settings) {
 int frames_within_memory(const std::vector<Scene>& first, const RenderSettings& settings,
                          const TensorSettings& t) {
   if (!(t.memory > 0)) return t.chunk;
+  const bool in_media = pipeline::some_scatter(first.front().impl().desc);
   std::vector<pipeline::SharedWorld> worlds;
   double built = 0;
   for (const Scene& scene : first) {
-    worlds.push_back(build_world(scene, {}, {.before = worlds.empty() ? nullptr : worlds.back().get()}));
+    worlds.push_back(build_world(
+        scene, {}, {.before = worlds.empty() ? nullptr : worlds.back().get(), .media = in_media}));
     built += bytes_of(*worlds.back());
   }
   const double later = bytes_of(*worlds.back());
   const double frame =
-      bytes_of_frame(pipeline::make_view(first.front().impl().desc, settings.view), settings, t);
+      bytes_of_frame(pipeline::make_view(first.front().impl().desc, settings.view), settings, t, in_media);
   // built + later · (n − worlds) + frame · n = what is given.
   const double once = kBytesOfProgram + built - later * static_cast<double>(worlds.size());
   const double fitting = std::floor((1e6 * t.memory - once) / (later + frame)), overlap = t.overlap;
@@ -299,7 +304,7 @@ TensorFrames render_tensor(const std::vector<Scene>& scenes, const RenderSetting
         if (worlds.size() != std::min(kWorldsToKnow, scenes.size())) continue;
         pipeline::require_memory(
             bytes_of(*worlds.back()) * static_cast<double>(scenes.size() - worlds.size()) +
-                bytes_of_frame(views[0], settings, tensor) * static_cast<double>(scenes.size()),
+                bytes_of_frame(views[0], settings, tensor, in_media) * static_cast<double>(scenes.size()),
             "give --set memory=… (in MB) or --set chunk=… for shorter chunks, or fewer --lights");
       }
       const double build_seconds = timer.seconds() / static_cast<double>(scenes.size());

@@ -91,8 +91,12 @@ Medium::Scattering Medium::max_scattering(Vec3f origin, Vec3f direction, float l
 
 float Medium::Walk::places_per_length() const {
   float most = 0;
+  const Field* const box = medium_.first_.grid ? &medium_.first_ : &medium_.second_;
+  for (int axis = 0; axis < 3; ++axis)
+    most = std::max(most, std::abs(unit_direction_[axis]) *
+                              static_cast<float>(box->grid->size()[static_cast<std::size_t>(axis)]));
   for (const Field* field : {&medium_.first_, &medium_.second_}) {
-    if (!field->grid) continue;
+    if (!field->grid || field == box) continue;
     const Vec3f along = field->to_unit.vector(direction_);
     for (int axis = 0; axis < 3; ++axis)
       most = std::max(most, std::abs(along[axis]) *

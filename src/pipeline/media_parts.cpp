@@ -18,10 +18,6 @@ namespace {
 // noise is averaged over passes.
 constexpr int kSegmentsPerRay = 17, kSegmentsOfAPass = 4;
 
-// Of an eye ray in a frame of a shot: pieces that go along with the medium need to be fewer
-// (docs/decisions.md).
-constexpr int kSegmentsOfShot = 8;
-
 // Pieces of a light ray, about, for methods that go by bounds (docs/decisions.md has what whole ones gave).
 constexpr double kPiecesOfLightRays = 4;
 
@@ -107,10 +103,12 @@ std::shared_ptr<PreparedMedia> begin(const SharedWorld& world, const View& view,
 }
 
 void make_matrix(PreparedMedia& made) {
+  // Of few columns for many rows smooth ones leave less noise, and methods that complete them need it.
   const Timer timer;
   made.matrix = std::make_unique<transport::MediaMatrix>(
       *made.world, made.rows, made.lights,
-      transport::MediaMatrixSettings{matrix_settings(made.recipe), in_groups(made.plan)});
+      transport::MediaMatrixSettings{matrix_settings(made.recipe),
+                                     in_groups(made.plan) || made.plan.of_shot});
   made.seconds["matrix"] = timer.seconds();
 }
 

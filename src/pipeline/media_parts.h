@@ -15,6 +15,10 @@
 
 namespace lumirank::pipeline {
 
+// Pieces of an eye ray's way through a medium in a frame of a shot, at most: they go along with the medium,
+// so they need to be fewer than those of a still (docs/decisions.md).
+inline constexpr int kSegmentsOfShot = 8;
+
 struct MediaPlan {
   matrix::MethodContract::Segments segments = matrix::MethodContract::Segments::pieces;
   std::size_t lights = 0;  // points and rays

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/rgb_range.h"
+#include "media/depth_profile.h"
 #include "media/tracking.h"
 #include "scatter/closure.h"
 #include "transport/rows/film_samples.h"
@@ -37,15 +38,15 @@ float distance(Rgb a, Rgb b) {
 struct PartOfMedium {
   Rgb hidden, albedo;
 };
-PartOfMedium look_at(const world::World& world, const transport::EyeSegment& part, Rng& rng) {
+PartOfMedium look_at(const world::World& world, const transport::EyeSegment& part,
+                     media::DepthProfile& profile) {
   const media::Medium& medium = world.media()[static_cast<std::size_t>(part.medium)];
-  const Rgb through = media::transmittance(medium, part.origin, part.direction, part.length,
-                                           [&rng] { return rng.next_float(); });
+  profile.follow(medium, part.origin, part.direction, part.length);
+  const Rgb through = media::exp_minus(profile.whole_depth());
   const media::Coefficients there = medium.at(part.origin + part.direction * part.length);
   Rgb albedo(kUsualAlbedo);
   for (int c = 0; c < 3; ++c)
     if (there.extinction[c] > 0) albedo[c] = there.scattering[c] / there.extinction[c];
-  // Estimates of what comes through leave these bounds.
   const auto within = [](Rgb c) { return min_of(max_of(c, Rgb(0)), Rgb(1)); };
   return {within(part.weight * (Rgb(1) - through)), within(albedo)};
 }
@@ -65,11 +66,15 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
   transport::ReceiverSettings settings = receiver_settings(recipe_, view_);
   settings.film_samples = samples;
   settings.seed = seed;
-  if (!world_.media().empty()) settings.segments = kMediumParts, settings.eye_medium = view_.sensor.medium;
+  // Without chance: noise of features is taken for edges.
+  if (!world_.media().empty())
+    settings.segments = kMediumParts, settings.segments_by_depth = true,
+    settings.eye_medium = view_.sensor.medium;
   const auto width = static_cast<std::size_t>(view_.width);
   parallel_for(static_cast<std::size_t>(view_.height), 4, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
     transport::FilmEye eye(world_, camera, settings);
+    media::DepthProfile profile;
     for (std::size_t p = begin * width; p < end * width; ++p) {
       if (edges_[p] < least) continue;
       eye.begin({view_.crop_x + static_cast<int>(p % width), view_.crop_y + static_cast<int>(p / width)});
@@ -84,13 +89,10 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
           albedo += v.weight * v.albedo;
           normal = normal + v.normal * weight, weights += weight;
         }
-        if (!eye.segments().empty()) {
-          Rng rng(seed, Stage::pilot, p, static_cast<std::uint64_t>(k));
-          for (const transport::EyeSegment& part : eye.segments()) {
-            const PartOfMedium seen = look_at(world_, part, rng);
-            albedo += seen.hidden * seen.albedo;
-            weights += luminance(seen.hidden);
-          }
+        for (const transport::EyeSegment& part : eye.segments()) {
+          const PartOfMedium seen = look_at(world_, part, profile);
+          albedo += seen.hidden * seen.albedo;
+          weights += luminance(seen.hidden);
         }
         if (weights > 0) normal = normal * (1 / weights);
         const Rgb color = albedo + min_of(sample.straight, Rgb(kWhite));

@@ -132,6 +132,33 @@ TEST(PixelFeatures, AMediumHidesWhatIsBehindIt) {
   EXPECT_NEAR(normal / kPixels, luminance(Rgb(red, green, 1)), 0.05);
 }
 
+// Smoke in layers before a wall, which all pixels see alike: so are their features, of few samples.
+TEST(PixelFeatures, SmokeHasNoNoise) {
+  auto desc = square_in_view();
+  const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.4f)}});
+  use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), gray);
+  sd::MediumDesc smoke;
+  smoke.extinction = {Rgb(1), 0}, smoke.albedo.value = Rgb(0.9f);
+  desc.media.push_back(smoke);
+  auto grid = std::make_shared<sd::GridData>();
+  grid->size = {2, 2, 8};
+  for (int k = 0; k < 2 * 2 * 8; ++k) grid->values.push_back(k / 4 % 2 ? 0.4f : 0.0f);
+  sd::VolumeDesc volume;
+  volume.to_world = Transform::translate(-4, -4, 1) * Transform::scale(8, 8, 4);
+  volume.kind = std::shared_ptr<const sd::GridData>(grid);
+  desc.volumes.push_back(volume);
+  desc.sensors[0].medium = 0;
+  const world::World world = build(desc);
+  const View view = view_of(desc);
+  PixelFeatureTracing tracing(world, view, make_recipe({}, view));
+  ASSERT_TRUE(tracing.trace_all(1, {}));
+  const PixelFeatures features = tracing.means();
+  // Half of four units of length have 0.4.
+  const float through = std::exp(-0.8f), expected = 0.4f * through + 0.9f * (1 - through);
+  for (const Rgb& p : features.albedo.pixels) EXPECT_NEAR(p.g, expected, 0.02f);
+  for (const Rgb& p : features.normal.pixels) EXPECT_NEAR(p.b, through, 0.02f);
+}
+
 TEST(PixelFeatures, OnePixelIsAFireflyAndTwoAreALamp) {
   image::Image picture(8, 8);
   picture.at(2, 2) = Rgb(1000);

@@ -8,7 +8,8 @@ FilmEye::FilmEye(const world::World& world, const world::Camera& camera, const R
     : world_(world),
       camera_(camera),
       settings_(settings),
-      chain_(world_, {settings.max_depth, settings.max_splits, settings.eye_medium, settings.segments}),
+      chain_(world_, {settings.max_depth, settings.max_splits, settings.eye_medium, settings.segments,
+                      settings.segments_by_depth}),
       pattern_(1, 0) {}
 
 void FilmEye::begin(Vec2i pixel) {
