@@ -8,12 +8,10 @@
 
 Lumirank reads them as scenes that move at 24 frames per second (`lumirank animate`).
 """
-import argparse
 import math
-import pathlib
 
 from make_media_scenes import MediaScene, noise, smoke
-from scene_parts import diffuse
+from scene_parts import diffuse, write_scenes
 
 
 class Noise:
@@ -111,20 +109,5 @@ def basin(out, frames):
 SCENES = {"plume": plume, "basin": basin}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("scenes", nargs="*", metavar="scene", help=f"{', '.join(SCENES)}; default: all")
-    parser.add_argument("--frames", type=int, default=24, help="default 24, one second")
-    args = parser.parse_args()
-    if args.frames < 2:
-        parser.error("a shot has at least two frames")
-    for name in args.scenes or SCENES:
-        if name not in SCENES:
-            parser.error(f"there is no scene {name}; the scenes are {', '.join(SCENES)}")
-        scene, folder = SCENES[name](args.out, args.frames)
-        print(f"{name}: {scene.write(folder)} triangles in files", flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    write_scenes(__doc__, SCENES, 24)

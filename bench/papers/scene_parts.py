@@ -278,14 +278,18 @@ class Scene:
         return total
 
 
-def write_scenes(description, scenes):
-    """The command line of a generator: OUT and the names of scenes (all by default); scenes[name](OUT) gives (scene, folder)."""
+def write_scenes(description, scenes, frames=None):
+    """The command line of a generator: OUT and the names of scenes (all by default); scenes[name](OUT) gives (scene, folder). With `frames`, the default of --frames, scenes[name](OUT, frames) does."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("scenes", nargs="*")
+    if frames:
+        parser.add_argument("--frames", type=int, default=frames, help=f"of the shot, 24 a second; default {frames}")
     args = parser.parse_args()
+    if frames and args.frames < 2:
+        parser.error("a shot has at least two frames")
     for name in args.scenes or scenes:
         if name not in scenes:
             parser.error(f"there is no scene {name}; the scenes are {', '.join(scenes)}")
-        scene, folder = scenes[name](args.out)
+        scene, folder = scenes[name](args.out, args.frames) if frames else scenes[name](args.out)
         print(f"{folder}/scene.xml: {scene.write(folder)} triangles")

@@ -8,14 +8,6 @@ namespace {
 
 constexpr float kStepsPerPlace = 2;
 
-// 0 · ∞ is 0.
-Rgb times(Rgb extinction, float length) {
-  Rgb out{0};
-  for (int c = 0; c < 3; ++c)
-    if (extinction[c] > 0) out[c] = extinction[c] * length;
-  return out;
-}
-
 }  // namespace
 
 void DepthProfile::follow(const Medium& medium, Vec3f origin, Vec3f direction, float t_max) {
@@ -27,7 +19,7 @@ void DepthProfile::follow(const Medium& medium, Vec3f origin, Vec3f direction, f
   while (walk.next(piece)) {
     if (is_black(piece.extinction.most) || !(piece.end > piece.begin)) continue;
     if (medium.homogeneous()) {
-      depth += times(piece.extinction.most, piece.end - piece.begin);
+      depth += over_length(piece.extinction.most, piece.end - piece.begin);
       steps_.push_back({piece.begin, piece.end, piece.extinction.most, depth});
       continue;
     }
@@ -56,7 +48,7 @@ std::size_t DepthProfile::step_at(float t) const {
 Rgb DepthProfile::depth(float t) const {
   const std::size_t k = step_at(t);
   if (k == steps_.size()) return whole_depth();
-  return depth_before(k) + times(steps_[k].extinction, std::max(0.0f, t - steps_[k].begin));
+  return depth_before(k) + over_length(steps_[k].extinction, std::max(0.0f, t - steps_[k].begin));
 }
 
 Rgb DepthProfile::extinction(float t) const {

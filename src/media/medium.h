@@ -18,6 +18,14 @@ namespace lumirank::media {
 
 inline Rgb not_negative(Rgb c) { return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)}; }
 
+// Of something per length over a length that may be infinite, where 0 · ∞ is 0.
+inline Rgb over_length(Rgb per_length, float length) {
+  Rgb out{0};
+  for (int c = 0; c < 3; ++c)
+    if (per_length[c] > 0) out[c] = per_length[c] * length;
+  return out;
+}
+
 // What a medium is at one place.
 struct Coefficients {
   Rgb extinction, scattering;

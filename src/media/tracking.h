@@ -31,13 +31,7 @@ struct ChannelThroughput {
 
 inline Rgb exp_minus(Rgb x) { return {std::exp(-x.r), std::exp(-x.g), std::exp(-x.b)}; }
 
-// exp(-extinction · distance), where 0 · ∞ is 0.
-inline Rgb passed(Rgb extinction, float distance) {
-  Rgb out{1};
-  for (int c = 0; c < 3; ++c)
-    if (extinction[c] > 0) out[c] = std::exp(-extinction[c] * distance);
-  return out;
-}
+inline Rgb passed(Rgb extinction, float distance) { return exp_minus(over_length(extinction, distance)); }
 
 // A path's way from `origin` along unit `direction` to `t_max` (may be infinite) through a medium: places
 // where it collides with something, real or not, are drawn by the hero's bound of the extinction. At each
@@ -75,14 +69,7 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
 struct OpticalPath {
   Rgb depth{0}, ratio{1};
 
-  void add_even(Rgb extinction, float distance) {
-    if (distance < kInfinity) {
-      depth += extinction * distance;
-      return;
-    }
-    for (int c = 0; c < 3; ++c)
-      if (extinction[c] > 0) depth[c] = kInfinity;
-  }
+  void add_even(Rgb extinction, float distance) { depth += over_length(extinction, distance); }
   // Along a way through a medium, as an unbiased estimate; exact where it is homogeneous. All channels share
   // their random places.
   template <typename Random>

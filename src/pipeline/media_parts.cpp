@@ -133,6 +133,7 @@ std::vector<std::shared_ptr<const PreparedMedia>> prepare_shot_in_media(
     const std::vector<SharedWorld>& worlds, const std::vector<View>& views, const Recipe& recipe,
     std::size_t count, const Sinks& sinks) {
   std::vector<const world::World*> seen;
+  seen.reserve(worlds.size());
   for (const SharedWorld& world : worlds) seen.push_back(world.get());
   if (!transport::only_media_differ(seen))
     throw InputError(

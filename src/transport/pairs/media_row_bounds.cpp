@@ -62,14 +62,6 @@ Bounds3f box_of_line(Vec3f from, Vec3f to) {
   return box;
 }
 
-// By what may be infinite.
-Rgb scaled_by(Rgb color, float factor) {
-  Rgb out{0};
-  for (int c = 0; c < 3; ++c)
-    if (color[c] > 0) out[c] = color[c] * factor;
-  return out;
-}
-
 }  // namespace
 
 ColumnSet ray_set(const media::Medium& medium, std::int16_t number, Vec3f origin, Vec3f direction,
@@ -199,8 +191,8 @@ MediaRowBounds::Sums MediaRowBounds::greatest(const ColumnSet& set) const {
     if (k > 0 && pieces_[k].sum != pieces_[k - 1].sum) sum = {};
     const BoundParts parts = of_piece(pieces_[k], set);
     sum.reflected += parts.reflected;
-    sum.near += scaled_by(parts.reflected, parts.near);
-    sum.far += scaled_by(parts.reflected, parts.far);
+    sum.near += media::over_length(parts.reflected, parts.near);
+    sum.far += media::over_length(parts.reflected, parts.far);
     most.reflected = greater(most.reflected, sum.reflected);
     most.near = greater(most.near, sum.near), most.far = greater(most.far, sum.far);
   }
@@ -209,7 +201,7 @@ MediaRowBounds::Sums MediaRowBounds::greatest(const ColumnSet& set) const {
 
 Rgb MediaRowBounds::bound(const ColumnSet& set) const {
   const BoundParts surfaces = of_surfaces(set);
-  Rgb bound = scaled_by(surfaces.reflected, surfaces.near);
+  Rgb bound = media::over_length(surfaces.reflected, surfaces.near);
   for (int c = 0; c < 3; ++c) bound[c] = std::min(bound[c], set.ceiling[c] * kBoundSlack);
   return greater(bound, greatest(set).near);
 }
