@@ -6,8 +6,6 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/rgb_range.h"
-#include "media/depth_profile.h"
-#include "media/tracking.h"
 #include "scatter/closure.h"
 #include "transport/rows/film_samples.h"
 
@@ -38,17 +36,14 @@ float distance(Rgb a, Rgb b) {
 struct PartOfMedium {
   Rgb hidden, albedo;
 };
-PartOfMedium look_at(const world::World& world, const transport::EyeSegment& part,
-                     media::DepthProfile& profile) {
+PartOfMedium look_at(const world::World& world, const transport::EyeSegment& part) {
   const media::Medium& medium = world.media()[static_cast<std::size_t>(part.medium)];
-  profile.follow(medium, part.origin, part.direction, part.length);
-  const Rgb through = media::exp_minus(profile.whole_depth());
   const media::Coefficients there = medium.at(part.origin + part.direction * part.length);
   Rgb albedo(kUsualAlbedo);
   for (int c = 0; c < 3; ++c)
     if (there.extinction[c] > 0) albedo[c] = there.scattering[c] / there.extinction[c];
   const auto within = [](Rgb c) { return min_of(max_of(c, Rgb(0)), Rgb(1)); };
-  return {within(part.weight * (Rgb(1) - through)), within(albedo)};
+  return {within(part.weight * (Rgb(1) - part.through)), within(albedo)};
 }
 
 }  // namespace
@@ -74,7 +69,6 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
   parallel_for(static_cast<std::size_t>(view_.height), 4, [&](std::size_t begin, std::size_t end) {
     if (sinks.cancelled()) return;
     transport::FilmEye eye(world_, camera, settings);
-    media::DepthProfile profile;
     for (std::size_t p = begin * width; p < end * width; ++p) {
       if (edges_[p] < least) continue;
       eye.begin({view_.crop_x + static_cast<int>(p % width), view_.crop_y + static_cast<int>(p / width)});
@@ -90,7 +84,7 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
           normal = normal + v.normal * weight, weights += weight;
         }
         for (const transport::EyeSegment& part : eye.segments()) {
-          const PartOfMedium seen = look_at(world_, part, profile);
+          const PartOfMedium seen = look_at(world_, part);
           albedo += seen.hidden * seen.albedo;
           weights += luminance(seen.hidden);
         }

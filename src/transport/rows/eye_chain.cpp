@@ -163,6 +163,8 @@ Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& 
     segment.sample = sample;
     segment.depth = static_cast<std::uint16_t>(std::min(s.depth, 0xffff));
     segment.medium = static_cast<std::int16_t>(s.medium);
+    if (settings_.segments_by_depth)
+      segment.through = media::exp_minus(profile_.depth(cuts_[k]) - profile_.depth(from));
     Rgb weight = segment.weight;
     if (gathers && medium.scatters() && roulette(weight, 0, rng)) {
       segment.weight = weight;
@@ -173,9 +175,8 @@ Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& 
       emitted += s.weight * media::transmittance(medium, origin, direction, t, random) *
                  medium.at(origin + direction * t).emission * part;
     }
-    s.weight *= settings_.segments_by_depth
-                    ? media::exp_minus(profile_.depth(cuts_[k]) - profile_.depth(from))
-                    : media::transmittance(medium, origin, direction, part, random);
+    s.weight *= settings_.segments_by_depth ? segment.through
+                                            : media::transmittance(medium, origin, direction, part, random);
     from = cuts_[k];
     if (is_black(s.weight)) break;
   }

@@ -21,6 +21,7 @@ struct EyeSegment {
   std::uint32_t sample = 0;
   std::uint16_t depth = 0;
   std::int16_t medium = -1;
+  Rgb through{0};  // what of light comes through it, where it was cut by depth; not kept in EyeSegments
 };
 
 // Like Receivers, in the order of the film. Row i is what is scattered along
