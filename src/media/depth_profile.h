@@ -12,8 +12,7 @@ namespace lumirank::media {
 
 class DepthProfile {
  public:
-  // As of Medium::Walk: `direction` unit, t_max infinite or not. Replaces what was there; of `t_max` no step
-  // before it depends.
+  // As of Medium::Walk: `direction` unit, t_max infinite or not. Replaces what was there.
   void follow(const Medium& medium, Vec3f origin, Vec3f direction, float t_max);
 
   // ∫ extinction over [0, t].

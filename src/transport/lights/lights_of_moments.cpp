@@ -16,9 +16,9 @@ class CarriedInManyWorlds {
     std::span<const world::World* const> worlds;
     const world::World& world() const { return *worlds.front(); }
   };
-  CarriedInManyWorlds(const Shared& shared, std::uint64_t path, Rng& rng)
+  CarriedInManyWorlds(const Shared& shared, Rng& rng)
       : worlds_(shared.worlds),
-        guide_(path % worlds_.size()),
+        guide_(rng.next_below(worlds_.size())),
         hero_(static_cast<int>(rng.next_below(3))),
         moments_(worlds_.size()) {}
 

@@ -2,11 +2,11 @@
 // (ours): rays and points that stay where they are while their power follows the smoke, so that what is made
 // of them does not flicker.
 //
-// A particle is traced through the media of one moment, each moment's turn comes, and its light is told for
-// every moment: what it would carry there over the mean density of all moments and channels along the same
-// way (the balance heuristic, Veach and Guibas, "Optimally combining sampling techniques for Monte Carlo
-// rendering", 1995). So no moment lacks light where another one's media are empty. Each moment's lights have
-// its own expectation, but for what media::DepthProfile misses between the places that it looks at.
+// A particle is traced through the media of one moment, which is drawn, and its light is told for every
+// moment: what it would carry there over the mean density of all moments and channels along the same way (the
+// balance heuristic, Veach and Guibas, "Optimally combining sampling techniques for Monte Carlo rendering",
+// 1995). So no moment lacks light where another one's media are empty. Each moment's lights have its own
+// expectation, but for what media::DepthProfile misses between the places that it looks at.
 #pragma once
 
 #include <span>

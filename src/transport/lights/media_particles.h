@@ -56,7 +56,7 @@ void repeat_emitters(std::vector<LightRecord>& lights, std::size_t least, float 
 enum class Flight : std::uint8_t { arrived, scattered, ended };
 
 // `Carried`: what one particle carries. With `using Shared`, what all of them share:
-//   Carried(const Shared&, std::uint64_t path, Rng&)
+//   Carried(const Shared&, Rng&)
 //   multiply(Rgb), weight(): by what its light is multiplied so far; of several worlds the greatest
 //   note(id, factor, batch): of a light of that id and weight() · factor, what else is to be known
 //   scatters(medium): whether it may, somewhere
@@ -87,7 +87,7 @@ class ParticlesInMedia {
         emission.weight * static_cast<float>(1 / (start.probability * static_cast<double>(paths_)));
     if (!(max_component(flux) > 0) || !is_finite(flux)) return;
     Particle p{.ray = {emission.origin, normalize(emission.direction)},
-               .carried = Carried(shared_, path, rng),
+               .carried = Carried(shared_, rng),
                .level = max_component(flux),
                .id = hash_ids(path, stage_),
                .rng = rng,

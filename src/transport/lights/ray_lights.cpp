@@ -13,7 +13,7 @@ class CarriedInOneWorld {
     const world::World& only;
     const world::World& world() const { return only; }
   };
-  CarriedInOneWorld(const Shared& shared, std::uint64_t, Rng& rng)
+  CarriedInOneWorld(const Shared& shared, Rng& rng)
       : world_(&shared.only), hero_(static_cast<int>(rng.next_below(3))) {}
 
   void multiply(Rgb value) { path_.multiply(value); }
