@@ -45,12 +45,16 @@ class CarriedInManyWorlds {
     const bool collides = t < way;
     if (!collides && !std::isfinite(way)) return Flight::ended;
     const Vec3f place = origin + forward * t;
-    for (std::size_t k = 0; k < worlds_.size(); ++k) {
-      const media::Medium& medium = of(*worlds_[k], number);
-      if (k != guide_ || k > 0) profile_.follow(medium, origin, forward, way);
+    const auto carry = [&](std::size_t k) {  // along the profile of that world
       const Rgb through = media::exp_minus(profile_.depth(collides ? t : way));
-      moments_[k].value *= collides ? through * medium.at(place).scattering : through;
+      moments_[k].value *= collides ? through * of(*worlds_[k], number).at(place).scattering : through;
       moments_[k].density *= collides ? through * profile_.extinction(t) : through;
+    };
+    carry(guide_);
+    for (std::size_t k = 0; k < worlds_.size(); ++k) {
+      if (k == guide_) continue;
+      profile_.follow(of(*worlds_[k], number), origin, forward, way);
+      carry(k);
     }
     if (!even_out()) return Flight::ended;
     if (!collides) return Flight::arrived;
