@@ -49,7 +49,7 @@ void within_memory_and_threads(const RenderSettings& settings, const std::functi
 void say_panes(const world::WorldInfo& info, const Sinks& sinks) {
   if (info.panes + info.bending_glass == 0) return;
   sinks.say("smooth glass: light passes " + std::to_string(info.panes) +
-            " shapes straight, as flat panes, and is bent by " + std::to_string(info.bending_glass) +
+            " shapes straight, as thin panes, and is bent by " + std::to_string(info.bending_glass) +
             (info.bending_glass > 0 ? ", whose light is left to paths (--rest)" : ""));
 }
 

@@ -7,11 +7,13 @@ namespace lumirank {
 
 Distribution1D::Distribution1D(std::span<const float> weights) : cdf_(weights.size() + 1, 0.0) {
   for (std::size_t i = 0; i < weights.size(); ++i) cdf_[i + 1] = cdf_[i] + static_cast<double>(weights[i]);
+  total_ = cdf_.back();
   if (weights.size() < kGuidedFrom) return;
-  guide_.resize(weights.size() + 1);
+  const std::size_t parts = weights.size() / kBinsAtOnce;
+  guide_.resize(parts + 1);
   std::size_t i = 0;
   for (std::size_t k = 0; k < guide_.size(); ++k) {
-    const double target = total() * static_cast<double>(k) / static_cast<double>(weights.size());
+    const double target = total() * static_cast<double>(k) / static_cast<double>(parts);
     while (i + 1 < weights.size() && cdf_[i + 1] <= target) ++i;
     guide_[k] = static_cast<std::uint32_t>(i);
   }
@@ -22,10 +24,14 @@ Distribution1D::Sample Distribution1D::sample(float u) const {
   // The last bin whose left edge is not above the target; bins of zero width are stepped over.
   auto first = cdf_.begin() + 1, last = cdf_.end() - 1;
   if (!guide_.empty()) {
-    // One entry more at either end: the product may round across one.
-    const auto k = static_cast<std::size_t>(static_cast<double>(u) * static_cast<double>(size()));
-    first += guide_[std::min(k > 0 ? k - 1 : 0, size())];
-    last = cdf_.begin() + 1 + guide_[std::min(k + 2, size())];
+    const std::size_t parts = guide_.size() - 1;
+    const auto k =
+        std::min(static_cast<std::size_t>(static_cast<double>(u) * static_cast<double>(parts)), parts - 1);
+    first += guide_[k];
+    last = cdf_.begin() + 1 + guide_[k + 1];
+    // The product may round across a part.
+    if (k > 0 && target < *(first - 1)) first = cdf_.begin() + 1 + guide_[k - 1];
+    if (k + 2 <= parts && last != cdf_.end() - 1 && target >= *last) last = cdf_.begin() + 1 + guide_[k + 2];
   }
   const auto it = std::upper_bound(first, last, target);
   std::size_t i = static_cast<std::size_t>(it - cdf_.begin()) - 1;

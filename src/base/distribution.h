@@ -22,13 +22,15 @@ class Distribution1D {
   };
   Sample sample(float u) const;
   float pmf(std::size_t i) const;
-  double total() const { return cdf_.empty() ? 0.0 : cdf_.back(); }
+  double total() const { return total_; }
   std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
 
  private:
-  static constexpr std::size_t kGuidedFrom = 32;
+  // So few entries that those of all rows of an environment map stay in the cache, which its sums do not.
+  static constexpr std::size_t kBinsAtOnce = 8, kGuidedFrom = 32;
   std::vector<double> cdf_;  // size + 1 entries, not normalized
-  // The bin at every 1/size of the sum, between which a search begins; empty for few bins.
+  double total_ = 0;  // of all, beside what is looked up first: the last sum lies far from those that are
+  // The bins at equal parts of the sum, between which a search begins; empty for few bins.
   std::vector<std::uint32_t> guide_;
 };
 

@@ -1,11 +1,19 @@
 #include "emitters/light_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "emitters/light_split.h"
 
 namespace lumirank::emitters {
+namespace {
+
+// Of so many lights the parts of a node are built side by side.
+constexpr std::size_t kManyLights = 1 << 14;
+
+}  // namespace
 
 // What the children of a node are drawn by.
 struct LightTree::Weights {
@@ -27,12 +35,18 @@ LightTree::LightTree(std::span<const LightBound> lights) : leaf_of_(lights.size(
   for (std::size_t k = 0; k < lights.size(); ++k)
     if (lights[k].intensity > 0)
       items.push_back({lights[k], lights[k].bounds.center(), static_cast<std::uint32_t>(k)});
-  if (!items.empty()) build(items, kNone);
+  if (items.empty()) return;
+  build(items, nodes_);
+  for (std::uint32_t slot = 0; slot < nodes_.size() * kWidth; ++slot) {
+    const std::uint32_t child = nodes_[slot / kWidth].child[slot % kWidth];
+    if (child == kNothing) continue;
+    (child & kLeaf ? leaf_of_[child & ~kLeaf] : nodes_[child].parent) = slot;
+  }
 }
 
-std::uint32_t LightTree::build(std::span<LightItem> items, std::uint32_t parent) {
-  const auto at = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back().parent = parent;
+void LightTree::build(std::span<LightItem> items, std::vector<Node>& nodes) {
+  const std::size_t at = nodes.size();
+  nodes.emplace_back();
   // The largest part is divided until there are as many as a node can hold, or all of them fit into one node
   // each; of those, the ones that the free slots have room for are leaves of this node.
   std::span<LightItem> parts[kWidth] = {items};
@@ -51,19 +65,31 @@ std::uint32_t LightTree::build(std::span<LightItem> items, std::uint32_t parent)
     parts[k] = part.first(1);
     for (std::size_t m = 1; m < part.size(); ++m) parts[count++] = part.subspan(m, 1);
   }
+  std::array<std::vector<Node>, kWidth> apart;
+  const bool many = items.size() >= kManyLights;
+  parallel_for(static_cast<std::size_t>(many ? count : 0), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (parts[k].size() > 1) build(parts[k], apart[k]);
+  });
   for (int k = 0; k < count; ++k) {
-    nodes_[at].extents.set(k, join_all(parts[k]));
-    const std::uint32_t slot = at * kWidth + static_cast<std::uint32_t>(k);
-    std::uint32_t child;
+    nodes[at].extents.set(k, join_all(parts[k]));
     if (parts[k].size() == 1) {
-      child = kLeaf | parts[k][0].light;
-      leaf_of_[parts[k][0].light] = slot;
-    } else {
-      child = build(parts[k], slot);
+      nodes[at].child[k] = kLeaf | parts[k][0].light;
+      continue;
     }
-    nodes_[at].child[k] = child;
+    const auto first = static_cast<std::uint32_t>(nodes.size());
+    nodes[at].child[k] = first;
+    if (!many) {
+      build(parts[k], nodes);
+      continue;
+    }
+    // Its own nodes count from 0.
+    for (Node& node : apart[static_cast<std::size_t>(k)]) {
+      for (std::uint32_t& child : node.child)
+        if (child != kNothing && !(child & kLeaf)) child += first;
+      nodes.push_back(node);
+    }
   }
-  return at;
 }
 
 bool LightTree::reaches(const LitPoint& at) const { return !empty() && Weights(nodes_[0], at).sum > 0; }

@@ -37,13 +37,15 @@ class LightTree {
  private:
   static constexpr int kWidth = LightExtents::kCount;
   static constexpr std::uint32_t kLeaf = 0x80000000u, kNone = 0xffffffffu;
+  static constexpr std::uint32_t kNothing = 0;  // the topmost node is no child
   struct Node {
     LightExtents extents;
-    std::uint32_t child[kWidth] = {};  // a node, or kLeaf | light
+    std::uint32_t child[kWidth] = {};  // a node, kLeaf | light, or kNothing
     std::uint32_t parent = kNone;      // its node times kWidth, plus the slot
   };
   struct Weights;
-  std::uint32_t build(std::span<LightItem> items, std::uint32_t parent);
+  // Appends the nodes over `items`, the topmost first, without their parents.
+  static void build(std::span<LightItem> items, std::vector<Node>& nodes);
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> leaf_of_;  // per light, its node times kWidth, plus the slot

@@ -8,7 +8,7 @@
 namespace lumirank::pipeline {
 
 image::Image MixedPicture::sent() const {
-  return passes_.with_mirrored(by_paths() ? with_share(paths_->sent()) : passes_.sent(rest_));
+  return passes_.with_noisy_emission(by_paths() ? with_share(paths_->sent()) : passes_.sent(rest_));
 }
 image::Image MixedPicture::with_all_noise() const {
   return has_own_emission() ? with_share_and_emission(paths_->picture()) : sent();
@@ -17,7 +17,7 @@ image::Image MixedPicture::to_denoise() const {
   if (!by_paths()) return with_all_noise();
   image::Image clean = without_fireflies(paths_->film(), has_own_emission());
   return has_own_emission() ? with_share_and_emission(std::move(clean))
-                            : passes_.with_mirrored(with_share(std::move(clean)));
+                            : passes_.with_noisy_emission(with_share(std::move(clean)));
 }
 image::Image MixedPicture::complete(image::Image image) const {
   return has_own_emission() ? image : passes_.with_emission(std::move(image));
@@ -33,12 +33,12 @@ SampledNoise MixedPicture::sampled_noise() const {
       with_share_of_noise(has_own_emission() ? paths_->difference() : paths_->sent_difference());
   noise.deviation = paths_->film().sent_deviation();
   for (float& deviation : noise.deviation) deviation *= 1 - share_;
-  noise.mirrored = !own_emission_;
+  noise.of_emission = !own_emission_;
   return noise;
 }
 image::Image MixedPicture::difference() const {
   SampledNoise noise = sampled_noise();
-  return noise.mirrored ? passes_.with_mirrored_as_noise(std::move(noise.difference)) : noise.difference;
+  return noise.of_emission ? passes_.with_emission_as_noise(std::move(noise.difference)) : noise.difference;
 }
 double MixedPicture::noise(ErrorMetric metric) const {
   if (metric == ErrorMetric::l1) {
@@ -59,7 +59,7 @@ image::Image MixedPicture::with_share(image::Image of_paths) const {
 }
 image::Image MixedPicture::with_share_and_emission(image::Image of_paths) const {
   if (share_ == 0) return of_paths;
-  return shared(std::move(of_paths), passes_.with_emission(passes_.with_mirrored(passes_.sent(rest_))));
+  return shared(std::move(of_paths), passes_.with_emission(passes_.with_noisy_emission(passes_.sent(rest_))));
 }
 image::Image MixedPicture::with_share_of_noise(image::Image of_paths) const {
   if (share_ == 0) return of_paths;

@@ -49,20 +49,20 @@ NoisyPicture PassPicture::with_noise(const RestTracing& rest) const {
 }
 
 // Empty where nothing was traced.
-image::Image PassPicture::mirrored(const image::Image& sent) const {
+image::Image PassPicture::noisy_emission(const image::Image& sent) const {
   if (!denoising_.traced() || !parts_.emission) return {};
-  return denoising_.mirrored(sent);
+  return denoising_.noisy_emission(sent);
 }
 
-image::Image PassPicture::with_mirrored(image::Image sent) const {
-  const image::Image shown = mirrored(sent);
+image::Image PassPicture::with_noisy_emission(image::Image sent) const {
+  const image::Image shown = noisy_emission(sent);
   if (!shown.pixels.empty()) image::add_to(sent, shown);
   return sent;
 }
 
-image::Image PassPicture::with_mirrored_as_noise(image::Image difference) const {
+image::Image PassPicture::with_emission_as_noise(image::Image difference) const {
   if (!denoising_.traced() || !parts_.emission) return difference;
-  return denoising_.with_mirrored_as_noise(std::move(difference));
+  return denoising_.with_emission_as_noise(std::move(difference));
 }
 
 image::Image PassPicture::with_emission(image::Image sent) const {

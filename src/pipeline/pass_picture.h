@@ -49,16 +49,16 @@ class PassPicture {
   // What surfaces send by passes and `rest`; and its noise, with two passes at least.
   image::Image sent(const RestTracing& rest) const;
   NoisyPicture with_noise(const RestTracing& rest) const;
-  // With what mirrors and glass show of lamps; with what is seen of them straight.
-  image::Image with_mirrored(image::Image sent) const;
+  // With the emission that few film samples find, by mirrors or out of focus; with what is seen sharply.
+  image::Image with_noisy_emission(image::Image sent) const;
   image::Image with_emission(image::Image sent) const;
   // The same of the size that was asked for, where that is larger: without noise.
   image::Image enlarged_with_emission(image::Image sent) const;
-  // A difference of halves that has with_mirrored()'s part for noise.
-  image::Image with_mirrored_as_noise(image::Image difference) const;
+  // A difference of halves that has with_noisy_emission()'s part for noise.
+  image::Image with_emission_as_noise(image::Image difference) const;
 
  private:
-  image::Image mirrored(const image::Image& sent) const;
+  image::Image noisy_emission(const image::Image& sent) const;
   image::Image emission_of_pass(int wanted, const FilmInput& film) const;
 
   const RenderSettings& settings_;

@@ -173,13 +173,13 @@ class PathRun {
                                                             film_->sent_difference(), paths(), paths()) > 1));
     const Timer timer;
     image::Image traced = without_fireflies(*film_, options_.emission && !apart);
-    if (apart) image::add_to(traced, denoising_.mirrored(traced));
+    if (apart) image::add_to(traced, denoising_.noisy_emission(traced));
     const image::Image difference = paths() < PictureDenoising::kPathsForNoise ? image::Image{}
                                     : apart                                    ? film_->sent_difference()
                                                                                : film_->halves_difference();
     if (task_.features && denoising_.traced())
       *task_.features = {denoising_.features(),
-                         apart ? denoising_.with_mirrored_as_noise(difference) : difference};
+                         apart ? denoising_.with_emission_as_noise(difference) : difference};
     if (const auto denoised = denoising_.denoised(traced, {difference, film_->sent_deviation(), apart})) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       image::Image whole = denoising_.enlarged(denoised->picture);

@@ -156,21 +156,21 @@ std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& pi
       denoise::without_overshoot(picture, denoiser_->denoise(picture, &albedo, &normal, features_are_));
   if (noise.difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
   image::Image difference = denoise::with_outliers(noise.difference, picture, clean, noise.deviation);
-  if (noise.mirrored) difference = with_mirrored_as_noise(std::move(difference));
+  if (noise.of_emission) difference = with_emission_as_noise(std::move(difference));
   return denoise::shrink(picture, clean, difference);
 }
 
-image::Image PictureDenoising::mirrored(const image::Image& sent) const {
+image::Image PictureDenoising::noisy_emission(const image::Image& sent) const {
   double sum = 0;
   for (const Rgb& p : sent.pixels) sum += static_cast<double>(luminance(p));
   const double usual = sum / static_cast<double>(sent.pixels.size());
-  return without_fireflies(denoise::reduced(features().mirrored, sent.width, sent.height),
+  return without_fireflies(denoise::reduced(features().noisy_emission, sent.width, sent.height),
                            static_cast<float>(usual));
 }
 
-image::Image PictureDenoising::with_mirrored_as_noise(image::Image difference) const {
+image::Image PictureDenoising::with_emission_as_noise(image::Image difference) const {
   if (difference.pixels.empty()) return difference;
-  const image::Image shown = denoise::reduced(features().mirrored, difference.width, difference.height);
+  const image::Image shown = denoise::reduced(features().noisy_emission, difference.width, difference.height);
   for (std::size_t p = 0; p < shown.pixels.size(); ++p)
     for (int c = 0; c < 3; ++c)
       difference.pixels[p][c] = std::abs(difference.pixels[p][c]) + 2 * shown.pixels[p][c];

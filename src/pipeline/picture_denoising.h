@@ -26,7 +26,7 @@ image::Image without_fireflies(const pathtrace::PathFilm& film, bool with_emissi
 struct SampledNoise {
   image::Image difference;       // of halves of what was sampled: twice the noise; empty: not known
   std::vector<float> deviation;  // of each pixel's luminance, as its own paths say; empty: not known
-  bool mirrored = false;         // all that mirrors show of lamps is noise as well
+  bool of_emission = false;      // all emission that few film samples find is noise as well
 };
 
 class PictureDenoising {
@@ -67,12 +67,12 @@ class PictureDenoising {
   bool trace_another(int number, const Sinks& sinks);
   // Of all pixels; needs trace_first().
   PixelFeatures features() const { return features_->means(); }
-  // What mirrors and glass show of lamps, of the size of `sent`, what surfaces send: without outliers of what
-  // is usual in there. Needs trace_first().
-  image::Image mirrored(const image::Image& sent) const;
+  // What mirrors, glass and lenses out of focus show of lamps, of the size of `sent`, what surfaces send:
+  // without outliers of what is usual in there. Needs trace_first().
+  image::Image noisy_emission(const image::Image& sent) const;
   // A difference of halves (twice the noise) of a picture to which that was added, all of it for noise: that
   // of few film samples is not known. Nothing of nothing.
-  image::Image with_mirrored_as_noise(image::Image difference) const;
+  image::Image with_emission_as_noise(image::Image difference) const;
   bool traced() const { return features_.has_value(); }
 
   // Without its noise; nothing if there is no denoiser, or nothing that it could do. What is no noise

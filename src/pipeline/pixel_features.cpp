@@ -17,6 +17,8 @@ namespace {
 constexpr float kColorEdge = 0.04f, kNormalSpread = 0.02f, kNormalEdge = 0.15f;
 // The same of emission that glares: albedos cannot differ by as much.
 constexpr float kGlare = 1;
+// Of a lamp out of focus few samples see anything: so many pixels around one that did are taken for its disc.
+constexpr std::size_t kOfDisc = 4;
 // Emission that a screen shows as white.
 constexpr float kWhite = 4;
 // How many times what stands beside it, or what is usual, a pixel may be.
@@ -90,7 +92,7 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
         }
         if (weights > 0) normal = normal * (1 / weights);
         const Rgb color = albedo + min_of(sample.straight, Rgb(kWhite));
-        sums.emission += sample.straight, sums.mirrored += sample.emission - sample.straight;
+        sums.emission += sample.emission, sums.straight += sample.straight, sums.sharp += sample.sharp;
         sums.albedo += albedo;
         sums.min_color = min_of(sums.min_color, color), sums.max_color = max_of(sums.max_color, color);
         sums.normal = sums.normal + normal, sums.normals += length(normal);
@@ -122,7 +124,7 @@ bool PixelFeatureTracing::trace_another(std::uint64_t number, const Sinks& sinks
 void PixelFeatureTracing::mark_edges() {
   const auto color = [](const Sums& s) {
     const float part = 1 / static_cast<float>(s.count);
-    return s.albedo * part + min_of(s.emission * part, Rgb(kWhite));
+    return s.albedo * part + min_of(s.straight * part, Rgb(kWhite));
   };
   const auto mark = [&](std::size_t p, float colors, bool of_normals) {
     const Edge edge = colors > kGlare                     ? Edge::glaring
@@ -144,6 +146,10 @@ void PixelFeatureTracing::mark_edges() {
       mark(p, distance(s.max_color, s.min_color), length(s.normal) < (1 - kNormalSpread) * s.normals);
       if (x + 1 < width) compare(p, p + 1);
       if (y + 1 < height) compare(p, p + width);
+      if (luminance(s.straight - s.sharp) <= kGlare * static_cast<float>(s.count)) continue;
+      for (std::size_t v = y - std::min(y, kOfDisc); v < std::min(height, y + kOfDisc + 1); ++v)
+        for (std::size_t u = x - std::min(x, kOfDisc); u < std::min(width, x + kOfDisc + 1); ++u)
+          edges_[v * width + u] = Edge::glaring;
     }
 }
 
@@ -155,20 +161,22 @@ double PixelFeatureTracing::part_from(Edge least) const {
 
 PixelFeatures PixelFeatureTracing::means() const {
   PixelFeatures features;
-  for (image::Image* image : {&features.emission, &features.mirrored, &features.albedo, &features.normal})
+  for (image::Image* image :
+       {&features.emission, &features.noisy_emission, &features.albedo, &features.normal})
     *image = image::Image(view_.width, view_.height);
   for (std::size_t p = 0; p < sums_.size(); ++p) {
     const Sums& s = sums_[p];
     const float part = 1 / static_cast<float>(std::max(1, s.count));
-    features.emission.pixels[p] = s.emission * part, features.mirrored.pixels[p] = s.mirrored * part;
+    features.emission.pixels[p] = s.sharp * part,
+    features.noisy_emission.pixels[p] = (s.emission - s.sharp) * part;
     features.albedo.pixels[p] = s.albedo * part;
     features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * part;
   }
   return features;
 }
 
-image::Image without_fireflies(image::Image mirrored, float usual) {
-  const image::Image all = mirrored;
+image::Image without_fireflies(image::Image emission, float usual) {
+  const image::Image all = emission;
   for (int y = 0; y < all.height; ++y)
     for (int x = 0; x < all.width; ++x) {
       const float here = luminance(all.at(x, y));
@@ -178,9 +186,9 @@ image::Image without_fireflies(image::Image mirrored, float usual) {
         for (int u = std::max(0, x - 1); u < std::min(all.width, x + 2); ++u)
           if (u != x || v != y) beside = std::max(beside, luminance(all.at(u, v)));
       const float limit = std::max(kOverNeighbors * beside, kOverUsual * usual);
-      if (here > limit) mirrored.at(x, y) = all.at(x, y) * (limit / here);
+      if (here > limit) emission.at(x, y) = all.at(x, y) * (limit / here);
     }
-  return mirrored;
+  return emission;
 }
 
 }  // namespace lumirank::pipeline

@@ -14,9 +14,9 @@ namespace lumirank::pipeline {
 
 // Means over pixels (a box filter). All of the size of the view.
 struct PixelFeatures {
-  image::Image emission;  // what is seen straight
-  // Emission by mirrors and glass: a few samples may find a lamp's glint, so this is noisy.
-  image::Image mirrored;
+  image::Image emission;  // what is seen straight and in focus
+  // Emission by mirrors and glass, and out of focus: a few samples may find a small lamp, so this is noisy.
+  image::Image noisy_emission;
   // Σ weight · albedo, Σ weight · normal / Σ weight of the surfaces at the ends of the eye's specular chains:
   // what a mirror shows counts, not the mirror. Black where there is none.
   image::Image albedo, normal;
@@ -48,8 +48,8 @@ class PixelFeatureTracing {
 
  private:
   struct Sums {
-    Rgb emission{0}, mirrored{0}, albedo{0}, min_color{kInfinity},
-        max_color{0};  // the latter two: albedo + emission
+    Rgb emission{0}, straight{0}, sharp{0};             // all, and parts of it
+    Rgb albedo{0}, min_color{kInfinity}, max_color{0};  // the latter two: albedo + straight emission
     Vec3f normal{0, 0, 0};
     float normals = 0;  // Σ |normal| of the samples: longer than their sum where they differ
     int count = 0;
@@ -69,6 +69,6 @@ class PixelFeatureTracing {
 
 // Without single pixels that are far brighter than all around them and than `usual`, a luminance: what one
 // film sample in many finds by way of a mirror is a firefly, which no denoiser takes out of one pixel.
-image::Image without_fireflies(image::Image mirrored, float usual);
+image::Image without_fireflies(image::Image emission, float usual);
 
 }  // namespace lumirank::pipeline

@@ -119,11 +119,11 @@ void add_traced_rows(std::vector<Row>& t) {
               "paths that columns cannot carry: leave out, add by path tracing (noisy), or add "
               "where a pilot finds that they bring more than 0.5 % of the light, or shapes that are seen"},
              At<&S::traced, &TracedLightSettings::rest>{}));
-  t.push_back(
-      choice({"panes", "", "straight", "", "",
-              "flat, thin sheets of smooth glass: let light go straight on, also towards what it lights, "
-              "or bend it"},
-             At<&S::traced, &TracedLightSettings::panes>{}));
+  t.push_back(choice(
+      {"panes", "", "straight", "", "",
+       "thin sheets of smooth glass, flat or bent: let light go straight on, also towards what it lights, "
+       "or bend it"},
+      At<&S::traced, &TracedLightSettings::panes>{}));
   t.push_back(number({"compensate", "", "0", "0 … 1048576", "paths per pixel",
                       "give back what clamping took from indirect light by path tracing (unbiased, "
                       "noisy); 0: do not"},

@@ -16,8 +16,8 @@ namespace sd = scenedesc;
 
 namespace {
 
-// All shining spheres together get about this many triangles: each of their triangles is kept in world space.
-constexpr double kShiningSphereTriangles = 1 << 20;
+// All shining spheres together get about this many triangles, beyond those of the coarsest: each is a light.
+constexpr double kShiningSphereTriangles = 1 << 18;
 
 geometry::TriangleMesh convert(sd::MeshData data, std::vector<std::string>& left_out,
                                std::vector<sd::MeshData::Mended>& mended, Vec3d& origin) {

@@ -8,6 +8,9 @@
 #include <numeric>
 #include <vector>
 
+#include "base/frame.h"
+#include "geometry/ray_scene.h"
+
 namespace lumirank::world {
 namespace {
 
@@ -16,7 +19,11 @@ constexpr float kFaces = 0.75f, kUnlike = 1.1f;
 constexpr float kParallel = 0.9998f;  // cosine
 constexpr float kThin = 0.1f;         // times the root of a face's area
 // More triangles are no window.
-constexpr std::size_t kMaxTriangles = 1 << 16;
+constexpr std::size_t kMaxTriangles = 1 << 17;
+// Walls: how parallel (cosine, of some 4 degrees) the faces are between which a ray goes that far from the
+// normal (sine), and from how many triangles at most it is asked.
+constexpr float kParallelOfWall = 0.9975f, kAslant = 0.5f;
+constexpr std::size_t kAskedTriangles = 4096;
 
 using Triangles = std::vector<std::uint32_t>;
 
@@ -83,6 +90,83 @@ bool is_plate(const PlacedMesh& mesh, const Triangles& triangles) {
          high - low <= kThin * std::sqrt(smaller);
 }
 
+// Of one mesh in the world, with the normals by which light is bent.
+class Walls {
+ public:
+  Walls(const geometry::TriangleMesh& mesh, const Transform& to_world)
+      : rays_({placed(mesh, to_world)}, {{}}, {}), mesh_(rays_.mesh(0)) {}
+
+  // Whether most of all its faces are those of thin walls.
+  bool are_all() const {
+    const std::size_t count = mesh_.triangle_count(), step = (count + kAskedTriangles - 1) / kAskedTriangles;
+    float all = 0, thin = 0, whole = 0;
+    for (std::size_t t = 0; t < count; ++t) whole += length(mesh_.area_vector(t));
+    const float most = kThin * std::sqrt(0.5f * whole);  // the two faces share the area
+    for (std::size_t t = 0; t < count; t += step) {
+      const float area = length(mesh_.area_vector(t));
+      all += area;
+      if (area > 0) thin += area * part_that_is_thin(static_cast<std::uint32_t>(t), most);
+    }
+    return all > 0 && thin >= kFaces * all;
+  }
+
+ private:
+  static geometry::TriangleMesh placed(geometry::TriangleMesh mesh, const Transform& to_world) {
+    const Transform inverse = to_world.inverse().value_or(Transform{});
+    for (Vec3f& p : mesh.positions) p = to_world.point(p);
+    for (Vec3f& n : mesh.normals) n = Transform::normal(inverse, n);
+    // Faces look outward by the order of their corners, which a mirror turns round.
+    if (to_world.determinant3() < 0)
+      for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+        std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+    return mesh;
+  }
+
+  Vec3f normal(std::uint32_t t, Vec2f at) const {
+    if (!mesh_.normals.empty()) {
+      const auto of = [&](std::size_t c) { return mesh_.normals[mesh_.indices[3 * t + c]]; };
+      const Vec3f smooth = of(0) * (1 - at.x - at.y) + of(1) * at.x + of(2) * at.y;
+      if (length_squared(smooth) > 0) return normalize(smooth);
+    }
+    return normalize(mesh_.area_vector(t));
+  }
+
+  // Of its middle and three places near its corners.
+  float part_that_is_thin(std::uint32_t t, float most) const {
+    constexpr float kThird = 1.0f / 3, kNear = 0.9f, kFar = 0.05f;
+    int thin = 0;
+    for (const Vec2f at : {Vec2f{kThird, kThird}, Vec2f{kFar, kFar}, Vec2f{kNear, kFar}, Vec2f{kFar, kNear}})
+      thin += is_thin_at(t, at, most) ? 1 : 0;
+    return 0.25f * static_cast<float>(thin);
+  }
+
+  bool is_thin_at(std::uint32_t t, Vec2f at, float most) const {
+    const Vec3f n = normal(t, at);
+    const auto corner = [&](std::size_t c) { return mesh_.positions[mesh_.indices[3 * t + c]]; };
+    const Vec3f place = corner(0) * (1 - at.x - at.y) + corner(1) * at.x + corner(2) * at.y;
+    const Frame frame = Frame::from_normal(n);
+    const float along = std::sqrt(1 - kAslant * kAslant);
+    for (const Vec3f beside : {frame.s, -frame.s, frame.t, -frame.t}) {
+      const geometry::Ray ray{place, beside * kAslant - n * along, 1e-3f * most, 2 * most};
+      const auto hit = rays_.intersect(ray);
+      if (!hit || along * hit->t > most || dot(normal(hit->triangle, hit->barycentric), n) > -kParallelOfWall)
+        return false;
+    }
+    return true;
+  }
+
+  geometry::RayScene rays_;
+  const geometry::TriangleMesh& mesh_;
+};
+
+geometry::TriangleMesh part_of(const geometry::TriangleMesh& mesh, const Triangles& triangles) {
+  geometry::TriangleMesh part;
+  part.positions = mesh.positions, part.normals = mesh.normals;
+  for (const std::uint32_t t : triangles)
+    part.indices.insert(part.indices.end(), mesh.indices.begin() + 3 * t, mesh.indices.begin() + 3 * t + 3);
+  return part;
+}
+
 }  // namespace
 
 bool is_made_of_panes(const geometry::TriangleMesh& mesh, const Transform& to_world) {
@@ -90,11 +174,13 @@ bool is_made_of_panes(const geometry::TriangleMesh& mesh, const Transform& to_wo
   if (count == 0 || count > kMaxTriangles) return false;
   const PlacedMesh placed{mesh, to_world};
   const std::vector<Triangles> parts = parts_of(mesh);
-  if (std::all_of(parts.begin(), parts.end(), [&](const Triangles& t) { return is_plate(placed, t); }))
-    return true;
+  const auto is_thin = [&](const Triangles& t) {
+    return is_plate(placed, t) || Walls(parts.size() == 1 ? mesh : part_of(mesh, t), to_world).are_all();
+  };
+  if (std::all_of(parts.begin(), parts.end(), is_thin)) return true;
   Triangles all(count);
   std::iota(all.begin(), all.end(), 0u);
-  return is_plate(placed, all);
+  return is_plate(placed, all) || (parts.size() > 1 && Walls(mesh, to_world).are_all());
 }
 
 }  // namespace lumirank::world

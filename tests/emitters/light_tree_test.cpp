@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "base/frame.h"
+#include "base/parallel.h"
 #include "base/random.h"
 #include "base/warp.h"
 #include "support/statistics.h"
@@ -49,18 +52,42 @@ LitPoint lit_point(Rng& rng) {
   return {position, random_direction(rng), rng.next_below(4) == 0};
 }
 
+// The larger tree has parts that are built side by side.
 TEST(LightTree, WhatIsDrawnHasTheStatedProbability) {
-  const auto all = lights(300, 1);
-  const LightTree tree(all);
-  for (std::uint64_t i = 0; i < 2000; ++i) {
-    Rng rng(2, Stage::test, i);
-    const LitPoint at = lit_point(rng);
-    const auto pick = tree.sample(at, rng.next_double());
-    if (!(pick.pmf > 0)) continue;
-    EXPECT_GT(all[pick.light].intensity, 0);
-    // The same factors, multiplied from the other end in double precision.
-    EXPECT_FLOAT_EQ(pick.pmf, tree.pmf(at, pick.light));
+  for (const std::size_t count : {300, 40000}) {
+    const auto all = lights(count, 1);
+    const LightTree tree(all);
+    std::vector<char> drawn(count);
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+      Rng rng(2, Stage::test, i);
+      const LitPoint at = lit_point(rng);
+      const auto pick = tree.sample(at, rng.next_double());
+      if (!(pick.pmf > 0)) continue;
+      drawn[pick.light] = 1;
+      EXPECT_GT(all[pick.light].intensity, 0);
+      // The same factors, multiplied from the other end in double precision.
+      EXPECT_FLOAT_EQ(pick.pmf, tree.pmf(at, pick.light));
+    }
+    EXPECT_GT(std::count(drawn.begin(), drawn.end(), 1), count == 300 ? 100 : 700);
   }
+}
+
+TEST(LightTree, IsTheSameOnAnyNumberOfThreads) {
+  const auto all = lights(40000, 7);
+  const auto picks = [&](int threads) {
+    std::vector<std::pair<std::uint32_t, float>> found;
+    with_threads(threads, [&] {
+      const LightTree tree(all);
+      for (std::uint64_t i = 0; i < 2000; ++i) {
+        Rng rng(8, Stage::test, i);
+        const LitPoint at = lit_point(rng);
+        const auto pick = tree.sample(at, rng.next_double());
+        found.emplace_back(pick.light, pick.pmf);
+      }
+    });
+    return found;
+  };
+  EXPECT_EQ(picks(1), picks(3));
 }
 
 TEST(LightTree, ProbabilitiesAddUpToWhatIsDrawn) {

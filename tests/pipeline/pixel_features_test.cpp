@@ -58,7 +58,7 @@ TEST(PixelFeatures, EdgesHaveTheirCoverageAndTheRestFewSamples) {
       const float lit = x < kFilmSide / 2 ? 0.0f : (x == kFilmSide / 2 ? 0.7f : 1.0f);
       EXPECT_NEAR(features.emission.at(x, y).g, 2 * lit, lit > 0 && lit < 1 ? 0.05f : 1e-4f) << x << ' ' << y;
       EXPECT_NEAR(features.albedo.at(x, y).g, 0.4f * (1 - lit), lit > 0 && lit < 1 ? 0.02f : 1e-4f);
-      EXPECT_EQ(features.mirrored.at(x, y), Rgb(0));
+      EXPECT_EQ(features.noisy_emission.at(x, y), Rgb(0));
       EXPECT_NEAR(features.normal.at(x, y).b, 1 - lit,
                   lit > 0 && lit < 1 ? 0.05f : 1e-4f);  // a black lamp receives nothing
     }
@@ -90,6 +90,43 @@ TEST(PixelFeatures, EdgesOfWhatGlaresAreKnownFromOthers) {
   EXPECT_EQ(glaring(Rgb(0.8f)), 0);
 }
 
+// A small lamp far behind the focus is a disc, of which few samples see anything: it comes by the part that
+// is denoised, and all pixels around those that found it are looked at again. In focus one sample sees what
+// all do.
+TEST(PixelFeatures, ALampOutOfFocusIsNoisyEmission) {
+  const auto seen = [](float focus, double& glaring) {
+    auto desc = square_in_view();
+    auto& sensor = desc.sensors[0];
+    sensor.kind = sd::SensorKind::thinlens;
+    sensor.aperture_radius = 0.2f, sensor.focus_distance = focus;
+    const int lamp = add_shape(desc, sd::DiskDesc{}, Transform::scale(0.15, 0.15, 1));
+    use(desc, lamp, add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0)}}));
+    shine(desc, lamp, sd::ColorInput{Rgb(100)});
+    const world::World world = build(desc);
+    const View view = view_of(desc);
+    PixelFeatureTracing tracing(world, view, make_recipe({}, view));
+    EXPECT_TRUE(tracing.trace_all(4, {}));
+    glaring = tracing.glaring();
+    EXPECT_TRUE(tracing.trace_glaring(1020, {}));
+    return tracing.means();
+  };
+  const auto total = [](const image::Image& image) {
+    double sum = 0;
+    for (const Rgb& p : image.pixels) sum += static_cast<double>(p.g);
+    return sum;
+  };
+  // What the lamp covers of the film, wherever it is sharp: 100 times its area over a pixel's.
+  const double light = 100 * 3.14159265 * square(0.15 * kFilmSide / 2);
+  double glaring = 0;
+  const PixelFeatures sharp = seen(10, glaring), blurred = seen(5, glaring);
+  EXPECT_NEAR(total(sharp.emission), light, 0.03 * light);
+  EXPECT_EQ(total(sharp.noisy_emission), 0);
+  EXPECT_EQ(total(blurred.emission), 0);
+  EXPECT_NEAR(total(blurred.noisy_emission), light, 0.05 * light);
+  // Its circle of confusion has a radius of 0.2, of 1 that are half of the film.
+  EXPECT_GT(glaring, 3.14159265 * square(0.3) / 4);
+}
+
 // A mirror shows a lamp behind the camera, and beside it a red wall.
 TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   auto desc = square_in_view();
@@ -101,7 +138,7 @@ TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   shine(desc, wall, sd::ColorInput{Rgb(1)});
   const PixelFeatures features = traced(desc);
   for (const Rgb& p : features.emission.pixels) EXPECT_EQ(p, Rgb(0));
-  for (const Rgb& p : features.mirrored.pixels) EXPECT_GT(p.g, 0.5f);
+  for (const Rgb& p : features.noisy_emission.pixels) EXPECT_GT(p.g, 0.5f);
   for (const Rgb& p : features.albedo.pixels) {
     EXPECT_GT(p.r, 0.25f);
     EXPECT_EQ(p.g, 0);

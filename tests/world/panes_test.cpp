@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/tessellate.h"
 #include "world/light_sampler.h"
 #include "world/scene_maker.h"
 
@@ -62,6 +63,43 @@ TEST(Panes, NeedTwoFacesThatLookApart) {
   EXPECT_FALSE(is_made_of_panes(quad(), {}));
   EXPECT_FALSE(is_made_of_panes(both(quad(), quad(), away * Transform::scale(0.5, 0.5, 1)), {}));
   EXPECT_FALSE(is_made_of_panes({}, {}));
+}
+
+// The same face from behind.
+geometry::TriangleMesh inside_out(geometry::TriangleMesh mesh) {
+  for (Vec3f& n : mesh.normals) n = -n;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+  return mesh;
+}
+
+// A hollow ball whose wall is so thick.
+geometry::TriangleMesh globe(float wall, int rings = 24) {
+  geometry::TriangleMesh mesh = geometry::make_sphere({0, 0, 0}, 1, rings);
+  const geometry::TriangleMesh inner = inside_out(geometry::make_sphere({0, 0, 0}, 1 - wall, rings));
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), inner.positions.begin(), inner.positions.end());
+  mesh.normals.insert(mesh.normals.end(), inner.normals.begin(), inner.normals.end());
+  for (const std::uint32_t i : inner.indices) mesh.indices.push_back(first + i);
+  mesh.uvs.clear();
+  return mesh;
+}
+
+TEST(Panes, MayBeBentAsThinWalls) {
+  const Transform placed = Transform::rotate(1, 2, 3, 40) * Transform::scale(0.2, 0.2, 0.3);
+  EXPECT_TRUE(is_made_of_panes(globe(0.02f), placed));
+  EXPECT_TRUE(is_made_of_panes(globe(0.02f), placed * Transform::scale(-1, 1, 1)));
+  EXPECT_FALSE(is_made_of_panes(globe(0.4f), placed));  // bends light that goes aslant
+  EXPECT_FALSE(is_made_of_panes(geometry::make_sphere({0, 0, 0}, 1, 24), placed));
+  EXPECT_FALSE(is_made_of_panes(inside_out(globe(0.02f)), placed));
+  // Each facet of a wall is a pane, but those of a cut stone are not.
+  geometry::TriangleMesh wall = globe(0.02f, 6), stone = geometry::make_sphere({0, 0, 0}, 1, 6);
+  wall.normals.clear(), stone.normals.clear();
+  EXPECT_TRUE(is_made_of_panes(wall, placed));
+  EXPECT_FALSE(is_made_of_panes(stone, placed));
+  // A shallow lens is no sheet of even thickness.
+  const Transform flat = Transform::scale(1, 1, 0.3);
+  EXPECT_FALSE(is_made_of_panes(geometry::make_sphere({0, 0, 0}, 1, 24), flat));
 }
 
 World build_straight(const sd::SceneDesc& desc) {

@@ -186,10 +186,13 @@ Rgb EyeChain::cross_medium(Segment& s, float length, std::uint32_t sample, Rng& 
 Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t sample, Rng& rng,
                      std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first) {
   Rgb emission{0};
-  straight_emission_ = Rgb(0);
-  const auto add_emission = [&](const Segment& s, Rgb value) {
+  straight_emission_.clear();
+  const auto add_emission = [&](const Segment& s, const world::SurfaceHit* at, Rgb value) {
+    if (is_black(value)) return;
     emission += s.weight * value;
-    if (s.depth == 1) straight_emission_ += s.weight * value;
+    if (s.depth > 1) return;
+    const float distance = at ? s.length + at->hit.t * lumirank::length(s.ray.direction) : kInfinity;
+    straight_emission_.push_back({s.weight * value, distance});
   };
   pending_.clear();
   segments_.clear();
@@ -206,7 +209,7 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
     }
     if (!hit) {
       if (!(seen && world_.hides_emitters()))
-        add_emission(s, world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
+        add_emission(s, nullptr, world_.background(s.ray.direction) + world_.sun_disc(s.ray.direction));
       continue;
     }
     if (s.medium >= 0 && settings_.segments == 0) {
@@ -214,7 +217,7 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
       if (is_black(s.weight)) continue;
     }
     const Vec3f wo = -s.ray.direction;
-    if (hit->emitter >= 0) add_emission(s, world_.emitted(*hit, wo));
+    if (hit->emitter >= 0) add_emission(s, &*hit, world_.emitted(*hit, wo));
     Closure closure = world_.materials().closure(world_.materials().seen(hit->material), hit->point, wo);
     scatter::face_viewer(closure, wo);
     if (from_eye && first) {

@@ -38,6 +38,11 @@ struct FirstHit {
   float distance = kInfinity;
 };
 
+struct SeenEmission {
+  Rgb radiance;
+  float distance = kInfinity;  // from the eye
+};
+
 struct ChainSettings {
   int max_depth = -1;
   int max_splits = 3;
@@ -66,7 +71,7 @@ class EyeChain {
   void follow_from(const EyeVertex& from, const geometry::Ray& ray, Rng& rng, std::vector<EyeVertex>& out,
                    scatter::ClosurePool& pool);
   // Of the emission that the last follow() returned what no mirror or glass has turned aside.
-  Rgb straight_emission() const { return straight_emission_; }
+  const std::vector<SeenEmission>& straight_emission() const { return straight_emission_; }
   // What the last follow() passed of participating media.
   const std::vector<EyeSegment>& segments() const { return segments_; }
 
@@ -92,7 +97,7 @@ class EyeChain {
   ChainSettings settings_;
   std::vector<Segment> pending_;  // reused between samples
   std::vector<EyeSegment> segments_;
-  Rgb straight_emission_;
+  std::vector<SeenEmission> straight_emission_;
   std::vector<float> cuts_;
   media::DepthProfile profile_;
 };

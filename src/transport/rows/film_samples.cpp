@@ -36,16 +36,26 @@ FilmSample FilmEye::trace(int k, FirstHit* first, scatter::ClosurePool* pool) {
   sample.emission =
       chain_.follow(camera_.ray(sample.film, place.lens), hash_ids(pixel, Stage::film_samples, number), 0,
                     rng, vertices_, pool, first);
-  sample.straight = chain_.straight_emission();
+  for (const SeenEmission& seen : chain_.straight_emission()) {
+    sample.straight += seen.radiance;
+    if (in_focus(seen.distance)) sample.sharp += seen.radiance;
+  }
   return sample;
 }
 
+float FilmEye::apart(const geometry::Ray& ray, float distance) const {
+  return length(ray.origin - center_.origin + (ray.direction - center_.direction) * distance);
+}
+
 float FilmEye::footprint(const EyeVertex& vertex) const {
-  const auto apart = [&](const geometry::Ray& ray) {
-    return length(ray.origin + ray.direction * vertex.distance -
-                  (center_.origin + center_.direction * vertex.distance));
-  };
-  return apart(beside_) + 2 * apart(off_axis_);
+  return apart(beside_, vertex.distance) + 2 * apart(off_axis_, vertex.distance);
+}
+
+bool FilmEye::in_focus(float distance) const {
+  // Farther away than anything in the scene both grow alike.
+  constexpr float kVeryFar = 1e6f;
+  const float d = std::min(distance, kVeryFar);
+  return 2 * apart(off_axis_, d) <= apart(beside_, d);
 }
 
 }  // namespace lumirank::transport

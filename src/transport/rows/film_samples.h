@@ -21,6 +21,7 @@ struct FilmSample {
   Vec2f film;  // on the whole film, in pixels
   Rgb emission;
   Rgb straight;  // the part of it that comes by no mirror and no bending glass
+  Rgb sharp;     // the part of that which is in focus: one sample sees what all of its pixel see
 };
 
 // Traces the film samples of one pixel after the other. World and camera must outlive it; one for each
@@ -42,6 +43,8 @@ class FilmEye {
   // Width of a pixel where a vertex lies, out of focus that of the circle of confusion. An estimate: mirrors
   // are taken for flat.
   float footprint(const EyeVertex& vertex) const;
+  // Whether a pixel is wider than the circle of confusion at that distance along an eye ray.
+  bool in_focus(float distance) const;
   // Key of random numbers of the pixel.
   std::uint64_t pixel_id() const { return id_; }
 
@@ -53,6 +56,8 @@ class FilmEye {
   PixelPattern pattern_;
   Vec2i pixel_{0, 0};
   std::uint64_t id_ = 0;
+  // How far from center_ another ray has come.
+  float apart(const geometry::Ray& ray, float distance) const;
   geometry::Ray center_, beside_, off_axis_;
   std::vector<EyeVertex> vertices_;
 };
