@@ -19,14 +19,29 @@ Distribution1D::Distribution1D(std::span<const float> weights) : cdf_(weights.si
   }
 }
 
+// Of the guide, that `u` lies in.
+std::size_t Distribution1D::part(float u) const {
+  const std::size_t parts = guide_.size() - 1;
+  return std::min(static_cast<std::size_t>(static_cast<double>(u) * static_cast<double>(parts)), parts - 1);
+}
+
+void Distribution1D::fetch(float u) const {
+  if (!guide_.empty()) __builtin_prefetch(&guide_[part(u)]);
+}
+
+std::size_t Distribution1D::fetch_bins(float u) const {
+  if (guide_.empty()) return 0;
+  const std::size_t k = part(u), bin = (guide_[k] + guide_[k + 1]) / 2;
+  __builtin_prefetch(&cdf_[bin]);
+  return bin;
+}
+
 Distribution1D::Sample Distribution1D::sample(float u) const {
   const double target = static_cast<double>(u) * total();
   // The last bin whose left edge is not above the target; bins of zero width are stepped over.
   auto first = cdf_.begin() + 1, last = cdf_.end() - 1;
   if (!guide_.empty()) {
-    const std::size_t parts = guide_.size() - 1;
-    const auto k =
-        std::min(static_cast<std::size_t>(static_cast<double>(u) * static_cast<double>(parts)), parts - 1);
+    const std::size_t parts = guide_.size() - 1, k = part(u);
     first += guide_[k];
     last = cdf_.begin() + 1 + guide_[k + 1];
     // The product may round across a part.

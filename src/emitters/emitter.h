@@ -74,6 +74,10 @@ struct EnvironmentEmitter {
     float pdf;
   };
   Sample sample(Vec2f u) const;  // pdf in solid angle
+  // What sample(u) reads of a large map lies anywhere in memory. Asks for the first of it; and when that has
+  // come, for the rest. `row` is what the first call gave.
+  std::size_t fetch(Vec2f u) const;
+  void fetch_texels(Vec2f u, std::size_t row) const;
   float pdf(Vec3f direction) const;
 };
 

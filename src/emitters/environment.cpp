@@ -150,6 +150,22 @@ EnvironmentEmitter::Sample EnvironmentEmitter::sample(Vec2f u) const {
   return s;
 }
 
+std::size_t EnvironmentEmitter::fetch(Vec2f u) const {
+  if (!(rows.total() > 0)) return 0;
+  const std::size_t row = rows.sample(u.y).index;
+  columns[row].fetch(u.x);
+  return row;
+}
+
+void EnvironmentEmitter::fetch_texels(Vec2f u, std::size_t row) const {
+  if (!(rows.total() > 0)) return;
+  const Rgb* texel = &radiance[row * static_cast<std::size_t>(width) + columns[row].fetch_bins(u.x)];
+  __builtin_prefetch(texel);
+  // Interpolated with one of its neighbors, which most of the time is the one above or below.
+  if (row + 1 < columns.size()) __builtin_prefetch(texel + width);
+  if (row > 0) __builtin_prefetch(texel - width);
+}
+
 float EnvironmentEmitter::pdf(Vec3f direction) const {
   if (!(rows.total() > 0)) return 0;
   const Vec2f p = map_position(to_world.to_local(direction), width, height);

@@ -1,5 +1,7 @@
 #include "pathtrace/path_tracer.h"
 
+#include <optional>
+
 #include "pathtrace/found_emission.h"
 #include "pathtrace/light_tracer.h"
 #include "scatter/closure.h"
@@ -33,7 +35,9 @@ struct PathTracer::Walk {
   int medium = -1;              // that colors the glass which the path is in; -1: none
   float eta_scale = 1;          // undoes refraction's scaling for Russian roulette
   bool from_eye = false;        // the eye sees the vertex that comes next
-  float light_paths = 0;        // light_path_ratio() of a first vertex that the eye sees; 0: of none
+  // Of the light that will be drawn at the next vertex that is no mirror and no smooth glass.
+  std::optional<world::LightSampler::Ahead> light{};
+  float light_paths = 0;  // light_path_ratio() of a first vertex that the eye sees; 0: of none
   Radiance sum{};
 
   void add(Rgb value) {
@@ -83,6 +87,7 @@ void PathTracer::finish(Walk& walk) const {
   // A bound on straight passes, so that coincident null surfaces cannot hold a path for ever.
   constexpr int kMaxSteps = 4096;
   for (int step = 0; step < kMaxSteps; ++step) {
+    if (!walk.light) walk.light = lights_.fetch(walk.random.next_2d());
     const bool seen = walk.segments == 1;  // by nothing but the eye
     const auto hit = seen ? world_.intersect_from_eye(walk.ray) : world_.intersect(walk.ray);
     if (!hit && seen && world_.hides_emitters()) break;
@@ -91,6 +96,7 @@ void PathTracer::finish(Walk& walk) const {
       walk.throughput *= world_.left_by_glass(walk.medium, hit->hit.t * length(walk.ray.direction));
       if (is_black(walk.throughput)) break;
     }
+    if (hit) lights_.fetch_rest(*walk.light);
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit) break;
     if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
@@ -127,8 +133,8 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
 void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
                                double u_light, float connection) const {
   const Vec3f wo = -walk.ray.direction;
-  const auto s =
-      lights_.sample(world::lit_point(hit.point.position, closure, wo), u_light, walk.random.next_2d());
+  const auto s = lights_.sample(world::lit_point(hit.point.position, closure, wo), u_light, walk.light->u);
+  walk.light.reset();
   if (!(s.pdf > 0)) return;
   Rgb f = scatter::eval(closure, wo, s.direct.direction);
   if (connection > 0) f *= missing(connection, closure, wo, s.direct.direction);

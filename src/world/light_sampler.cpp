@@ -94,6 +94,8 @@ LightSampler::LightSampler(const World& world) : world_(world) {
       leaves_.push_back({id, 0}), bounds.push_back(bound_of(*profile));
       near_power += power;
     } else {
+      const auto* map = std::get_if<emitters::EnvironmentEmitter>(&all[e].kind);
+      if (map && map->width > 1) map_ = map;
       far_.push_back(id), far_weights.push_back(power);
       far_power += power;
     }

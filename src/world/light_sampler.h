@@ -31,6 +31,17 @@ class LightSampler {
   };
   Sample sample(const emitters::LitPoint& at, double u_light, Vec2f u) const;
 
+  // Numbers `u` of a sample to come. What an environment map will be asked for by them may be fetched while
+  // something else is done: fetch() some time before sample(), and fetch_rest() between them.
+  struct Ahead {
+    Vec2f u;
+    std::size_t row = 0;
+  };
+  Ahead fetch(Vec2f u) const { return {u, map_ ? map_->fetch(u) : 0}; }
+  void fetch_rest(const Ahead& ahead) const {
+    if (map_) map_->fetch_texels(ahead.u, ahead.row);
+  }
+
   // Solid-angle density of sample() for a surface hit at `distance` along unit `direction` from `at`.
   float pdf_hit(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction, float distance) const;
   // The same for a ray that leaves the scene.
@@ -71,6 +82,7 @@ class LightSampler {
   std::vector<std::uint32_t> first_leaf_;  // per emitter; its triangles follow each other
   emitters::LightTree tree_;
   std::vector<int> far_;
+  const emitters::EnvironmentEmitter* map_ = nullptr;  // of more than one texel
   Distribution1D far_choice_;
   float near_share_ = 1;
   Bounds3f place_bounds_;  // of near lights

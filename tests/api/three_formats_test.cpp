@@ -161,7 +161,7 @@ std::vector<float> picture(const std::string& file, std::uint64_t seed) {
   settings.view.max_depth = 5;
   settings.seed = seed;
   ReferenceSettings how;
-  how.spp = 64;
+  how.spp = 96;
   return reference(Scene::load(file, strict), settings, how).picture.planes.at(0).rgb;
 }
 
