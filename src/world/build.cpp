@@ -186,14 +186,22 @@ class World::Builder {
     w_.info.memory_bytes += media.memory_bytes();
   }
 
+  // Asked once of all placements that differ in size and place alone.
+  bool is_pane(const geometry::Placement& placement) {
+    const geometry::TriangleMesh& mesh = geometry_.meshes[placement.mesh];
+    if (!keeps_angles(placement.to_world)) return is_made_of_panes(mesh, placement.to_world);
+    const auto known = panes_.find(placement.mesh);
+    if (known != panes_.end()) return known->second;
+    return panes_[placement.mesh] = is_made_of_panes(mesh, placement.to_world);
+  }
+
   // Glass of a pane becomes a sheet of which each of the two faces does its part.
   void straighten(std::size_t i) {
     const auto& placement = geometry_.placements[i];
     auto& materials = w_.materials.materials;
     const auto* glass = std::get_if<scatter::DielectricMaterial>(&materials[index_of(material_of_[i])]);
     if (!glass || !glass->smooth) return;
-    if ((knows_media() && geometry_.placed[i].shape->media.divides) ||
-        !is_made_of_panes(geometry_.meshes[placement.mesh], placement.to_world)) {
+    if ((knows_media() && geometry_.placed[i].shape->media.divides) || !is_pane(placement)) {
       ++w_.info.bending_glass;
       return;
     }
@@ -320,8 +328,9 @@ class World::Builder {
   TextureBuilder textures_;
   MaterialBuilder materials_;
   EmitterNames names_;
-  std::map<int, int> face_of_pane_;   // materials of panes: what stands for them
-  std::map<std::string, int> named_;  // placements by the ids of their shapes
+  std::map<int, int> face_of_pane_;      // materials of panes: what stands for them
+  std::map<std::uint32_t, bool> panes_;  // by meshes
+  std::map<std::string, int> named_;     // placements by the ids of their shapes
   std::vector<Placed> placed_;
   Geometry geometry_;
   std::vector<geometry::SharedMesh> meshes_;
