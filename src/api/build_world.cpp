@@ -11,7 +11,7 @@ std::string warning_text(const scenedesc::Warning& warning) {
   text += warning.what;
   if (!warning.used_instead.empty())
     text += "; used instead: " + warning.used_instead;
-  else if (!warning.harmless)
+  else if (!warning.harmless && warning.what.find("left out") == std::string::npos)
     text += "; left out";
   return text;
 }

@@ -188,6 +188,19 @@ TEST(OddInput, TrianglesWithoutAreaAreANote) {
   ASSERT_EQ(info.at("notes").size(), 1u) << json.out;
 }
 
+TEST(OddInput, AMeshOfNothingIsLeftOutAndThatIsSaidOnce) {
+  const TemporaryFolder folder;
+  { std::ofstream(folder / "point.obj") << "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"; }
+  const std::string shape = "<shape type=\"obj\"><string name=\"filename\" value=\"point.obj\"/></shape>";
+  const std::string rest = "<shape type=\"sphere\"/><emitter type=\"constant\"/>";
+  const Outcome outcome = lumirank(render_small(
+      write_scene(folder, point_camera("0,0,3", "0,0,0", 8, 40) + shape + rest), folder / "a.exr"));
+  EXPECT_SUCCESS(outcome);
+  const std::size_t at = outcome.err.find("left out");
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("left out", at + 1), std::string::npos) << outcome.err;
+}
+
 TEST(OddInput, AViewOfNothingShowsTheBackground) {
   const TemporaryFolder folder;
   const std::string file = folder / "a.exr";
