@@ -7,7 +7,7 @@
 With --errors and without --times, no times are asked for.
 
 References are path traced once and kept in OUT/references; a picture's true error is against that reference, so it holds the
-reference's own (also in the table). OUT/table.md has a line per scene and time; OUT/NAME-Ts.png are the pictures, to be looked at.
+reference's own (also in the table). OUT/table.md has a line for each; OUT/NAME--time-T.png and OUT/NAME--error-E.png are the pictures, to be looked at.
 The seconds are the report's seconds.total, everything from the loaded scene on, without writing files.
 """
 import argparse
@@ -42,11 +42,10 @@ def reference(args, scene):
 
 
 def measure(args, scene, option, asked):
-    base = args.out / f"{name_of(scene)}{option}-{asked:g}"
-    image, report = base.with_suffix(".exr"), base.with_suffix(".json")
-    done = run([args.program, "render", scene, "-o", image, "-o", base.with_suffix(".png"), "--tonemap", "agx", option, asked, "--size", args.size,
+    image, report, shown, said = (args.out / f"{name_of(scene)}{option}-{asked:g}{kind}" for kind in (".exr", ".json", ".png", ".txt"))
+    done = run([args.program, "render", scene, "-o", image, "-o", shown, "--tonemap", "agx", option, asked, "--size", args.size,
                 "--report", report, *shlex.split(args.options)])
-    base.with_suffix(".txt").write_text(done.stderr)
+    said.write_text(done.stderr)
     if done.returncode:
         return None
     return image, json.loads(report.read_text())
