@@ -63,6 +63,21 @@ TEST(Distribution1D, DrawsTheBinThatHoldsTheNumber) {
   }
 }
 
+// Parts of the sum that begin with a bin, up to rounding.
+TEST(Distribution1D, DrawsTheRightBinAlsoWhereProductsRound) {
+  for (const float weight : {0.1f, 0.3f, 0.7f, 1.1f, 1e-7f, 3e5f})
+    for (const std::size_t count : {768, 1536, 1920, 3072}) {
+      const std::vector<float> even(count, weight);
+      const Distribution1D d(even);
+      for (std::size_t k = 0; k < count; ++k) {
+        const float u = static_cast<float>(static_cast<double>(k) / static_cast<double>(count));
+        for (const float near : {u, std::nextafter(u, 1.0f)})
+          ASSERT_EQ(d.sample(near).index, bin_of(even, d.total(), near))
+              << weight << ' ' << count << ' ' << k;
+      }
+    }
+}
+
 TEST(Distribution1D, TellsAheadAboutWhichBinIsDrawn) {
   const std::vector<float> even(4096, 1.0f);
   const Distribution1D d(even);
