@@ -177,7 +177,7 @@ geometry::TriangleMesh MeshStore::make(Source& source, Vec3d& origin) const {
     if (!source.shines) return geometry::make_sphere(center, sphere->radius);
     // A sphere of r rings has about 4r² triangles.
     const double each = kShiningSphereTriangles / static_cast<double>(shining_spheres_);
-    const int rings = std::clamp(static_cast<int>(std::sqrt(each / 4)), 8, 64);
+    const int rings = std::clamp(static_cast<int>(std::sqrt(each / 4)), 12, 64);
     geometry::TriangleMesh mesh = geometry::make_sphere(center, sphere->radius, rings);
     restore_area(mesh, center, sphere->radius);
     return mesh;
