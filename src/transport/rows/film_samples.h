@@ -43,12 +43,15 @@ class FilmEye {
   // Width of a pixel where a vertex lies, out of focus that of the circle of confusion. An estimate: mirrors
   // are taken for flat.
   float footprint(const EyeVertex& vertex) const;
-  // Whether a pixel is wider than the circle of confusion at that distance along an eye ray.
-  bool in_focus(float distance) const;
   // Key of random numbers of the pixel.
   std::uint64_t pixel_id() const { return id_; }
 
  private:
+  // How far from center_ another ray has come.
+  float apart(const geometry::Ray& ray, float distance) const;
+  // Whether a pixel is wider than the circle of confusion at that distance along an eye ray.
+  bool in_focus(float distance) const;
+
   const world::World& world_;
   const world::Camera& camera_;
   ReceiverSettings settings_;
@@ -56,8 +59,6 @@ class FilmEye {
   PixelPattern pattern_;
   Vec2i pixel_{0, 0};
   std::uint64_t id_ = 0;
-  // How far from center_ another ray has come.
-  float apart(const geometry::Ray& ray, float distance) const;
   geometry::Ray center_, beside_, off_axis_;
   std::vector<EyeVertex> vertices_;
 };
