@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes seven more scenes that nobody tuned for (Mitsuba 3 XML, PLY and PNG): fine detail, and what is blurred on purpose.
+"""Writes eight more scenes that nobody tuned for (Mitsuba 3 XML, PLY and PNG): fine detail, and what is blurred on purpose.
 
-    bench/strangers/make_fine_things.py OUT [bokeh candles white fence prints jewels pendants]
+    bench/strangers/make_fine_things.py OUT [bokeh candles white fence prints jewels pendants crystal]
 
   bokeh     a figure in focus before a hundred small lamps that are not
   candles   a table laid for six by the light of twelve flames, four of them in glasses
@@ -10,6 +10,7 @@
   prints    floor and table whose gloss is a picture: its detail is in reflections alone
   jewels    cut stones of high index, gold and pearls on dark cloth under three small lamps
   pendants  lamps within shades of thin cloth, through which most of their light comes
+  crystal   a ball and a block of glass and a ring of brass in the sun, on a wide table
 """
 import math
 import pathlib
@@ -205,5 +206,16 @@ def pendants(out):
     return scene, out / "pendants"
 
 
+def crystal(out):
+    scene = Scene("Glass and brass in the sun.", ((0.3, 1.6, 2.6), (0, 0.25, 0)), 40, (640, 360))
+    scene.material("table", diffuse((0.5, 0.42, 0.33))).box((-20, -0.1, -20), (20, 0, 20), 0.01)
+    glass = scene.single("glass", GLASS)
+    glass.sphere((-0.55, 0.301, 0), 0.3, 96)
+    glass.box((-0.05, 0.001, -0.35), (0.25, 0.7, -0.05), 0.02)
+    scene.material("brass", brushed("Au", 0.05, 0.05)).revolve((0.75, 0.001, 0.1), [(0.3, 0), (0.3, 0.3), (0.29, 0.3), (0.29, 0)], 128, 2)
+    scene.emitters.append('<emitter type="sunsky"><transform name="to_world"><rotate x="1" angle="-90"/></transform><vector name="sun_direction" x="-0.7" y="0.35" z="0.8"/></emitter>')
+    return scene, out / "crystal"
+
+
 if __name__ == "__main__":
-    write_scenes(__doc__, {"bokeh": bokeh, "candles": candles, "white": white, "fence": fence, "prints": prints, "jewels": jewels, "pendants": pendants})
+    write_scenes(__doc__, {"bokeh": bokeh, "candles": candles, "white": white, "fence": fence, "prints": prints, "jewels": jewels, "pendants": pendants, "crystal": crystal})

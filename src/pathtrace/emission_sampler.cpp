@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <variant>
+
+#include "base/warp.h"
 
 namespace lumirank::pathtrace {
 namespace {
@@ -30,10 +33,28 @@ struct PointPdf {
   }
 };
 
+// W/sr.
+struct PointIntensity {
+  Vec3f direction;
+  Rgb operator()(const PointEmitter& e) const { return e.intensity; }
+  Rgb operator()(const SpotEmitter& e) const { return e.intensity_towards(direction); }
+  Rgb operator()(const ProfileEmitter& e) const { return e.intensity_towards(direction); }
+  template <typename Other>
+  Rgb operator()(const Other&) const {
+    return Rgb(0);
+  }
+};
+
+template <typename Kind>
+bool is_far(const Kind& kind) {
+  return std::holds_alternative<DirectionalEmitter>(kind) || std::holds_alternative<EnvironmentEmitter>(kind);
+}
+
 }  // namespace
 
-EmissionSampler::EmissionSampler(const world::World& world)
+EmissionSampler::EmissionSampler(const world::World& world, LightTargets targets)
     : world_(world),
+      targets_(std::move(targets)),
       choice_(world),
       probabilities_(world.emitters().size()),
       disc_(kPi * square(world.bounds().radius())) {
@@ -61,39 +82,87 @@ std::optional<EmissionSampler::Start> EmissionSampler::sample(SampleStream& rand
     start.ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
   start.delta =
       !std::holds_alternative<AreaEmitter>(kind) && !std::holds_alternative<EnvironmentEmitter>(kind);
+  if (!targets_.empty()) {
+    const float u = random.next_float();
+    aim(start, emission, u, random.next_2d());
+    if (!(max_component(start.flux) > 0)) return std::nullopt;
+  }
   return start;
 }
 
-float EmissionSampler::density(int emitter, std::uint32_t triangle, Vec3f direction) const {
+// Sends a start that the emitter chose to a target instead, by chance; its flux is that of the mixture.
+void EmissionSampler::aim(Start& start, const emitters::Emission& emission, float u, Vec2f where) const {
+  const auto target = targets_.draw(u);
+  const auto e = static_cast<std::size_t>(start.emitter);
+  const auto& kind = world_.emitters()[e].kind;
+  if (is_far(kind)) {
+    const Vec3f w = start.ray.direction;
+    if (target) {
+      const Vec3f to = targets_.place_on(*target, w, where) - world_.bounds().center();
+      start.ray.origin = world_.bounds().center() + to - w * (dot(to, w) + world_.bounds().radius());
+    }
+    start.flux *= 1 / (disc_ * targets_.per_area(start.ray.origin, w, 1 / disc_));
+    return;
+  }
+  const bool area = std::holds_alternative<AreaEmitter>(kind);
+  const Vec3f place = emission.origin, normal = area ? emission.normal : Vec3f{0, 0, 0};
+  if (target)
+    if (const auto w = targets_.direction_to(*target, place, normal, where)) start.ray.direction = *w;
+  const Vec3f w = start.ray.direction;
+  if (area) {
+    const float own = pdf_cosine_hemisphere(dot(normal, w));
+    start.ray.origin = world::World::offset_origin(place, normal, w);
+    start.flux *= own / targets_.per_solid_angle(place, normal, w, own);
+    return;
+  }
+  start.flux =
+      std::visit(PointIntensity{w}, kind) /
+      (probabilities_[e] * targets_.per_solid_angle(place, normal, w, std::visit(PointPdf{w}, kind)));
+}
+
+float EmissionSampler::across(Vec3f place, Vec3f direction) const {
+  const float own = 1 / disc_;
+  return targets_.empty() ? own : targets_.per_area(place, direction, own);
+}
+
+float EmissionSampler::density(int emitter, std::uint32_t triangle, Vec3f place, Vec3f direction) const {
   const auto e = static_cast<std::size_t>(emitter);
   const auto& kind = world_.emitters()[e].kind;
   if (const auto* area = std::get_if<AreaEmitter>(&kind)) {
     if (triangle >= area->triangles.size()) return 0;
-    const float size = area->triangles[triangle].area;
-    return size > 0 ? probabilities_[e] * area->by_power.pmf(triangle) / (size * kPi) : 0.0f;
+    const auto& t = area->triangles[triangle];
+    if (!(t.area > 0)) return 0;
+    float leaving = kInvPi;  // per projected solid angle
+    const float cosine = -dot(t.normal, direction);
+    if (!targets_.empty() && cosine > 0)
+      leaving = targets_.per_solid_angle(place, t.normal, -direction, cosine * kInvPi) / cosine;
+    return probabilities_[e] * area->by_power.pmf(triangle) / t.area * leaving;
   }
   if (const auto* environment = std::get_if<EnvironmentEmitter>(&kind))
-    return probabilities_[e] * environment->pdf(direction) / disc_;
+    return probabilities_[e] * environment->pdf(direction) * across(place, direction);
   if (const auto* sun = std::get_if<DirectionalEmitter>(&kind))
-    return sun->cos_half_angle < 1 ? probabilities_[e] * disc_pdf(*sun) / disc_ : 0.0f;
+    return sun->cos_half_angle < 1 ? probabilities_[e] * disc_pdf(*sun) * across(place, direction) : 0.0f;
   return 0;
 }
 
-float EmissionSampler::delta_density(int emitter, Vec3f direction, float distance) const {
+float EmissionSampler::delta_density(int emitter, Vec3f place, Vec3f direction, float distance) const {
   const auto e = static_cast<std::size_t>(emitter);
   const auto& kind = world_.emitters()[e].kind;
-  if (std::holds_alternative<DirectionalEmitter>(kind)) return probabilities_[e] / disc_;
-  return probabilities_[e] * std::visit(PointPdf{-direction}, kind) / square(distance);
+  if (std::holds_alternative<DirectionalEmitter>(kind)) return probabilities_[e] * across(place, direction);
+  float leaving = std::visit(PointPdf{-direction}, kind);
+  if (!targets_.empty())
+    leaving = targets_.per_solid_angle(place + direction * distance, {0, 0, 0}, -direction, leaving);
+  return probabilities_[e] * leaving / square(distance);
 }
 
-Rgb EmissionSampler::background_left(Vec3f direction, float ratio) const {
+Rgb EmissionSampler::background_left(const geometry::Ray& ray, float ratio) const {
   Rgb sum{0};
+  const Vec3f w = ray.direction;
   if (const int e = world_.environment(); e >= 0)
-    sum += world_.background(direction) / (1 + ratio * density(e, 0, direction));
+    sum += world_.background(w) / (1 + ratio * density(e, 0, ray.origin, w));
   for (const int e : suns_) {
     const auto& kind = world_.emitters()[static_cast<std::size_t>(e)].kind;
-    sum +=
-        std::get<DirectionalEmitter>(kind).radiance_from(direction) / (1 + ratio * density(e, 0, direction));
+    sum += std::get<DirectionalEmitter>(kind).radiance_from(w) / (1 + ratio * density(e, 0, ray.origin, w));
   }
   return sum;
 }

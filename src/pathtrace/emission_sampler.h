@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/sample_stream.h"
+#include "pathtrace/light_targets.h"
 #include "world/emitter_choice.h"
 #include "world/light_sampler.h"
 #include "world/world.h"
@@ -17,7 +18,7 @@ namespace lumirank::pathtrace {
 
 class EmissionSampler {
  public:
-  explicit EmissionSampler(const world::World& world);
+  explicit EmissionSampler(const world::World& world, LightTargets targets = {});
 
   bool empty() const { return choice_.empty(); }
 
@@ -31,16 +32,21 @@ class EmissionSampler {
   std::optional<Start> sample(SampleStream& random) const;
 
   // Of starts at an area emitter's triangle, or far away, that go against `direction`, with which eye paths
-  // arrive there. 0 for emitters that these cannot meet.
-  float density(int emitter, std::uint32_t triangle, Vec3f direction) const;
-  // Of emitters that light sampling alone can find: starts per area across the light, where it arrives from
-  // `direction` after `distance`.
-  float delta_density(int emitter, Vec3f direction, float distance) const;
-  // Radiance from a direction in which an eye path leaves the scene, each emitter's over 1 + ratio·density.
-  Rgb background_left(Vec3f direction, float ratio) const;
+  // arrive there; `place`: on the triangle, or anywhere on the way. 0 for emitters that these cannot meet.
+  float density(int emitter, std::uint32_t triangle, Vec3f place, Vec3f direction) const;
+  // Of emitters that light sampling alone can find: starts per area across the light, where it arrives at a
+  // place from `direction` after `distance`.
+  float delta_density(int emitter, Vec3f place, Vec3f direction, float distance) const;
+  // Radiance along a ray on which an eye path leaves the scene, each emitter's over 1 + ratio·density.
+  Rgb background_left(const geometry::Ray& ray, float ratio) const;
 
  private:
+  void aim(Start& start, const emitters::Emission& emission, float u, Vec2f where) const;
+  // Densities of starts of what shines from all around: per area across `direction`, in which light goes.
+  float across(Vec3f place, Vec3f direction) const;
+
   const world::World& world_;
+  LightTargets targets_;
   world::EmitterChoice choice_;
   std::vector<float> probabilities_;  // of all emitters
   std::vector<int> suns_;             // with a disc

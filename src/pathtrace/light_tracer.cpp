@@ -59,7 +59,8 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat
     const bool first = flight.segments == 1;
     if (first) flight.traveled += hit->hit.t;
     const bool wanted = settings_.paths != Paths::rest || flight.after_specular;
-    if (!first && wanted && closure.has_non_delta()) show(flight, *hit, random.next_2d(), splats);
+    if (!first && wanted && closure.has_non_delta())
+      rays += show(flight, *hit, random.next_2d(), splats) ? 1 : 0;
     const auto next =
         scatter::sample(closure, incoming, random.next_float(), random.next_2d(), Lobes::all, true);
     if (!next) break;
@@ -88,7 +89,7 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat
 bool LightTracer::leave_first(const EmissionSampler::Start& start, const world::SurfaceHit& hit,
                               const scatter::BsdfSample& next, Flight& flight) const {
   const Vec3f wi = -flight.ray.direction, wo = next.wi;
-  flight.density = starts_.density(start.emitter, start.triangle, wi);
+  flight.density = starts_.density(start.emitter, start.triangle, flight.ray.origin, wi);
   // Nothing is sampled from a specular vertex: eye paths that come from there find it, or nobody does.
   if (next.delta) return flight.density > 0;
   const Closure closure = world_.materials().closure(hit.material, hit.point, wo);
@@ -98,7 +99,7 @@ bool LightTracer::leave_first(const EmissionSampler::Start& start, const world::
   const auto at = world::lit_point(hit.point.position, closure, wo);
   if (start.delta) {
     const float choice = lights.probability_of_delta(at, start.emitter);
-    flight.density = starts_.delta_density(start.emitter, wi, flight.traveled) * by_bsdf;
+    flight.density = starts_.delta_density(start.emitter, hit.point.position, wi, flight.traveled) * by_bsdf;
     if (choice > 0) flight.density /= choice;
     return choice > 0 && flight.density > 0;
   }

@@ -115,14 +115,15 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
                                              walk.ray.direction, walk.traveled);
   if (is_black(found.radiance)) return;
   const auto shared = [&](float share) {
-    const float density = hit ? starts_->density(hit->emitter, hit->hit.triangle, walk.ray.direction)
-                              : starts_->density(world_.environment(), 0, walk.ray.direction);
+    const float density =
+        hit ? starts_->density(hit->emitter, hit->hit.triangle, hit->point.position, walk.ray.direction)
+            : starts_->density(world_.environment(), 0, walk.ray.origin, walk.ray.direction);
     return share / (1 + walk.light_paths * share * density);
   };
   float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + found.light_pdf);
   if (walk.light_paths > 0 && (walk.specular || walk.non_delta_vertices > 1)) {
     if (!hit && walk.specular) {
-      walk.add(walk.throughput * starts_->background_left(walk.ray.direction, walk.light_paths));
+      walk.add(walk.throughput * starts_->background_left(walk.ray, walk.light_paths));
       return;
     }
     weight = shared(weight);
@@ -145,19 +146,20 @@ void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const C
   if (is_black(visible)) return;
   const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
   float share = 1;
-  if (walk.light_paths > 0) share = share_of_sampled(walk, s, closure, bsdf_pdf);
+  if (walk.light_paths > 0) share = share_of_sampled(walk, hit.point.position, s, closure, bsdf_pdf);
   walk.add(walk.throughput * f * s.direct.radiance * visible * (share / (s.pdf + bsdf_pdf)));
 }
 
 // What light paths leave to a sampled light.
-float PathTracer::share_of_sampled(const Walk& walk, const world::LightSampler::Sample& s,
+float PathTracer::share_of_sampled(const Walk& walk, Vec3f place, const world::LightSampler::Sample& s,
                                    const Closure& closure, float bsdf_pdf) const {
   const emitters::DirectSample& direct = s.direct;
+  const Vec3f on_emitter = direct.distance < kInfinity ? place + direct.direction * direct.distance : place;
   const float density =
-      direct.delta
-          ? starts_->delta_density(s.emitter, direct.direction, direct.distance) *
-                scatter::pdf(closure, -walk.ray.direction, direct.direction, Lobes::all) / s.pdf
-          : starts_->density(s.emitter, direct.triangle, direct.direction) * bsdf_pdf / (s.pdf + bsdf_pdf);
+      direct.delta ? starts_->delta_density(s.emitter, place, direct.direction, direct.distance) *
+                         scatter::pdf(closure, -walk.ray.direction, direct.direction, Lobes::all) / s.pdf
+                   : starts_->density(s.emitter, direct.triangle, on_emitter, direct.direction) * bsdf_pdf /
+                         (s.pdf + bsdf_pdf);
   return 1 / (1 + walk.light_paths * density);
 }
 

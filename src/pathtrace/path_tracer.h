@@ -86,7 +86,7 @@ class PathTracer {
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
                      double u_light, float connection) const;
-  float share_of_sampled(const Walk& walk, const world::LightSampler::Sample& s,
+  float share_of_sampled(const Walk& walk, Vec3f place, const world::LightSampler::Sample& s,
                          const scatter::Closure& closure, float bsdf_pdf) const;
   // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular
   // vertices.

@@ -122,7 +122,8 @@ struct PathFilm::Impl {
 
   void trace_light_paths(const world::World& world) {
     if (!(options.light_paths > 0) || options.paths == Paths::columns || !world.media().empty()) return;
-    starts.emplace(world);
+    const Vec3f eye = tracing.front().camera.eye();
+    starts.emplace(world, options.aim_light_paths ? LightTargets(world, eye) : LightTargets());
     light_paths = static_cast<std::size_t>(std::ceil(options.light_paths * static_cast<double>(pixels)));
     if (starts->empty()) return;
     Tracing& by = tracing.front();

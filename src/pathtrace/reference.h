@@ -32,6 +32,7 @@ struct ReferenceOptions {
   // Paths from the emitters for each pixel and path from the eye, which share the work with these
   // (light_tracer.h); 0: none. Not with media, nor over several instants.
   double light_paths = 0;
+  bool aim_light_paths = false;  // half of them at light_targets.h's
 };
 
 // The scene at an instant of an open shutter, and the view of it: windows are of one size and place.

@@ -12,8 +12,10 @@ namespace lumirank::pipeline {
 
 struct LightPathPilot {
   double light_paths = 0;  // for each eye path; 0: none are worth their time
+  bool aim = false;        // half of them at pathtrace::LightTargets
   double variance = 1;     // with them, over that of as many eye paths alone
   double seconds = 1;      // the same
+  double left = 1;         // error of the denoised picture over that without them, in the same time
 };
 
 // The same for every size and window of the film. None if it was cancelled.

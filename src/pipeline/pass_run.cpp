@@ -269,6 +269,7 @@ class PassRun {
       seconds_["paths"] = after_->paths()->seconds();
       numbers["paths"] = after_->paths()->paths();
       numbers["paths.light_paths"] = after_->paths()->light_paths();
+      numbers["paths.light_paths_aimed"] = after_->paths()->aims_light_paths() ? 1 : 0;
       numbers["passes_over_paths"] = after_->passes_over_paths();
       numbers["share_of_passes"] = picture_->share_of_passes();
     }
@@ -276,6 +277,7 @@ class PassRun {
     if (rest_->plan().piloted) numbers["rest.share"] = rest_->plan().pilot.share;
     numbers["rest.paths"] = rest_->paths();
     numbers["rest.light_paths"] = rest_->light_paths();
+    numbers["rest.light_paths_aimed"] = rest_->aims_light_paths() ? 1 : 0;
     numbers["passes"] = numbers["receivers_per_pixel"] = static_cast<double>(done_) / tracer_.parts();
     numbers.erase("sampling_rate");
     if (rounds() > 1) {

@@ -40,8 +40,8 @@ class PathRun {
         denoising_(asked, task_.view, choices_, sinks, task_.denoiser_pixel_seconds),
         view_(denoising_.filtered(task_.view)),
         options_(reference_options(asked.view.only, asked.seed, ReferencePaths::all)) {
-    options_.light_paths =
-        pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, sinks).light_paths;
+    const LightPathPilot light = pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, sinks);
+    options_.light_paths = light.light_paths, options_.aim_light_paths = light.aim;
   }
 
   RenderResult run() {
@@ -199,6 +199,7 @@ class PathRun {
     if (!shortage_.empty()) report.notes["budget.short"] = shortage_;
     report.numbers["spp"] = paths();
     report.numbers["paths.light_paths"] = options_.light_paths;
+    report.numbers["paths.light_paths_aimed"] = options_.aim_light_paths ? 1 : 0;
     if (paths() > 1) {
       report.numbers["error.noise"] = film_->result().error;
       report.numbers["error.estimate"] = noise();

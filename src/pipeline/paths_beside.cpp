@@ -18,7 +18,8 @@ pathtrace::ReferenceOptions all_light(const world::World& world, const View& vie
                                       const RenderSettings& settings, const Sinks& sinks) {
   pathtrace::ReferenceOptions options =
       reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
-  options.light_paths = pilot_light_paths(world, view, settings.seed, options.paths, sinks).light_paths;
+  const LightPathPilot light = pilot_light_paths(world, view, settings.seed, options.paths, sinks);
+  options.light_paths = light.light_paths, options.aim_light_paths = light.aim;
   return options;
 }
 

@@ -20,6 +20,7 @@ class PathsBeside {
   bool add(int paths, const Sinks& sinks);
   int paths() const { return film_.paths(); }
   double light_paths() const { return options_.light_paths; }  // beside each of them
+  bool aims_light_paths() const { return options_.aim_light_paths; }
   double seconds() const { return seconds_; }
   double error() const { return film_.result().error; }  // relative L1, as halves state it
   // The picture, and twice its noise. Where a surface ends before a bright sky, what both send to a pixel is

@@ -122,7 +122,7 @@ RestPlan plan_rest(const world::World& world, const View& view, const RenderSett
     plan.paths = plan.pilot.paths();
   if (plan.paths == 0 || light_paths == LightPaths::none) return plan;
   const LightPathPilot light = pilot_light_paths(world, view, settings.seed, pathtrace::Paths::rest, sinks);
-  plan.light_paths = light.light_paths;
+  plan.light_paths = light.light_paths, plan.aim_light_paths = light.aim;
   if (!plan.piloted) return plan;
   plan.pilot.deviation *= std::sqrt(light.variance);
   plan.pilot.path_seconds *= light.seconds;

@@ -53,6 +53,7 @@ RestPilot pilot_rest(const world::World& world, const View& view, const RenderSe
 struct RestPlan {
   int paths = 0;           // per pixel; 0: none are traced
   double light_paths = 0;  // from the emitters, beside each of them
+  bool aim_light_paths = false;
   bool piloted = false;
   RestPilot pilot;
 };

@@ -12,7 +12,7 @@ RestTracing::RestTracing(SharedWorld world, const View& view, const RenderSettin
       options_(reference_options(settings.view.only, settings.seed, ReferencePaths::rest)) {
   const Timer timer;
   plan_ = plan_rest(*world_, view, settings, LightPaths::beside, sinks);
-  options_.light_paths = plan_.light_paths;
+  options_.light_paths = plan_.light_paths, options_.aim_light_paths = plan_.aim_light_paths;
   if (!plan_.piloted) return;
   pilot_seconds_ = timer.seconds();
   char share[32];
@@ -28,7 +28,7 @@ RestTracing::RestTracing(SharedWorld world, const RenderSettings& settings, cons
     : world_(std::move(world)),
       options_(reference_options(settings.view.only, settings.seed, ReferencePaths::rest)),
       plan_(plan) {
-  options_.light_paths = plan.light_paths;
+  options_.light_paths = plan.light_paths, options_.aim_light_paths = plan.aim_light_paths;
 }
 
 bool RestTracing::add(int paths, const Sinks& sinks) {

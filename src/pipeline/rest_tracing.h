@@ -50,7 +50,8 @@ class RestTracing {
   static constexpr double kMinBesidePass = 0.25, kMaxBesidePass = 8;
 
   double light_paths() const { return options_.light_paths; }  // beside each of them
-  int paths() const { return paths_; }                         // traced, per pixel
+  bool aims_light_paths() const { return options_.aim_light_paths; }
+  int paths() const { return paths_; }  // traced, per pixel
   double seconds() const { return seconds_; }
   void add_to(image::Image& image) const;             // nothing if none were traced
   void add_difference_to(image::Image& image) const;  // twice the noise of that

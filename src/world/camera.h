@@ -20,6 +20,7 @@ class Camera {
   int height() const { return height_; }
   // `film` in pixels, (0,0) the upper left corner of the full (uncropped) film; `lens` in the unit square.
   geometry::Ray ray(Vec2f film, Vec2f lens) const;
+  Vec3f eye() const { return sensor_.to_world.point({0, 0, 0}); }  // the middle of the lens
 
   // Where a point is seen through a place on the lens: the ray() of `film` and `lens` meets it. Empty if it
   // is behind the camera or not between its clipping planes; the film may be missed.

@@ -7,6 +7,8 @@
 #include <array>
 #include <functional>
 
+#include "base/warp.h"
+#include "pathtrace/light_targets.h"
 #include "pathtrace/reference.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
@@ -86,6 +88,20 @@ SceneMaker gloss() {
   return scene;
 }
 
+// A sun of 27 degrees, so that eye paths find it, on a small ball of glass, seen on a wide floor.
+SceneMaker ball_in_the_sun() {
+  SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, scene.diffuse({0.6f, 0.5f, 0.4f}));
+  scene.shape(scenedesc::SphereDesc{}, ball({0, 0.3f, 0}, 0.25), scene.glass(1.5f));
+  scenedesc::SunSkyDesc sun;
+  sun.sky = false, sun.sun_radius_scale = 50;
+  sun.sun_direction = Vec3f{-0.5f, 0.8f, 0.2f};
+  scene.light(sun);
+  scene.desc.sensors.push_back(
+      test::sensor({0.2f, 1.2f, -1.5f}, {0.15f, 0.1f, 0}, {0, 1, 0}, 40, kWidth, kHeight));
+  return scene;
+}
+
 struct PixelMeans {
   std::vector<test::RunningMean> of = std::vector<test::RunningMean>(kWidth * kHeight);
   double variance() const {
@@ -95,7 +111,7 @@ struct PixelMeans {
   }
 };
 
-PixelMeans means(const SceneMaker& maker, Paths paths, double light_paths, int pictures) {
+PixelMeans means(const SceneMaker& maker, Paths paths, double light_paths, int pictures, bool aim = false) {
   SceneMaker scene = maker;
   const world::World world = scene.build();
   world::View view = world::make_view(scene.desc, {});
@@ -103,7 +119,7 @@ PixelMeans means(const SceneMaker& maker, Paths paths, double light_paths, int p
   for (int k = 0; k < pictures; ++k) {
     ReferenceOptions options;
     options.seed = hash_ids(7, Stage::test, static_cast<std::uint64_t>(k), light_paths > 0 ? 1 : 0);
-    options.paths = paths, options.light_paths = light_paths;
+    options.paths = paths, options.light_paths = light_paths, options.aim_light_paths = aim;
     options.emission = false;  // seen directly it is alike in both
     PathFilm film(world, view, options);
     EXPECT_TRUE(film.add(8, {}));
@@ -158,18 +174,80 @@ TEST(LightTracer, RoughMetalAndASkyAreTheSame) {
               means(gloss(), Paths::all, 0.5, kPicturesOfEach));
 }
 
+TEST(LightTracer, ASunThroughGlassIsTheSameWithAFifthOfTheVarianceWhereItIsAimed) {
+  const auto alone = means(ball_in_the_sun(), Paths::all, 0, kPicturesOfEach),
+             aimed = means(ball_in_the_sun(), Paths::all, 1, kPicturesOfEach, true);
+  expect_same(alone, aimed);
+  EXPECT_LT(aimed.variance(), alone.variance() / 5);
+}
+
+TEST(LightTracer, WhatIsAimedIsTheSameFromEveryEmitter) {
+  for (const auto& scene : {bulb_in_glass(), spot_on_a_mirror(), gloss()})
+    expect_same(means(scene, Paths::all, 0, kPicturesOfEach),
+                means(scene, Paths::all, 1, kPicturesOfEach, true));
+}
+
+TEST(LightTargets, AreWhatSendsLightOnSharply) {
+  SceneMaker scene = room();
+  const world::World room_alone = scene.build();
+  EXPECT_TRUE(LightTargets(room_alone, {0, 0, 0}).empty());
+  scene.shape(scenedesc::SphereDesc{}, ball({0.5f, 0, 0.5f}, 0.1), scene.glass(1.5f));
+  scene.shape(scenedesc::SphereDesc{}, ball({-0.5f, 0, 0.5f}, 0.2), scene.mirror(Rgb(0.8f)));
+  const world::World world = scene.build();
+  const LightTargets targets(world, {0, 0, -0.9f});
+  ASSERT_EQ(targets.size(), 2u);
+  const auto across = [&](Vec3f place) { return targets.per_area(place, {0, 0, 1}, 0); };
+  EXPECT_GT(across({0.5f, 0.09f, 0}), 0);
+  EXPECT_GT(across({-0.5f, 0.19f, 0}), 0);
+  EXPECT_EQ(across({0.5f, 0.12f, 0}), 0);
+  EXPECT_EQ(across({0, 0, 0}), 0);
+}
+
+// Of all directions, from without and within a target, from a surface that sees it and one that does not.
+TEST(LightTargets, DensitiesSumToOne) {
+  SceneMaker scene = room();
+  scene.shape(scenedesc::SphereDesc{}, ball({0.5f, 0, 0.5f}, 0.2), scene.glass(1.5f));
+  scene.shape(scenedesc::SphereDesc{}, ball({-0.5f, 0, 0.5f}, 0.2), scene.glass(1.5f));
+  const world::World world = scene.build();
+  const LightTargets targets(world, {0, 0, -0.9f});
+  struct Case {
+    Vec3f place, normal;
+  };
+  for (const Case& at : {Case{{0, 0, -0.5f}, {0, 0, 0}}, Case{{0.5f, 0, 0.45f}, {0, 0, 0}},
+                         Case{{0, 0.9f, 0.5f}, {0, -1, 0}}, Case{{0, 0.9f, 0.5f}, {0, 1, 0}}}) {
+    test::RunningMean sum;
+    Rng random(3, Stage::test, 0, 0);
+    for (int k = 0; k < 200000; ++k) {
+      const Vec3f w = warp_sphere(random.next_2d());
+      sum.add(static_cast<double>(4 * kPi * targets.per_solid_angle(at.place, at.normal, w, 1 / (4 * kPi))));
+    }
+    EXPECT_NEAR(sum.mean(), 1, test::normal_quantile(1e-4) * sum.standard_error());
+    EXPECT_LT(sum.standard_error(), 0.02);
+    for (std::size_t target = 0; target < targets.size(); ++target)
+      for (int k = 0; k < 100; ++k) {
+        const auto w = targets.direction_to(target, at.place, at.normal, random.next_2d());
+        if (w) {
+          EXPECT_GT(targets.per_solid_angle(at.place, at.normal, *w, 0), 0);
+        }
+      }
+  }
+}
+
 // Le of a lamp is the flux of its starts, over their density: both say how light is spread over places and
 // directions.
-TEST(EmissionSampler, DensitiesBelongToTheFlux) {
+class Starts : public testing::TestWithParam<bool> {};
+
+TEST_P(Starts, HaveTheDensitiesThatBelongToTheirFlux) {
   SceneMaker scene = gloss();
   const world::World world = scene.build();
-  const EmissionSampler starts(world);
+  const EmissionSampler starts(world, GetParam() ? LightTargets(world, {0, 0, -1}) : LightTargets());
   int near = 0, far = 0;
   for (std::uint64_t k = 0; k < 200; ++k) {
     SampleStream random(1, Stage::test, 0, k);
     const auto start = starts.sample(random);
-    ASSERT_TRUE(start);
-    const float density = starts.density(start->emitter, start->triangle, -start->ray.direction);
+    if (!start) continue;  // aimed below its horizon
+    const float density =
+        starts.density(start->emitter, start->triangle, start->ray.origin, -start->ray.direction);
     const bool sky = start->emitter == world.environment();
     EXPECT_NEAR((start->flux * density).r, sky ? 0.5f : 20.0f, 1e-3f * (sky ? 0.5f : 20.0f));
     ++(sky ? far : near);
@@ -177,6 +255,7 @@ TEST(EmissionSampler, DensitiesBelongToTheFlux) {
   EXPECT_GT(near, 5);
   EXPECT_GT(far, 5);
 }
+INSTANTIATE_TEST_SUITE_P(EmissionSampler, Starts, testing::Bool());
 
 }  // namespace
 }  // namespace lumirank::pathtrace

@@ -45,6 +45,23 @@ TEST(LightPathPilot, ABulbInGlassIsWorthLightPathsAndASkyIsNot) {
   EXPECT_EQ(sky.variance, 1);
 }
 
+TEST(LightPathPilot, ASunOnASmallBallOfGlassIsWorthAimedOnes) {
+  test::SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {9, 0, 0}, {0, 0, -9}, scene.diffuse(Rgb(0.6f)));
+  scene.shape(scenedesc::SphereDesc{}, Transform::translate(0, 0.4, 0) * Transform::scale(0.3, 0.3, 0.3),
+              scene.glass(1.5f));
+  scenedesc::SunSkyDesc sun;
+  sun.sun_direction = Vec3f{-0.5f, 0.8f, 0.2f};
+  scene.light(sun);
+  scene.desc.sensors.push_back(test::sensor({0, 1.5f, -2}, {0.1f, 0.2f, 0}, {0, 1, 0}, 45, 64, 48));
+  const world::World world = scene.build();
+  const LightPathPilot found =
+      pilot_light_paths(world, world::make_view(scene.desc, {}), 1, pathtrace::Paths::all, {});
+  EXPECT_GT(found.light_paths, 0);
+  EXPECT_TRUE(found.aim);
+  EXPECT_LT(found.left, 0.7);
+}
+
 TEST(LightPathPilot, IsOfTheWholeFilmAtOneSize) {
   const LightPathPilot whole = pilot(true, 64, 0);
   for (const LightPathPilot& other : {pilot(true, 64, 8), pilot(true, 640, 0)}) {
