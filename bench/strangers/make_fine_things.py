@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Writes eight more scenes that nobody tuned for (Mitsuba 3 XML, PLY and PNG): fine detail, and what is blurred on purpose.
+"""Writes nine more scenes that nobody tuned for (Mitsuba 3 XML, PLY and PNG): fine detail, and what is blurred on purpose.
 
-    bench/strangers/make_fine_things.py OUT [bokeh candles white fence prints jewels pendants crystal]
+    bench/strangers/make_fine_things.py OUT [bokeh candles white fence prints jewels pendants crystal reflectors]
 
-  bokeh     a figure in focus before a hundred small lamps that are not
-  candles   a table laid for six by the light of twelve flames, four of them in glasses
-  white     a gallery of white walls, lit by slots in its ceiling: light is reflected many times
-  fence     a fence of wire, a cut-out picture, before a checkered yard in the sun
-  prints    floor and table whose gloss is a picture: its detail is in reflections alone
-  jewels    cut stones of high index, gold and pearls on dark cloth under three small lamps
-  pendants  lamps within shades of thin cloth, through which most of their light comes
-  crystal   a ball and a block of glass and a ring of brass in the sun, on a wide table
+  bokeh       a figure in focus before a hundred small lamps that are not
+  candles     a table laid for six by the light of twelve flames, four of them in glasses
+  white       a gallery of white walls, lit by slots in its ceiling: light is reflected many times
+  fence       a fence of wire, a cut-out picture, before a checkered yard in the sun
+  prints      floor and table whose gloss is a picture: its detail is in reflections alone
+  jewels      cut stones of high index, gold and pearls on dark cloth under three small lamps
+  pendants    lamps within shades of thin cloth, through which most of their light comes
+  crystal     a ball and a block of glass and a ring of brass in the sun, on a wide table
+  reflectors  small lamps in cups of mirror, behind glass, from which half of the light comes
 """
 import math
 import pathlib
@@ -217,5 +218,20 @@ def crystal(out):
     return scene, out / "crystal"
 
 
+def reflectors(out):
+    scene = Scene("Lamps in reflectors.", ((1.2, 1.5, 3.0), (0, 1.3, -1)), 50, (640, 360))
+    wall, floor = scene.material("wall", diffuse((0.65, 0.62, 0.6))), scene.material("floor", diffuse((0.35, 0.3, 0.28)))
+    room(wall, floor, scene.material("ceiling", diffuse((0.75, 0.75, 0.75))), (2.5, 3), 2.8)
+    cup, glass = scene.material("cup", '<bsdf type="conductor"><string name="material" value="Al"/></bsdf>'), scene.single("glass", GLASS)
+    picture = scene.material("picture", diffuse((0.2, 0.35, 0.6)))
+    for x in (-1.5, -0.5, 0.5, 1.5):
+        cup.revolve((x, 2.45, -1.9), [(0.10, 0), (0.09, 0.05), (0.06, 0.1), (0.02, 0.13), (0, 0.135)], 48, 6)
+        scene.emitters.append(bulb((x, 2.525, -1.9), 0.02, (400, 350, 280)))
+        glass.revolve((x, 2.43, -1.9), [(0, 0), (0.1, 0), (0.1, 0.008), (0, 0.008)], 48, 1)
+        picture.box((x - 0.3, 1.0, -2.98), (x + 0.3, 1.8, -2.95), 0.004)
+    furniture(random.Random(41), [scene.material("wood", diffuse((0.4, 0.25, 0.13)))], [scene.material("wool", diffuse((0.2, 0.3, 0.25)))], (2, 2), 4)
+    return scene, out / "reflectors"
+
+
 if __name__ == "__main__":
-    write_scenes(__doc__, {"bokeh": bokeh, "candles": candles, "white": white, "fence": fence, "prints": prints, "jewels": jewels, "pendants": pendants, "crystal": crystal})
+    write_scenes(__doc__, {"bokeh": bokeh, "candles": candles, "white": white, "fence": fence, "prints": prints, "jewels": jewels, "pendants": pendants, "crystal": crystal, "reflectors": reflectors})

@@ -66,6 +66,11 @@ class Pilot {
     if (sinks_.cancelled()) return pilot;
     const double light_path_time = kRayOfLight * static_cast<double>(light_.rays) / kLightPaths /
                                    (static_cast<double>(other.rays) / (kEyePaths * pixels()));
+    double shown = 0, brightest = 0;
+    for (const Found& f : found) {
+      const double light = f.number * f.light / pixels();
+      shown += light, brightest = std::max(brightest, light);
+    }
     // Of what eye paths share with as many light paths as there are pixels.
     double shared = 0;
     for (const Found& f : found)
@@ -88,7 +93,8 @@ class Pilot {
       const Error with = error(number);
       const double left = with.denoised() / alone.denoised(), seconds = 1 + light_path_time * number;
       if (left < kWorth && left < kMoreIsWorth * pilot.left)
-        pilot = {number, aim_, std::pow(with.whole() / alone.whole(), 2) / seconds, seconds, left};
+        pilot = {number,  aim_, std::pow(with.whole() / alone.whole(), 2) / seconds,
+                 seconds, left, shown - brightest};
     }
     return pilot;
   }

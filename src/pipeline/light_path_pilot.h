@@ -16,6 +16,9 @@ struct LightPathPilot {
   double variance = 1;     // with them, over that of as many eye paths alone
   double seconds = 1;      // the same
   double left = 1;         // error of the denoised picture over that without them, in the same time
+  // Light that light paths show, over what is usual where they do, in the mean over the picture; without the
+  // brightest of them: one path decides nothing.
+  double shown = 0;
 };
 
 // The same for every size and window of the film. None if it was cancelled.

@@ -31,6 +31,9 @@ struct RestPilot {
   // small part of all light. Where such light is spread, a pilot's blocks have one path of it or none, and it
   // is 0.
   static constexpr double kMinSeen = 0.001;
+  // Of light that paths from the emitters show and those from the eye hardly find. It takes many paths:
+  // below 0.018 two scenes of four were worse with it in ten seconds.
+  static constexpr double kMinShown = 0.02;
   // Relative L1 of the picture that the paths' noise may add. In quadrature with 5 % it is a twelfth of that.
   static constexpr double kNoise = 0.02;
   static constexpr int kMinPaths = 16, kMaxPaths = 64;

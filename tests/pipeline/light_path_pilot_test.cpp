@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lumirank/lumirank.h"
+#include "pipeline/rest_pilot.h"
 #include "support/scenes.h"
 
 namespace lumirank::pipeline {
@@ -60,6 +61,28 @@ TEST(LightPathPilot, ASunOnASmallBallOfGlassIsWorthAimedOnes) {
   EXPECT_GT(found.light_paths, 0);
   EXPECT_TRUE(found.aim);
   EXPECT_LT(found.left, 0.7);
+}
+
+// A tiny lamp shines up at a mirror that lights the floor: the pilot's eye paths do not find it, its light
+// paths do, and the light is not left out. (A larger lamp keeps it from being all light there is.)
+TEST(RestPlan, TracesWhatOnlyLightPathsFind) {
+  const auto plan_with = [](float radiance) {
+    test::SceneMaker scene;
+    scene.rectangle({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, scene.diffuse(Rgb(0.6f)));
+    scene.rectangle({0, 1, 0}, {0.04f, 0, 0}, {0, 0, 0.04f}, scene.mirror(Rgb(0.9f)));
+    scene.lamp({0, 0.98f, 0}, {0, 0, 0.001f}, {0.001f, 0, 0}, Rgb(radiance), scene.diffuse(Rgb(0)));
+    scene.lamp({0, 3, 0}, {1, 0, 0}, {0, 0, 1}, Rgb(0.5f), scene.diffuse(Rgb(0)));
+    scene.desc.sensors.push_back(test::sensor({0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 50, 64, 48));
+    const world::World world = scene.build();
+    RenderSettings settings;
+    return plan_rest(world, world::make_view(scene.desc, {}), settings, LightPaths::beside, {});
+  };
+  const RestPlan bright = plan_with(3e5f), faint = plan_with(3e2f);
+  EXPECT_FALSE(bright.pilot.matters());
+  EXPECT_GT(bright.paths, 0);
+  EXPECT_GT(bright.light_paths, 0);
+  EXPECT_EQ(faint.paths, 0);
+  EXPECT_EQ(faint.light_paths, 0);
 }
 
 TEST(LightPathPilot, IsOfTheWholeFilmAtOneSize) {
