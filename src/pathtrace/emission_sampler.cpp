@@ -74,19 +74,18 @@ std::optional<EmissionSampler::Start> EmissionSampler::sample(SampleStream& rand
   const Vec2f position = random.next_2d();
   const auto emission = world_.sample_emission(start.emitter, choice.y, position, random.next_2d());
   start.flux = emission.weight / static_cast<float>(chosen.probability);
-  if (!(max_component(start.flux) > 0)) return std::nullopt;
   start.triangle = emission.triangle;
   start.ray = {emission.origin, emission.direction};
   const auto& kind = world_.emitters()[static_cast<std::size_t>(start.emitter)].kind;
-  if (std::holds_alternative<AreaEmitter>(kind))
+  const bool area = std::holds_alternative<AreaEmitter>(kind);
+  if (area)
     start.ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
-  start.delta =
-      !std::holds_alternative<AreaEmitter>(kind) && !std::holds_alternative<EnvironmentEmitter>(kind);
+  start.delta = !area && !std::holds_alternative<EnvironmentEmitter>(kind);
   if (!targets_.empty()) {
     const float u = random.next_float();
     aim(start, emission, u, random.next_2d());
-    if (!(max_component(start.flux) > 0)) return std::nullopt;
   }
+  if (!(max_component(start.flux) > 0)) return std::nullopt;
   return start;
 }
 
@@ -95,6 +94,9 @@ void EmissionSampler::aim(Start& start, const emitters::Emission& emission, floa
   const auto target = targets_.draw(u);
   const auto e = static_cast<std::size_t>(start.emitter);
   const auto& kind = world_.emitters()[e].kind;
+  const bool area = std::holds_alternative<AreaEmitter>(kind), dark = !(max_component(start.flux) > 0);
+  // Where a point is dark in the direction that it drew, it may still shine in another.
+  if (dark && (!target || area || is_far(kind))) return;
   if (is_far(kind)) {
     const Vec3f w = start.ray.direction;
     if (target) {
@@ -104,10 +106,10 @@ void EmissionSampler::aim(Start& start, const emitters::Emission& emission, floa
     start.flux *= 1 / (disc_ * targets_.per_area(start.ray.origin, w, 1 / disc_));
     return;
   }
-  const bool area = std::holds_alternative<AreaEmitter>(kind);
   const Vec3f place = emission.origin, normal = area ? emission.normal : Vec3f{0, 0, 0};
-  if (target)
-    if (const auto w = targets_.direction_to(*target, place, normal, where)) start.ray.direction = *w;
+  const auto to_target = target ? targets_.direction_to(*target, place, normal, where) : std::nullopt;
+  if (dark && !to_target) return;
+  if (to_target) start.ray.direction = *to_target;
   const Vec3f w = start.ray.direction;
   if (area) {
     const float own = pdf_cosine_hemisphere(dot(normal, w));
@@ -115,9 +117,9 @@ void EmissionSampler::aim(Start& start, const emitters::Emission& emission, floa
     start.flux *= own / targets_.per_solid_angle(place, normal, w, own);
     return;
   }
-  start.flux =
-      std::visit(PointIntensity{w}, kind) /
-      (probabilities_[e] * targets_.per_solid_angle(place, normal, w, std::visit(PointPdf{w}, kind)));
+  const float own = std::visit(PointPdf{w}, kind);
+  start.flux = std::visit(PointIntensity{w}, kind) /
+               (probabilities_[e] * targets_.per_solid_angle(place, normal, w, own));
 }
 
 float EmissionSampler::across(Vec3f place, Vec3f direction) const {

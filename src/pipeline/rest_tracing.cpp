@@ -17,11 +17,13 @@ RestTracing::RestTracing(SharedWorld world, const View& view, const RenderSettin
   pilot_seconds_ = timer.seconds();
   char share[32];
   std::snprintf(share, sizeof share, "%.2g %%", 100 * plan_.pilot.share);
-  sinks.say("light that columns cannot carry: " + std::string(share) +
-            (plan_.paths > 0 ? ", traced with " + std::to_string(plan_.paths) + " paths per pixel"
-             : plan_.pilot.share > RestPilot::kMinShare
-                 ? ", nearly all of it in one path of the pilot, left out"
-                 : ", left out"));
+  sinks.say(
+      "light that columns cannot carry: " + std::string(share) +
+      (plan_.paths > 0 && !plan_.pilot.matters() ? " by paths from the eye, more by paths from the emitters"
+                                                 : "") +
+      (plan_.paths > 0 ? ", traced with " + std::to_string(plan_.paths) + " paths per pixel"
+       : plan_.pilot.share > RestPilot::kMinShare ? ", nearly all of it in one path of the pilot, left out"
+                                                  : ", left out"));
 }
 
 RestTracing::RestTracing(SharedWorld world, const RenderSettings& settings, const RestPlan& plan)
