@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@ constexpr std::size_t kLightPaths = 1 << 14, kLightPathsOfPart = 512;
 constexpr int kBlock = 4;
 constexpr double kUsualPart = 0.1;
 constexpr double kNumbers[] = {0.5, 1, 2};
+constexpr int kMaxHalves = 4;  // of the last of them
 // Time of a light path's ray over that of an eye path's, of which two go from one closure: 1.1 to 3 in five
 // scenes.
 constexpr double kRayOfLight = 1.5;
@@ -259,6 +261,15 @@ LightPathPilot pilot_light_paths(const world::World& world, const world::View& v
   if (targets.empty()) return freely;
   const LightPathPilot aimed = Pilot(world, view, seed, paths, std::move(targets), sinks).run();
   return aimed.left < kMoreIsWorth * freely.left ? aimed : freely;
+}
+
+void choose_light_paths(methods::TimedChoices& choices, const char* of, double& light_paths, bool& aim) {
+  const std::string halves = std::string(of) + "_half_light_paths", aimed = std::string(of) + "_aim";
+  if (const auto earlier = choices.earlier(halves, kMaxHalves))
+    light_paths = 0.5 * static_cast<double>(*earlier);
+  if (const auto earlier = choices.earlier(aimed, 1)) aim = *earlier == 1;
+  choices.record(halves, static_cast<std::int64_t>(2 * light_paths));
+  choices.record(aimed, aim ? 1 : 0);
 }
 
 }  // namespace lumirank::pipeline

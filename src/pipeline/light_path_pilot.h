@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/sinks.h"
+#include "methods/common/timed_choices.h"
 #include "pathtrace/path_tracer.h"
 #include "world/view.h"
 #include "world/world.h"
@@ -24,5 +25,10 @@ struct LightPathPilot {
 // The same for every size and window of the film. None if it was cancelled.
 LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
                                  pathtrace::Paths paths, const Sinks& sinks);
+
+// Which light paths a timed run has, as a choice: what frames of a shot repeat, so that no caustic comes and
+// goes. Both are the
+// pilot's if there was no earlier run. `of`: whose they are.
+void choose_light_paths(methods::TimedChoices& choices, const char* of, double& light_paths, bool& aim);
 
 }  // namespace lumirank::pipeline

@@ -198,7 +198,7 @@ bool PassPilot::small_paths_are_better(const View& small, const image::Image& fi
     if (!rest.add_paths(small, kTrialPasses, sinks_)) throw Cancelled();
     rest.add_to(by_passes.picture), rest.add_difference_to(by_passes.difference);
   }
-  PathsBeside paths(*task_.world, small, settings_, sinks_);
+  PathsBeside paths(*task_.world, small, settings_, nullptr, sinks_);
   do {
     if (!paths.add(2, sinks_)) throw Cancelled();
   } while (paths.seconds() < shrunk * seconds && paths.paths() < kMaxTrialPaths);

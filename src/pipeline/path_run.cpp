@@ -42,6 +42,7 @@ class PathRun {
         options_(reference_options(asked.view.only, asked.seed, ReferencePaths::all)) {
     const LightPathPilot light = pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, sinks);
     options_.light_paths = light.light_paths, options_.aim_light_paths = light.aim;
+    if (timed()) choose_light_paths(choices_, "all", options_.light_paths, options_.aim_light_paths);
   }
 
   RenderResult run() {

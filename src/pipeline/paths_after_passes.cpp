@@ -56,7 +56,7 @@ bool PathsAfterPasses::try_out(const View& view, const Passes& passes) {
   if (earlier ? *earlier == 0
               : left_() < kWorthATrial * pass || rest_.seconds_of_whole_path(view) > kDearPath * pass)
     return true;
-  paths_.emplace(world_, view, settings_, sinks_);
+  paths_.emplace(world_, view, settings_, &choices_, sinks_);
   if (earlier) return paths_->add(static_cast<int>(*earlier), sinks_);
   if (!paths_->add(1, sinks_)) return false;
   if (paths_->seconds() > kDearPath * pass) {

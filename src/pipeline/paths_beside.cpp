@@ -15,11 +15,13 @@ constexpr double kOfUsual = 0.1;
 constexpr double kPassesLookWorse = 1.7, kWorseThanWithLightPaths = 2;
 
 pathtrace::ReferenceOptions all_light(const world::World& world, const View& view,
-                                      const RenderSettings& settings, const Sinks& sinks) {
+                                      const RenderSettings& settings, methods::TimedChoices* choices,
+                                      const Sinks& sinks) {
   pathtrace::ReferenceOptions options =
       reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
   const LightPathPilot light = pilot_light_paths(world, view, settings.seed, options.paths, sinks);
   options.light_paths = light.light_paths, options.aim_light_paths = light.aim;
+  if (choices) choose_light_paths(*choices, "beside", options.light_paths, options.aim_light_paths);
   return options;
 }
 
@@ -58,8 +60,8 @@ double relative_size(const image::Image& difference, const image::Image& picture
 }  // namespace
 
 PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
-                         const Sinks& sinks)
-    : options_(all_light(world, view, settings, sinks)), film_(world, view, options_) {}
+                         methods::TimedChoices* choices, const Sinks& sinks)
+    : options_(all_light(world, view, settings, choices, sinks)), film_(world, view, options_) {}
 
 bool PathsBeside::add(int paths, const Sinks& sinks) {
   const Timer timer;

@@ -4,6 +4,7 @@
 
 #include "base/sinks.h"
 #include "image/image.h"
+#include "methods/common/timed_choices.h"
 #include "pathtrace/reference.h"
 #include "pipeline/recipe.h"
 #include "world/world.h"
@@ -12,9 +13,9 @@ namespace lumirank::pipeline {
 
 class PathsBeside {
  public:
-  // Must outlive it: the world.
+  // Must outlive it: the world. `choices`: where they are the run's own; none for a trial.
   PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
-              const Sinks& sinks);
+              methods::TimedChoices* choices, const Sinks& sinks);
 
   // So many more for each pixel. False if it was cancelled: then none of them counts.
   bool add(int paths, const Sinks& sinks);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "pipeline/light_path_pilot.h"
 
 namespace lumirank::pipeline {
 
@@ -31,6 +32,13 @@ RestTracing::RestTracing(SharedWorld world, const RenderSettings& settings, cons
       options_(reference_options(settings.view.only, settings.seed, ReferencePaths::rest)),
       plan_(plan) {
   options_.light_paths = plan.light_paths, options_.aim_light_paths = plan.aim_light_paths;
+}
+
+void RestTracing::choose(methods::TimedChoices& choices) {
+  if (const auto earlier = choices.earlier("rest_paths", kMaxPaths)) plan_.paths = static_cast<int>(*earlier);
+  choices.record("rest_paths", plan_.paths);
+  choose_light_paths(choices, "rest", plan_.light_paths, plan_.aim_light_paths);
+  options_.light_paths = plan_.light_paths, options_.aim_light_paths = plan_.aim_light_paths;
 }
 
 bool RestTracing::add(int paths, const Sinks& sinks) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/timer.h"
+#include "methods/common/timed_choices.h"
 #include "pathtrace/reference.h"
 #include "pipeline/prepared.h"
 #include "pipeline/rest_pilot.h"
@@ -19,6 +20,9 @@ class RestTracing {
 
   // By a plan that has been made for several views.
   RestTracing(SharedWorld world, const RenderSettings& settings, const RestPlan& plan);
+
+  // Plans as an earlier run did, whatever its own pilot says: in another frame of a shot.
+  void choose(methods::TimedChoices& choices);
 
   const RestPlan& plan() const { return plan_; }
   double pilot_seconds() const { return pilot_seconds_; }

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "lumirank/lumirank.h"
-#include "pipeline/rest_pilot.h"
+#include "pipeline/rest_tracing.h"
 #include "support/scenes.h"
 
 namespace lumirank::pipeline {
@@ -63,26 +65,47 @@ TEST(LightPathPilot, ASunOnASmallBallOfGlassIsWorthAimedOnes) {
   EXPECT_LT(found.left, 0.7);
 }
 
-// A tiny lamp shines up at a mirror that lights the floor: the pilot's eye paths do not find it, its light
-// paths do, and the light is not left out. (A larger lamp keeps it from being all light there is.)
+// A tiny lamp shines up at a mirror that lights the floor; a larger one keeps it from being all light there
+// is.
+test::SceneMaker lamp_below_a_mirror(float radiance) {
+  test::SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, scene.diffuse(Rgb(0.6f)));
+  scene.rectangle({0, 1, 0}, {0.04f, 0, 0}, {0, 0, 0.04f}, scene.mirror(Rgb(0.9f)));
+  scene.lamp({0, 0.98f, 0}, {0, 0, 0.001f}, {0.001f, 0, 0}, Rgb(radiance), scene.diffuse(Rgb(0)));
+  scene.lamp({0, 3, 0}, {1, 0, 0}, {0, 0, 1}, Rgb(0.5f), scene.diffuse(Rgb(0)));
+  scene.desc.sensors.push_back(test::sensor({0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 50, 64, 48));
+  return scene;
+}
+constexpr float kBright = 3e5f, kFaint = 3e2f;
+
+RestTracing rest_of(float radiance) {
+  test::SceneMaker scene = lamp_below_a_mirror(radiance);
+  const auto world = std::make_shared<const world::World>(scene.build());
+  return RestTracing(world, world::make_view(scene.desc, {}), RenderSettings{}, {});
+}
+
+// The pilot's eye paths do not find the small lamp, its light paths do, and the light is not left out.
 TEST(RestPlan, TracesWhatOnlyLightPathsFind) {
-  const auto plan_with = [](float radiance) {
-    test::SceneMaker scene;
-    scene.rectangle({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, scene.diffuse(Rgb(0.6f)));
-    scene.rectangle({0, 1, 0}, {0.04f, 0, 0}, {0, 0, 0.04f}, scene.mirror(Rgb(0.9f)));
-    scene.lamp({0, 0.98f, 0}, {0, 0, 0.001f}, {0.001f, 0, 0}, Rgb(radiance), scene.diffuse(Rgb(0)));
-    scene.lamp({0, 3, 0}, {1, 0, 0}, {0, 0, 1}, Rgb(0.5f), scene.diffuse(Rgb(0)));
-    scene.desc.sensors.push_back(test::sensor({0, 1, -3}, {0, 0, 0}, {0, 1, 0}, 50, 64, 48));
-    const world::World world = scene.build();
-    RenderSettings settings;
-    return plan_rest(world, world::make_view(scene.desc, {}), settings, LightPaths::beside, {});
-  };
-  const RestPlan bright = plan_with(3e5f), faint = plan_with(3e2f);
-  EXPECT_FALSE(bright.pilot.matters());
-  EXPECT_GT(bright.paths, 0);
-  EXPECT_GT(bright.light_paths, 0);
-  EXPECT_EQ(faint.paths, 0);
-  EXPECT_EQ(faint.light_paths, 0);
+  const RestTracing bright = rest_of(kBright), faint = rest_of(kFaint);
+  EXPECT_FALSE(bright.plan().pilot.matters());
+  EXPECT_GT(bright.plan().paths, 0);
+  EXPECT_GT(bright.plan().light_paths, 0);
+  EXPECT_EQ(faint.plan().paths, 0);
+  EXPECT_EQ(faint.plan().light_paths, 0);
+}
+
+// Frames of a shot have the light paths of the first, whatever their own pilots say.
+TEST(RestPlan, IsRepeatedAsAChoice) {
+  RestTracing first = rest_of(kBright), second = rest_of(kFaint);
+  methods::TimedChoices made;
+  first.choose(made);
+  methods::TimedChoices again(made.made());
+  second.choose(again);
+  EXPECT_EQ(second.plan().paths, first.plan().paths);
+  EXPECT_EQ(second.light_paths(), first.light_paths());
+  EXPECT_EQ(second.aims_light_paths(), first.aims_light_paths());
+  again.expect_end();
+  EXPECT_EQ(again.made(), made.made());
 }
 
 TEST(LightPathPilot, IsOfTheWholeFilmAtOneSize) {
