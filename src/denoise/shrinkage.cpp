@@ -11,10 +11,11 @@
 namespace lumirank::denoise {
 namespace {
 
-constexpr float kDeviation = 2, kWideDeviation = 8;  // pixels
-constexpr float kNoiseCounts = 3;                    // see shrink()
-constexpr float kAroundCounts = 0.125f;              // see shrink()
-constexpr float kOfUsual = 0.01f;                    // brightness that counts at least, of the mean
+constexpr float kDeviation = 2, kWideDeviation = 8;        // pixels
+constexpr float kCloseDeviation = 0.7f, kCloseCounts = 2;  // see shrink()
+constexpr float kNoiseCounts = 3;                          // see shrink()
+constexpr float kAroundCounts = 0.125f;                    // see shrink()
+constexpr float kOfUsual = 0.01f;                          // brightness that counts at least, of the mean
 constexpr std::size_t kLinesAtOnce = 16;
 constexpr float kDarkest = 1e-30f;  // black pictures
 
@@ -73,7 +74,9 @@ Shrunk shrink(const image::Image& noisy, const image::Image& denoised, const ima
   }
   const Plane around = blurred(noise, noisy.width, noisy.height, kWideDeviation);
   noise = blurred(noise, noisy.width, noisy.height, kDeviation);
+  const Plane close = blurred(distance, noisy.width, noisy.height, kCloseDeviation);
   distance = blurred(distance, noisy.width, noisy.height, kDeviation);
+  for (std::size_t p = 0; p < pixels; ++p) distance[p] = std::min(distance[p], kCloseCounts * close[p]);
   for (std::size_t p = 0; p < pixels; ++p) noise[p] = std::max(noise[p], kAroundCounts * around[p]);
   double kept = 0;
   for (std::size_t p = 0; p < pixels; ++p) {

@@ -17,9 +17,11 @@ struct Shrunk {
 // noise the mean square of the noisy picture's noise and distance that of noisy − denoised, both relative to
 // the brightness and over a Gaussian window of two pixels' deviation; for noise, an eighth of that over
 // eight pixels' if it is more: where light is rarely found most small windows are dark and show no noise at
-// all. Where noise explains the distance, w is 0; where it explains none of it, 1. The factor 3 (1 for the
-// least expected error, were the noise known) makes up for noise that is told by two halves only.
-// `difference`: of two independent halves, twice the noise of `noisy`. All of one size.
+// all. For distance, twice that over 0.7 pixels' if it is less: a glint that the denoiser took would give
+// back the noise of six pixels around it. Where noise explains the distance, w is 0; where it explains none
+// of it, 1. The factor 3 (1 for the least expected error, were the noise known) makes up for noise that is
+// told by two halves only. `difference`: of two independent halves, twice the noise of `noisy`. All of one
+// size.
 Shrunk shrink(const image::Image& noisy, const image::Image& denoised, const image::Image& difference);
 
 }  // namespace lumirank::denoise

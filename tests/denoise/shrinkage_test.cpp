@@ -78,6 +78,25 @@ TEST(Shrinkage, AnEdgeThatWasLostComesBack) {
   EXPECT_LT(shrunk.kept, 0.3);
 }
 
+// A glint that the denoiser took comes back, and none of the noise around it.
+TEST(Shrinkage, AGlintBringsNoNoiseBack) {
+  const Image flat(kWidth, kHeight, Rgb(0.5f));
+  constexpr int kAtX = kWidth / 2, kAtY = kHeight / 2;
+  Image truth = flat;
+  truth.at(kAtX, kAtY) = Rgb(200);
+  const Halves noisy = with_noise(truth, 0.05f, 1);
+  const Shrunk shrunk = shrink(noisy.mean, flat, noisy.difference);
+  EXPECT_NEAR(shrunk.picture.at(kAtX, kAtY).r, 200, 1);
+  double before = 0, left = 0;
+  for (int y = kAtY - 6; y <= kAtY + 6; ++y)
+    for (int x = kAtX - 6; x <= kAtX + 6; ++x) {
+      if (std::abs(x - kAtX) < 3 && std::abs(y - kAtY) < 3) continue;
+      before += std::abs(static_cast<double>(noisy.mean.at(x, y).r - 0.5f));
+      left += std::abs(static_cast<double>(shrunk.picture.at(x, y).r - 0.5f));
+    }
+  EXPECT_LT(left, 0.15 * before);
+}
+
 // One pixel in 150 of one half holds nearly all light, as of a lamp that few paths find: most windows are
 // dark in both halves, which is no sign that the picture is.
 TEST(Shrinkage, RareLightLeavesNoHoles) {
