@@ -57,7 +57,7 @@ class PassRun {
     rest_.emplace(task_.world, view_, asked_, sinks_);
     if (rest_->plan().piloted) seconds_["rest_pilot"] = rest_->pilot_seconds();
     if (rest_is_most()) return by_paths_alone("columns cannot carry much of its light");
-    if (timed()) rest_->choose(choices_);
+    if (timed() && asked_.traced.rest != RestOfPaths::skip) rest_->choose(choices_);
     const Timer survey_timer;
     tracer_.aim(survey(task_.world, view_, tracer_.recipe_of(0, view_), sinks_));
     seconds_["survey"] = survey_timer.seconds();

@@ -79,6 +79,8 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
                  {"eighths_of_pass", {8, 8}},
                  {"passes", {2}},
                  {"trial_paths", {2}},
+                 {"beside_half_light_paths", {0}},
+                 {"beside_aim", {0}},
                  {"by_paths", {1}},
                  {"own_emission", {own_emission}},
                  {"more_paths", {126}},
