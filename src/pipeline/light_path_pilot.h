@@ -26,9 +26,8 @@ struct LightPathPilot {
 LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
                                  pathtrace::Paths paths, const Sinks& sinks);
 
-// Which light paths a timed run has, as a choice: what frames of a shot repeat, so that no caustic comes and
-// goes. Both are the
-// pilot's if there was no earlier run. `of`: whose they are.
+// Which light paths a timed run has, as a choice: frames of a shot repeat it, so that no caustic comes and
+// goes. What is given is the pilot's, and stays if there was no earlier run. `of`: whose they are.
 void choose_light_paths(methods::TimedChoices& choices, const char* of, double& light_paths, bool& aim);
 
 }  // namespace lumirank::pipeline

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
+#include "pathtrace/light_targets.h"
 #include "pipeline/light_path_pilot.h"
 
 namespace lumirank::pipeline {
@@ -120,8 +121,10 @@ RestPlan plan_rest(const world::World& world, const View& view, const RenderSett
     plan.paths = std::max(16, settings.view.spp_or_default());
   else if (plan.pilot.matters())
     plan.paths = plan.pilot.paths();
-  // What the pilot's paths from the eye hardly find, paths from the emitters may show.
-  if ((plan.paths == 0 && !plan.piloted) || light_paths == LightPaths::none) return plan;
+  if (light_paths == LightPaths::none) return plan;
+  // What the pilot's paths from the eye hardly find, paths from the emitters may show: by what sends light on
+  // sharply, if there is any.
+  if (plan.paths == 0 && pathtrace::LightTargets(world, {}).empty()) return plan;
   const LightPathPilot light = pilot_light_paths(world, view, settings.seed, pathtrace::Paths::rest, sinks);
   if (plan.paths == 0 && !(light.light_paths > 0 && light.shown > RestPilot::kMinShown)) return plan;
   plan.light_paths = light.light_paths, plan.aim_light_paths = light.aim;
