@@ -71,6 +71,8 @@ enum class LobeSort : std::uint8_t {
   KIND(hair_diffuse, fiber)                                                                                     \
   /* Kajiya and Kay's, normalized; alpha_u = exponent, alpha_v = hair_specular_scale() */                       \
   KIND(hair_specular, fiber)                                                                                    \
+  /* color · one part of what a dielectric fiber scatters: `variant` of `table` (fiber_table.h) */              \
+  KIND(hair_fiber, fiber)                                                                                       \
   /* color · F by `fresnel`; of sheets sheet_reflectance() */                                                    \
   KIND(delta_reflect, delta_reflects)                                                                           \
   /* color · (1 - F), refracts by eta */                                                                        \

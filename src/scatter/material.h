@@ -189,6 +189,13 @@ struct HairMaterial {  // for fibers only: the point's shading.s runs along them
 };
 void add_lobes(const HairMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
+// A dielectric fiber (fiber_table.h), for fibers only.
+struct FiberTable;
+struct HairFiberMaterial {
+  std::shared_ptr<const FiberTable> table;
+};
+void add_lobes(const HairFiberMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct MaskMaterial {
   static constexpr bool transmits = true;
   FloatInput opacity;
@@ -230,8 +237,8 @@ using Material =
     std::variant<DiffuseMaterial, NullMaterial, RoughDiffuseMaterial, ConductorMaterial, DielectricMaterial,
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
                  PrincipledThinMaterial, DiffuseTransmitterMaterial, MeasuredMaterial, CoatingMaterial,
-                 SheenMaterial, HairMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial, NormalMapMaterial,
-                 MixtureMaterial, SlabFaceMaterial>;
+                 SheenMaterial, HairMaterial, HairFiberMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial,
+                 NormalMapMaterial, MixtureMaterial, SlabFaceMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

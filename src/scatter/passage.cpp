@@ -109,6 +109,7 @@ struct HairVisitor {
     return false;
   }
   bool operator()(const HairMaterial&) const { return true; }
+  bool operator()(const HairFiberMaterial&) const { return true; }
   bool operator()(const MaskMaterial& m) const { return set.is_hair(m.nested); }
   bool operator()(const MixtureMaterial& m) const {
     for (const MixtureMaterial::Part& part : m.parts)

@@ -62,7 +62,8 @@ bool MaterialBuilder::holds_hair(int bsdf, std::size_t depth) const {
   if (bsdf < 0 || static_cast<std::size_t>(bsdf) >= desc_.bsdfs.size() || depth > desc_.bsdfs.size())
     return false;
   const auto& kind = desc_.bsdfs[static_cast<std::size_t>(bsdf)].kind;
-  if (std::holds_alternative<sd::HairDesc>(kind)) return true;
+  if (std::holds_alternative<sd::HairDesc>(kind) || std::holds_alternative<sd::HairFiberDesc>(kind))
+    return true;
   // Of two sides the front alone lies on fibers.
   if (const auto* m = std::get_if<sd::TwoSidedDesc>(&kind)) return holds_hair(m->front, depth + 1);
   bool found = false;
@@ -99,6 +100,12 @@ int MaterialBuilder::instead_around_hair(const sd::BsdfDesc& b) {
     return hair;
   }
   return sd::kNone;
+}
+
+std::shared_ptr<const sc::FiberTable> MaterialBuilder::fiber_table(const sc::FiberOptics& fiber) {
+  for (const auto& [optics, table] : fiber_tables_)
+    if (optics == fiber) return table;
+  return fiber_tables_.emplace_back(fiber, sc::make_fiber_table(fiber)).second;
 }
 
 MaterialBuilder::Traits MaterialBuilder::traits_of(const sc::Material& material) const {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scatter/fiber_table.h"
 #include "scatter/material.h"
 #include "scenedesc/schema/scene_desc.h"
 #include "world/notes.h"
@@ -38,6 +39,8 @@ class MaterialBuilder {
   bool holds_hair(int bsdf, std::size_t depth = 0) const;
   // On fibers: hair has no sides, no bumps and does not mix with the BSDFs of surfaces. kNone: it may stay.
   int instead_around_hair(const scenedesc::BsdfDesc& b);
+  // Made once for all materials that ask for the same.
+  std::shared_ptr<const scatter::FiberTable> fiber_table(const scatter::FiberOptics& fiber);
   // A two-sided wrapper around something that lets light through is replaced by its contents: -1 if it may
   // stay.
   int instead_of_two_sided(const scenedesc::TwoSidedDesc& d, const SourceLocation& where);
@@ -49,6 +52,7 @@ class MaterialBuilder {
   std::vector<Traits> traits_;
   // Of each description: ≥ 0 built, -1 not yet, -2 being built. Those with hair differ between the carriers.
   std::vector<int> index_, index_on_fibers_;
+  std::vector<std::pair<scatter::FiberOptics, std::shared_ptr<const scatter::FiberTable>>> fiber_tables_;
   int default_ = -1;
 };
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "scenedesc/schema/files.h"
+#include "scenedesc/schema/hair.h"
 #include "world/material_builder.h"
 
 namespace lumirank::world {
@@ -97,6 +98,14 @@ class MaterialBuilder::Conversion {
     if (carrier_ == Carrier::fibers) return by_fields(d);
     builder_.notes_.warn(where_, "a hair BSDF on a surface", "diffuse of its diffuse reflectance");
     return sc::DiffuseMaterial{builder_.textures_.color(d.diffuse_reflectance, where_)};
+  }
+  sc::Material operator()(const sd::HairFiberDesc& d) const {
+    if (carrier_ == Carrier::fibers)
+      return sc::HairFiberMaterial{builder_.fiber_table(
+          {d.sigma_a, checked_index(Rgb(d.eta), where_).r, d.beta_m, d.beta_n, d.tilt * (kPi / 180)})};
+    const Rgb color = sd::hair_from_absorption(d.sigma_a, d.eta, d.beta_m).diffuse_reflectance.value;
+    builder_.notes_.warn(where_, "a hair BSDF on a surface", "diffuse of the color of what has been inside");
+    return sc::DiffuseMaterial{sc::ColorInput{color, -1}};
   }
   sc::Material operator()(const sd::CoatingDesc& d) const {
     const int below = nested(d.nested);

@@ -19,8 +19,16 @@ using test::mean_color;
 using test::mean_of;
 using test::student_quantile;
 
+const std::string kKajiyaKay =
+    "<bsdf type=\"kajiyakay\"><rgb name=\"diffuse_reflectance\" value=\"0.5,0.4,0.3\"/><rgb "
+    "name=\"specular_reflectance\" value=\"0.3\"/><float name=\"exponent\" value=\"15\"/></bsdf>";
+const std::string kBlond =
+    "<bsdf type=\"hair\"><float name=\"eumelanin\" value=\"0.1\"/><float name=\"pheomelanin\" "
+    "value=\"0.3\"/><float name=\"longitudinal_roughness\" value=\"0.8\"/><float "
+    "name=\"azimuthal_roughness\" value=\"0.6\"/></bsdf>";
+
 // 400 leaning hairs of length 0.3 on a black floor around the origin, and a white wall 0.9 away.
-std::string fur_and_wall(const test::TemporaryFolder& folder) {
+std::string fur_and_wall(const test::TemporaryFolder& folder, const std::string& bsdf) {
   const std::string file = folder / "fur.txt";
   std::ofstream out(file);
   Rng rng(1, Stage::test);
@@ -34,9 +42,8 @@ std::string fur_and_wall(const test::TemporaryFolder& folder) {
     }
     out << '\n';
   }
-  return "<shape type=\"bsplinecurve\"><string name=\"filename\" value=\"" + file +
-         "\"/><bsdf type=\"kajiyakay\"><rgb name=\"diffuse_reflectance\" value=\"0.5,0.4,0.3\"/><rgb "
-         "name=\"specular_reflectance\" value=\"0.3\"/><float name=\"exponent\" value=\"15\"/></bsdf></shape>"
+  return "<shape type=\"bsplinecurve\"><string name=\"filename\" value=\"" + file + "\"/>" + bsdf +
+         "</shape>"
          "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"3\"/><rotate x=\"1\" "
          "angle=\"-90\"/></transform><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
          "value=\"0\"/></bsdf></shape>"
@@ -70,9 +77,10 @@ RenderSettings unclamped(const char* only) {
 // false alarm in one of 1000 runs of each test, its three channels together. (Each sees the other's fur from
 // the axis and its own as a ribbon, so they agree in the limit of thin hair: of the hairs' radius over the
 // way between them, here a tenth, little is left.)
-void expect_equal_means(const std::string& body, const char* only, int spp) {
+void expect_equal_means(const std::string& body, const char* only, int spp,
+                        const std::string& bsdf = kKajiyaKay) {
   const test::TemporaryFolder folder;
-  const Scene scene = test::load_text(fur_and_wall(folder) + body);
+  const Scene scene = test::load_text(fur_and_wall(folder, bsdf) + body);
   RenderSettings settings = unclamped(only);
   ReferenceSettings how;
   how.paths = ReferencePaths::columns;
@@ -103,6 +111,17 @@ TEST(HairUnbiased, LightThatFurGetsFromAWall) {
   expect_equal_means(
       test::point_camera("1.5,1.2,1.5", "0,0.15,0", 12, 14) + spot("-0.1,1.9,0", "-0.9,0.9,0", 27),
       "indirect", 384);
+}
+
+// Light that went through, which the tests above have not; a light on hair and a receiver on hair.
+TEST(HairUnbiased, LightThatBlondFurSendsToAWall) {
+  expect_equal_means(test::point_camera("0.5,0.8,0", "-1.5,0.8,0", 12, 20) + spot("0.2,2,0", "0,0.1,0", 8),
+                     "indirect", 192, kBlond);
+}
+TEST(HairUnbiased, LightThatBlondFurGetsFromAWall) {
+  expect_equal_means(
+      test::point_camera("1.5,1.2,1.5", "0,0.15,0", 12, 14) + spot("-0.1,1.9,0", "-0.9,0.9,0", 27),
+      "indirect", 384, kBlond);
 }
 
 // One straight hair in the beam of a lamp, and the wall beside it, by direct integration over the hair:

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "scatter/fiber_table.h"
 #include "scatter/merl_table.h"
 #include "scatter/microfacet.h"
 
@@ -119,6 +120,12 @@ BitmapTexture bitmap(int width, int height, Rgb (*value)(int, int)) {
 
 BsdfCase hair(std::string name, float diffuse, float specular, float exponent) {
   BsdfCase c = single("hair_" + name, HairMaterial{gray(diffuse), gray(specular), number(exponent)});
+  c.inside_too = c.fiber = true;
+  return c;
+}
+
+BsdfCase hair_fiber(std::string name, const FiberOptics& fiber) {
+  BsdfCase c = single("hair_fiber_" + name, HairFiberMaterial{make_fiber_table(fiber)});
   c.inside_too = c.fiber = true;
   return c;
 }
@@ -278,6 +285,10 @@ std::vector<BsdfCase> build() {
   list.push_back(hair("specular_3", 0, 1, 3));
   list.push_back(hair("specular_2000", 0, 1, 2000));
   list.push_back(hair("brown", 0.4f, 0.2f, 40));
+  list.push_back(hair_fiber("clear", {Rgb(0), 1.55f, 0.3f, 0.3f, 0}));
+  list.push_back(hair_fiber("brown", {Rgb(0.4f, 0.7f, 1.6f), 1.55f, 0.25f, 0.4f, 0.05f}));
+  list.push_back(hair_fiber("dark_smooth", {Rgb(3, 5, 8), 1.4f, 0.08f, 0.05f, 0.1f}));
+  list.push_back(hair_fiber("rough", {Rgb(0.1f), 1.6f, 0.9f, 0.9f, -0.3f}));
   list.push_back(
       nested("mask_hair", HairMaterial{gray(0.3f), gray(0.5f), number(20)}, MaskMaterial{number(0.6f), 0}));
   list.back().inside_too = list.back().fiber = true;

@@ -121,16 +121,28 @@ TEST(MitsubaCurves, ShapesOfBothDialects) {
   EXPECT_NE(old.warnings[0].what.find("\"reduction\""), std::string::npos);
 }
 
-TEST(MitsubaCurves, HairIsReplacedByKajiyaKayAndSaysSo) {
+TEST(MitsubaCurves, Hair) {
   const SceneDesc s = scene("<bsdf type=\"hair\"/>", "3.0.0");
-  ASSERT_EQ(s.warnings.size(), 1u);
-  EXPECT_NE(s.warnings[0].used_instead.find("Kajiya-Kay"), std::string::npos);
-  const auto& brown = std::get<HairDesc>(s.bsdfs.at(0).kind);
-  EXPECT_GT(brown.diffuse_reflectance.value.r, brown.diffuse_reflectance.value.b);
+  EXPECT_TRUE(s.warnings.empty());
+  const auto& brown = std::get<HairFiberDesc>(s.bsdfs.at(0).kind);
+  EXPECT_EQ(brown.sigma_a, hair_absorption(1.3f, 0.2f));
+  EXPECT_NEAR(brown.eta, 1.55f, 0.01f);
+  EXPECT_EQ(brown.tilt, 2);
+  const SceneDesc given = scene(
+      "<bsdf type=\"hair\"><rgb name=\"sigma_a\" value=\"0.1,0.2,0.3\"/><float name=\"scale\" value=\"2\"/>"
+      "<float name=\"longitudinal_roughness\" value=\"0.1\"/><float name=\"azimuthal_roughness\" "
+      "value=\"0.2\"/><float name=\"scale_tilt\" value=\"-3\"/></bsdf>",
+      "3.0.0");
+  const auto& own_values = std::get<HairFiberDesc>(given.bsdfs.at(0).kind);
+  EXPECT_NEAR(own_values.sigma_a.g, 0.4f, 1e-6f);
+  EXPECT_EQ(own_values.beta_m, 0.1f);
+  EXPECT_EQ(own_values.beta_n, 0.2f);
+  EXPECT_EQ(own_values.tilt, -3);
   for (const char* bad :
        {"<float name=\"eumelanin\" value=\"-1\"/>", "<float name=\"longitudinal_roughness\" value=\"2\"/>",
         "<float name=\"eumelanin\" value=\"1\"/><rgb name=\"sigma_a\" value=\"1,1,1\"/>",
-        "<rgb name=\"sigma_a\" value=\"1,-1,1\"/>"})
+        "<rgb name=\"sigma_a\" value=\"1,-1,1\"/>", "<float name=\"azimuthal_roughness\" value=\"-1\"/>",
+        "<float name=\"scale_tilt\" value=\"30\"/>"})
     EXPECT_THROW(scene("<bsdf type=\"hair\">" + std::string(bad) + "</bsdf>", "3.0.0"), InputError) << bad;
   const SceneDesc own = scene(
       "<bsdf type=\"kajiyakay\"><rgb name=\"diffuse_reflectance\" value=\"0.1,0.2,0.3\"/><float "

@@ -69,13 +69,13 @@ TEST(MitsubaAlias, IsASecondName) {
 TEST(MitsubaWarnings, NameTheLineAndWhatIsUsedInstead) {
   const SceneDesc scene =
       parse(kCamera +
-            "\n<shape type=\"heightfield\"/>\n<bsdf type=\"hair\"/>\n<bsdf type=\"varnish\"><bsdf "
+            "\n<shape type=\"heightfield\"/>\n<bsdf type=\"normalized\"/>\n<bsdf type=\"varnish\"><bsdf "
             "type=\"null\"/></bsdf>\n" +
             "<shape type=\"sphere\"><float name=\"raduis\" value=\"2\"/></shape>\n" +
             "<shape type=\"sphere\"><medium name=\"interior\" type=\"homogeneous\"/></shape>");
   ASSERT_EQ(scene.warnings.size(), 4u);
   const std::pair<int, const char*> expected[] = {{3, "shape \"heightfield\""},
-                                                  {4, "BSDF \"hair\""},
+                                                  {4, "BSDF \"normalized\""},
                                                   {5, "BSDF \"varnish\""},
                                                   {6, "did you mean \"radius\"?"}};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -87,11 +87,11 @@ TEST(MitsubaWarnings, NameTheLineAndWhatIsUsedInstead) {
 
 TEST(MitsubaWarnings, StrictMakesTheFirstAnError) {
   try {
-    parse(kCamera + "\n<bsdf type=\"hair\"/>", "3.0.0", {{}, true});
+    parse(kCamera + "\n<shape type=\"heightfield\"/>", "3.0.0", {{}, true});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.where().line, 3);
-    EXPECT_NE(std::string(error.what()).find("\"hair\""), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("\"heightfield\""), std::string::npos);
   }
 }
 

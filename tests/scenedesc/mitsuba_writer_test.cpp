@@ -8,6 +8,7 @@
 #include <set>
 
 #include "round_trip.h"
+#include "scenedesc/schema/hair.h"
 
 namespace lumirank::scenedesc {
 namespace {
@@ -357,7 +358,7 @@ TEST(MitsubaWriter, MeshesAndPicturesInMemoryAreWrittenOnce) {
   EXPECT_EQ(read_mesh(file).uvs, mesh->uvs);
 }
 
-// Mitsuba has another model of hair; what is written has the same energy, so it is read as the same hair.
+// Mitsuba has no Kajiya-Kay hair; what is written has the same energy.
 TEST(MitsubaWriter, HairAndItsCurvesComeBack) {
   const test::TemporaryFolder folder;
   SceneDesc scene;
@@ -367,6 +368,8 @@ TEST(MitsubaWriter, HairAndItsCurvesComeBack) {
   hair.specular_reflectance.value = Rgb(0.08f);
   hair.exponent.value = 30;
   scene.bsdfs.emplace_back().kind = hair;
+  const HairFiberDesc fiber{{0.1f, 0.3f, 0.7f}, 1.5f, 0.2f, 0.6f, 3};
+  scene.bsdfs.emplace_back().kind = fiber;
   CurvesDesc c;
   c.basis = CurvesDesc::Basis::linear;
   c.points = {{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {0, 0.1f, 0}, {4, 0, 0}};
@@ -376,17 +379,26 @@ TEST(MitsubaWriter, HairAndItsCurvesComeBack) {
     c.basis = basis;
     if (basis == CurvesDesc::Basis::bspline) c.first = {0, 5};
     scene.shapes.emplace_back().kind = c;
-    scene.shapes.back().bsdf = 0;
+    scene.shapes.back().bsdf = basis == CurvesDesc::Basis::linear ? 0 : 1;
   }
   const RoundTrip trip(scene, folder);
   ASSERT_EQ(trip.first.warnings.size(), 1u);
   EXPECT_NE(trip.first.warnings[0].what.find("hair"), std::string::npos);
-  const auto& back =
-      std::get<HairDesc>(trip.again.bsdfs.at(static_cast<std::size_t>(trip.again.shapes.at(0).bsdf)).kind);
+  const auto written = [&](std::size_t shape) {
+    return std::get<HairFiberDesc>(
+        trip.again.bsdfs.at(static_cast<std::size_t>(trip.again.shapes.at(shape).bsdf)).kind);
+  };
+  const HairFiberDesc near = written(0), same = written(1);
+  const HairDesc back = hair_from_absorption(near.sigma_a, near.eta, near.beta_m);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(back.diffuse_reflectance.value[i], hair.diffuse_reflectance.value[i], 1e-4f);
   EXPECT_NEAR(back.specular_reflectance.value.g, 0.08f, 1e-4f);
   EXPECT_NEAR(back.exponent.value, 30, 1e-2f);
+  EXPECT_EQ(same.sigma_a, fiber.sigma_a);
+  EXPECT_EQ(same.eta, fiber.eta);
+  EXPECT_EQ(same.beta_m, fiber.beta_m);
+  EXPECT_EQ(same.beta_n, fiber.beta_n);
+  EXPECT_EQ(same.tilt, fiber.tilt);
   for (std::size_t k = 0; k < 2; ++k) {
     const auto& wanted = std::get<CurvesDesc>(scene.shapes[k].kind);
     const CurvesDesc read = read_curves(std::get<CurvesDesc>(trip.again.shapes.at(k).kind));

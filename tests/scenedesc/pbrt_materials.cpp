@@ -42,27 +42,39 @@ TEST(PbrtMaterial, TexturedRoughnessIsRemappedPointByPoint) {
 }
 
 TEST(PbrtMaterial, HairIsThatOfItsAbsorption) {
-  const auto hair = [](const std::string& parameters) {
+  const auto expect = [](const std::string& parameters, Rgb sigma_a, float eta, float beta_m, float beta_n,
+                         float tilt) {
     const SceneDesc scene = pbrt_material("\"hair\" " + parameters);
-    EXPECT_NE(only_warning(scene).what.find("hair"), std::string::npos) << parameters;
-    return inner<HairDesc>(scene);
-  };
-  const auto expect = [](const HairDesc& got, const HairDesc& want) {
-    for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(got.diffuse_reflectance.value[c], want.diffuse_reflectance.value[c], 1e-5f);
-    EXPECT_FLOAT_EQ(got.specular_reflectance.value.r, want.specular_reflectance.value.r);
-    EXPECT_FLOAT_EQ(got.exponent.value, want.exponent.value);
+    EXPECT_TRUE(scene.warnings.empty()) << parameters;
+    const auto& got = inner<HairFiberDesc>(scene);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(got.sigma_a[c], sigma_a[c], 1e-6f) << parameters;
+    EXPECT_EQ(got.eta, eta);
+    EXPECT_EQ(got.beta_m, beta_m);
+    EXPECT_EQ(got.beta_n, beta_n);
+    EXPECT_EQ(got.tilt, tilt);
   };
   // Brown by default, as pbrt's.
-  expect(hair(""), hair_from_absorption(hair_absorption(1.3f, 0), 1.55f, 0.3f));
-  expect(hair("\"float pheomelanin\" 0.7"), hair_from_absorption(hair_absorption(0, 0.7f), 1.55f, 0.3f));
-  expect(hair("\"rgb sigma_a\" [ .1 .5 2 ] \"float eta\" 1.4 \"float beta_m\" 0.2"),
-         hair_from_absorption(Rgb(.1f, .5f, 2), 1.4f, 0.2f));
+  expect("", hair_absorption(1.3f, 0), 1.55f, 0.3f, 0.3f, 2);
+  expect("\"float pheomelanin\" 0.7 \"float alpha\" 3", hair_absorption(0, 0.7f), 1.55f, 0.3f, 0.3f, 3);
+  expect("\"rgb sigma_a\" [ .1 .5 2 ] \"float eta\" 1.4 \"float beta_m\" 0.2 \"float beta_n\" 0.4",
+         Rgb(.1f, .5f, 2), 1.4f, 0.2f, 0.4f, 2);
   // Chiang et al. 2016, section 4.2, at β_n = 0.5: the width is 5.969 - 0.1075 + 0.633 - 1.34125 + 0.348375 +
   // 0.00765625 = 5.50928.
   const float w = std::log(0.25f) / 5.50928f;
-  expect(hair("\"rgb reflectance\" [ .25 .25 .25 ] \"float beta_n\" 0.5"),
-         hair_from_absorption(Rgb(w * w), 1.55f, 0.3f));
+  expect("\"rgb reflectance\" [ .25 .25 .25 ] \"float beta_n\" 0.5", Rgb(w * w), 1.55f, 0.3f, 0.5f, 2);
+  for (const char* bad : {"\"float beta_m\" 1.5", "\"float beta_n\" -0.1", "\"float alpha\" 21",
+                          "\"rgb sigma_a\" [ -1 0 0 ]", "\"float eta\" 0"})
+    EXPECT_THROW(pbrt_material(std::string("\"hair\" ") + bad), InputError) << bad;
+}
+
+TEST(PbrtMaterial, HairOfATexturedColorIsKajiyaKay) {
+  const SceneDesc scene = pbrt_material("\"hair\" \"texture color\" \"t\" \"float beta_m\" 0.2",
+                                        "Texture \"t\" \"spectrum\" \"checkerboard\"\n");
+  EXPECT_NE(only_warning(scene).what.find("hair"), std::string::npos);
+  const auto& got = inner<HairDesc>(scene);
+  const auto texture = static_cast<std::size_t>(got.diffuse_reflectance.texture);
+  EXPECT_EQ(scene.textures.at(texture).id, "t");
+  EXPECT_EQ(got.exponent.value, hair_from_absorption(Rgb(0), 1.55f, 0.2f).exponent.value);
 }
 
 TEST(PbrtMaterial, Dielectrics) {

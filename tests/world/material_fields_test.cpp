@@ -229,6 +229,31 @@ TEST(MaterialFields, OfHair) {
   SAME(diffuse_reflectance), SAME(specular_reflectance), SAME(exponent);
 }
 
+TEST(MaterialFields, HairOfTheSameOpticsHasOneTable) {
+  auto desc = empty_scene();
+  add_emitter(desc, sd::PointLightDesc{});
+  for (const float tilt : {2.0f, 2.0f, 3.0f}) {
+    sd::CurvesDesc rod;
+    rod.basis = sd::CurvesDesc::Basis::linear;
+    rod.points = {{0, 0, 0}, {1, 0, 0}}, rod.radii = {0.1f, 0.1f}, rod.first = {0, 2};
+    const int shape = add_shape(desc, std::move(rod));
+    sd::HairFiberDesc hair;
+    hair.tilt = tilt;
+    desc.shapes[static_cast<std::size_t>(shape)].bsdf = add_bsdf(desc, hair);
+  }
+  // On what is no fiber it is the color of what has been inside.
+  const int ball = add_shape(desc, sd::SphereDesc{});
+  desc.shapes[static_cast<std::size_t>(ball)].bsdf = 0;
+  const World w = build(desc);
+  const auto& all = w.materials().materials;
+  const auto table = [&](std::size_t placement) {
+    return std::get<sc::HairFiberMaterial>(all[w.rays().placements()[placement].material]).table;
+  };
+  EXPECT_EQ(table(0), table(1));
+  EXPECT_NE(table(0), table(2));
+  EXPECT_TRUE(std::holds_alternative<sc::DiffuseMaterial>(all[w.rays().placements()[3].material]));
+}
+
 #undef SAME
 
 }  // namespace

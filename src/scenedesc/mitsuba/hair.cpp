@@ -2,7 +2,6 @@
 #include "scenedesc/schema/hair.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "scenedesc/data/ior.h"
 #include "scenedesc/mitsuba/bsdf_kinds.h"
@@ -25,15 +24,9 @@ float amount(Plugin& p, const std::string& name, float fallback) {
   return value;
 }
 
-std::string show(Rgb c) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.3g, %.3g, %.3g)", c.r, c.g, c.b);
-  return text;
-}
-
 }  // namespace
 
-BsdfKind hair(Reader& reader, Plugin& p) {
+BsdfKind hair(Reader&, Plugin& p) {
   const bool pigments = p.has("eumelanin") || p.has("pheomelanin");
   if (p.has("sigma_a") && pigments)
     throw InputError(p.where_of("sigma_a"), p.title() + " has both \"sigma_a\" and pigments",
@@ -44,15 +37,14 @@ BsdfKind hair(Reader& reader, Plugin& p) {
     if (sigma_a.r < 0 || sigma_a.g < 0 || sigma_a.b < 0)
       throw InputError(p.where_of("sigma_a"), "\"sigma_a\" of " + p.title() + " is negative");
   }
-  const float eta = relative_index(p, "amber");
-  const HairDesc out = hair_from_absorption(sigma_a, eta, share(p, "longitudinal_roughness", 0.3f));
-  share(p, "azimuthal_roughness", 0.3f);
-  p.ignore({"scale", "scale_tilt"});
-  char exponent[32];
-  std::snprintf(exponent, sizeof exponent, "%.3g", out.exponent.value);
-  reader.warn(p.where(), "the BSDF \"hair\"",
-              "Kajiya-Kay hair of the same brightness: diffuse " + show(out.diffuse_reflectance.value) +
-                  ", specular " + show(out.specular_reflectance.value) + ", exponent " + exponent);
+  HairFiberDesc out;
+  out.sigma_a = sigma_a, out.eta = relative_index(p, "amber");
+  out.beta_m = share(p, "longitudinal_roughness", 0.3f);
+  out.beta_n = share(p, "azimuthal_roughness", 0.3f);
+  out.tilt = p.number("scale_tilt", 2);
+  if (!(std::abs(out.tilt) <= kMaxHairTilt))
+    throw InputError(p.where_of("scale_tilt"), "\"scale_tilt\" of " + p.title() + " is beyond 20 degrees");
+  p.ignore({"scale"});
   return out;
 }
 

@@ -221,13 +221,15 @@ class MaterialMaker {
   const bool remap_;
 };
 
-// Kajiya-Kay of the same energy in place of pbrt's model (Chiang et al. 2016), both in radii of the fiber.
+// Chiang et al. 2016. What is painted is Kajiya-Kay of the same energy.
 int MaterialMaker::hair() {
   const float beta_m = p_.number("beta_m", 0.3f), beta_n = p_.number("beta_n", 0.3f);
   const float eta = p_.number("eta", 1.55f);
   if (!(eta > 0)) p_.fail("eta", "is not positive");
   if (!(beta_m >= 0 && beta_m <= 1)) p_.fail("beta_m", "is not between 0 and 1");
-  p_.ignore({"alpha"});
+  if (!(beta_n >= 0 && beta_n <= 1)) p_.fail("beta_n", "is not between 0 and 1");
+  const float alpha = p_.number("alpha", 2);
+  if (!(std::abs(alpha) <= kMaxHairTilt)) p_.fail("alpha", "is beyond 20 degrees");
   Rgb sigma;
   ColorInput painted;
   if (const auto given = constant_color(p_, "sigma_a", Intent::unbounded)) {
@@ -249,10 +251,15 @@ int MaterialMaker::hair() {
   }
   for (int i = 0; i < 3; ++i)
     if (!(sigma[i] >= 0)) p_.fail("sigma_a", "is negative");
+  if (painted.texture == kNone) {
+    HairFiberDesc out;
+    out.sigma_a = sigma, out.eta = eta, out.beta_m = beta_m, out.beta_n = beta_n, out.tilt = alpha;
+    return add(out);
+  }
   HairDesc out = hair_from_absorption(sigma, eta, beta_m);
-  if (painted.texture != kNone) out.diffuse_reflectance = painted;
+  out.diffuse_reflectance = painted;
   reader_.warn_once(
-      p_.where(), "pbrt's model of hair",
+      p_.where(), "hair whose color is a texture",
       "Kajiya-Kay hair of the same brightness, which sends light that went through a fiber back "
       "as well as on, and has no second highlight and no glints");
   return add(out);

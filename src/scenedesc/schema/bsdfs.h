@@ -186,6 +186,23 @@ struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meet
                       Field{"exponent", &HairDesc::exponent, Role::number, Range::not_negative}};
   }
 };
+// A dielectric fiber with a rough surface (Chiang et al. 2016), as pbrt's and Mitsuba 3's "hair"; only for
+// curves.
+struct HairFiberDesc {
+  Rgb sigma_a{0};                      // absorption per radius of the fiber
+  float eta = 1.55f;                   // of the fiber over what is around it
+  float beta_m = 0.3f, beta_n = 0.3f;  // longitudinal and azimuthal roughness
+  float tilt = 2;                      // of the scales, towards the root of the curve, degrees
+
+  static constexpr BsdfInfo kInfo{"hair"};
+  static constexpr auto fields() {
+    return std::tuple{Field{"sigma_a", &HairFiberDesc::sigma_a, Role::own},
+                      Field{"eta", &HairFiberDesc::eta, Role::own, Range::index},
+                      Field{"longitudinal_roughness", &HairFiberDesc::beta_m, Role::own},
+                      Field{"azimuthal_roughness", &HairFiberDesc::beta_n, Role::own},
+                      Field{"scale_tilt", &HairFiberDesc::tilt, Role::own}};
+  }
+};
 struct PrincipledThinDesc {  // Mitsuba 3's "principledthin": a sheet without thickness, alike on both sides
   ColorInput base_color{Rgb(0.5f)};
   FloatInput roughness{0.5f}, anisotropic{0}, spec_trans{0}, spec_tint{0}, sheen{0}, sheen_tint{0},
@@ -329,8 +346,8 @@ struct MixtureDesc {  // Σ weight_k · bsdf_k; "blendbsdf" has two entries and 
 using BsdfKind =
     std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc,
                  ThinDielectricDesc, PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, PrincipledThinDesc,
-                 DiffuseTransmitterDesc, MeasuredDesc, CoatingDesc, SheenDesc, HairDesc, MaskDesc,
-                 TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>;
+                 DiffuseTransmitterDesc, MeasuredDesc, CoatingDesc, SheenDesc, HairDesc, HairFiberDesc,
+                 MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>;
 
 struct BsdfDesc {
   std::string id;

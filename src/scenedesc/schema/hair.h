@@ -6,6 +6,9 @@
 
 namespace lumirank::scenedesc {
 
+// Degrees; real hair has two or three.
+inline constexpr float kMaxHairTilt = 20;
+
 // Absorption per radius of a fiber with so much of the two pigments of hair (d'Eon et al. 2011, section 6.1).
 Rgb hair_absorption(float eumelanin, float pheomelanin);
 

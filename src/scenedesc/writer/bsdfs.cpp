@@ -171,6 +171,15 @@ void MitsubaWriter::write(const HairDesc& d, const BsdfDesc& desc, const std::st
   xml_.close();
 }
 
+void MitsubaWriter::write(const HairFiberDesc& d, const BsdfDesc&, const std::string& id) {
+  open_bsdf("hair", id);
+  xml_.color("sigma_a", d.sigma_a);
+  xml_.number("int_ior", d.eta), xml_.number("ext_ior", 1);
+  xml_.number("longitudinal_roughness", d.beta_m), xml_.number("azimuthal_roughness", d.beta_n);
+  xml_.number("scale_tilt", d.tilt);
+  xml_.close();
+}
+
 void MitsubaWriter::write(const SheenDesc& d, const BsdfDesc& desc, const std::string& id) {
   warn(desc.where, "sheen of cloth", "the BSDF below it alone");
   kind_of(scene_.bsdfs[static_cast<std::size_t>(d.nested)], id);

@@ -65,6 +65,7 @@ class MitsubaWriter {
   void write(const PhongDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const WardDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const HairDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const HairFiberDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const CoatingDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const SheenDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const TwoSidedDesc& d, const BsdfDesc& desc, const std::string& id);
