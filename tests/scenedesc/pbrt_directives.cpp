@@ -151,7 +151,8 @@ TEST(PbrtWarnings, WhatThereIsNot) {
         "Material \"measured\" \"string filename\" \"x.bsdf\"\n",
         "Material \"subsurface\" \"rgb mfp\" [ 1 1 1 ]\n",
         "Texture \"t\" \"float\" \"wrinkled\" \"float roughness\" 1\n",
-        "Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ] \"integer indices\" [ 0 1 2 ]\n",
+        "Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ] \"integer indices\" [ 0 1 2 ] \"integer "
+        "levels\" 40\n",
         "LightSource \"infinite\" \"point3 portal\" [ 0 0 0  1 0 0  1 1 0  0 1 0 ]\n"})
     EXPECT_EQ(only_warning(pbrt_world(world)).where.line, 3) << world;
   // A name and a value (parse() in pbrt-v4's parser.cpp).

@@ -77,6 +77,30 @@ TEST(PbrtMaterial, HairOfATexturedColorIsKajiyaKay) {
   EXPECT_EQ(got.exponent.value, hair_from_absorption(Rgb(0), 1.55f, 0.2f).exponent.value);
 }
 
+// What a thick body of the medium sends back.
+TEST(PbrtMaterial, SubsurfaceScatteringHasTheColorOfDepth) {
+  const auto color = [](const std::string& parameters) {
+    const SceneDesc scene = pbrt_material("\"subsurface\" " + parameters);
+    EXPECT_NE(only_warning(scene).what.find("subsurface"), std::string::npos) << parameters;
+    return inner<PlasticDesc>(scene).diffuse_reflectance.value;
+  };
+  EXPECT_EQ(color("\"rgb reflectance\" [ .2 .4 .6 ] \"rgb mfp\" [ 1 2 3 ]"), Rgb(.2f, .4f, .6f));
+  // Half of all that meets the medium is absorbed: s = √½, (1 - s)(1 - 0.139s)/(1 + 1.17s) = 0.1445; and of
+  // isotropic scattering without absorption everything comes back.
+  const Rgb half = color("\"rgb sigma_a\" [ 1 0 3 ] \"rgb sigma_s\" [ 1 2 0 ]");
+  EXPECT_NEAR(half.r, 0.1445f, 1e-3f);
+  EXPECT_EQ(half.g, 1);
+  EXPECT_EQ(half.b, 0);
+  // Forward scattering goes in deeper: g = 1/2 at albedo 2/3 is isotropic scattering of half.
+  const Rgb forward = color("\"rgb sigma_a\" [ 1 1 1 ] \"rgb sigma_s\" [ 2 2 2 ] \"float g\" 0.5");
+  EXPECT_NEAR(forward.r, half.r, 1e-5f);
+  const Rgb skin = color("\"string name\" \"Skin1\" \"float scale\" 50");
+  EXPECT_GT(skin.r, skin.g);
+  EXPECT_GT(skin.g, skin.b);
+  EXPECT_EQ(color(""), color("\"string name\" \"Wholemilk\""));
+  EXPECT_EQ(pbrt_material("\"subsurface\" \"string name\" \"Nothing\"").warnings.size(), 2u);
+}
+
 TEST(PbrtMaterial, Dielectrics) {
   EXPECT_EQ(inner<DielectricDesc>(pbrt_material("\"dielectric\"")).eta, 1.5f);
   EXPECT_EQ(inner<DielectricDesc>(pbrt_material("\"dielectric\" \"float eta\" 1.33")).eta, 1.33f);

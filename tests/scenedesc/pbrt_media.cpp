@@ -60,9 +60,9 @@ TEST(PbrtMedium, Presets) {
   ASSERT_EQ(known.phase.size(), 1u);
   EXPECT_EQ(known.phase[0].g, Rgb(0.82f, 0.8f, 0.75f));
   const SceneDesc scene =
-      pbrt_world(medium_text("food", "\"homogeneous\" \"string preset\" \"Ketchup\" \"float g\" .3"));
+      pbrt_world(medium_text("food", "\"homogeneous\" \"string preset\" \"Mustard\" \"float g\" .3"));
   const Warning warning = only_warning(scene);
-  EXPECT_NE(warning.what.find("\"Ketchup\""), std::string::npos) << warning.what;
+  EXPECT_NE(warning.what.find("\"Mustard\""), std::string::npos) << warning.what;
   expect_near(scene.media.at(0).absorption.value, Rgb(0.0011f, 0.0024f, 0.014f), 1e-7f);
   expect_near(scene.media.at(0).scattering.value, Rgb(2.55f, 3.21f, 3.77f), 1e-6f);
   EXPECT_EQ(scene.media.at(0).phase.at(0).g, Rgb(0.3f));

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenedesc/data/media.h"
+#include "scenedesc/pbrt/media_parts.h"
 #include "scenedesc/pbrt/reader.h"
 #include "scenedesc/schema/hair.h"
 
@@ -202,14 +204,34 @@ class MaterialMaker {
     return add(out);
   }
 
+  // The color that a thick body of the medium has. As in pbrt: a name comes before coefficients, these before
+  // a color, and of nothing stated is whole milk.
+  ColorInput color_of_depth() {
+    const std::string name = p_.text("name", "");
+    const auto known = named_medium(name.empty() ? "Wholemilk" : name);
+    if (!name.empty() && !known)
+      reader_.warn(p_.where_of("name"), "the medium " + in_quotes(name), "whole milk");
+    const bool textured = p_.is_texture("sigma_a") || p_.is_texture("sigma_s");
+    if (textured) reader_.warn(p_.where(), "subsurface scattering by textures", "whole milk");
+    NamedMedium medium = known.value_or(*named_medium("Wholemilk"));
+    if (name.empty() && !textured && p_.has("sigma_a") && p_.has("sigma_s")) {
+      medium.absorption = constant(p_, "sigma_a", Rgb(0), Intent::unbounded);
+      medium.scattering = constant(p_, "sigma_s", Rgb(0), Intent::unbounded);
+    } else if (name.empty() && p_.has("reflectance")) {
+      return color("reflectance", 0.5f);
+    }
+    return {albedo_of_depth(medium.scattering, medium.absorption, std::min(0.999f, p_.number("g", 0))),
+            kNone};
+  }
+
   int subsurface() {
-    reader_.warn(p_.where(), "subsurface scattering", "a rough plastic");
+    reader_.warn(p_.where(), "subsurface scattering", "a rough plastic of the color of a thick body");
     PlasticDesc out;
     out.eta = p_.number("eta", 1.33f);
-    out.diffuse_reflectance = color("reflectance", 0.5f);
+    out.diffuse_reflectance = color_of_depth();
     out.nonlinear = true, out.distribution = Distribution::ggx;
     out.alpha = roughness(reader_, p_, "", remap_).u;
-    p_.ignore({"name", "sigma_a", "sigma_s", "mfp", "g", "scale"});
+    p_.ignore({"name", "sigma_a", "sigma_s", "reflectance", "mfp", "g", "scale"});
     return two_sided(out);
   }
 

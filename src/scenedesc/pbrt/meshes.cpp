@@ -1,6 +1,7 @@
 // Meshes whose vertices the scene itself lists.
 #include <algorithm>
 
+#include "scenedesc/meshes/loop_subdivision.h"
 #include "scenedesc/pbrt/grids.h"
 #include "scenedesc/pbrt/shape_kinds.h"
 
@@ -77,10 +78,18 @@ std::optional<ShapeKind> loop_surface(Reader& reader, Params& p) {
   if (mesh.positions.empty())
     throw InputError(p.where_of("P"), p.title() + " has no points", "add \"point3 P\" [ … ]");
   mesh.indices = indices(p, mesh.positions.size(), 3);
-  p.integer("levels", 3);
+  const int levels = p.integer("levels", 3);
+  if (levels < 0) p.fail("levels", "is negative");
   p.ignore({"scheme"});
-  reader.warn(p.where(), "subdivision surfaces (" + p.title() + ")", "the control mesh");
-  return held_mesh(p, std::move(mesh));
+  // Each level has four times as many triangles.
+  constexpr std::size_t kMaxTriangles = 1u << 24;
+  int possible = 0;
+  for (std::size_t n = mesh.triangle_count(); n > 0 && possible < levels && n <= kMaxTriangles / 4; n *= 4)
+    ++possible;
+  if (possible < levels && mesh.triangle_count() > 0)
+    reader.warn(p.where_of("levels"), std::to_string(levels) + " levels of subdivision of " + p.title(),
+                std::to_string(possible));
+  return held_mesh(p, loop_subdivided(mesh, possible));
 }
 
 std::optional<ShapeKind> bilinear_mesh(Reader& reader, Params& p) {
