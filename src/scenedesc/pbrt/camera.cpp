@@ -43,11 +43,12 @@ void Reader::read_camera(Params& p, const std::string& type) {
     throw InputError(p.where(), "the camera's transform is singular", "a Scale by 0 perhaps");
   camera_.to_world = between(*inverse, *inverse_at_end, p.where());
   coordinate_systems_["camera"] = {*inverse, *inverse_at_end};
-  if (type == "realistic" || type == "spherical") {
+  if (type == "spherical") {
     warn(p.where(), "the camera \"" + type + "\"", "a perspective camera");
-    p.ignore({"lensfile", "aperturediameter", "aperture", "focusdistance", "mapping"});
+    p.ignore({"mapping"});
     camera_.type = "perspective";
   }
+  if (type == "realistic") read_lens(p);
   camera_.fov = p.number("fov", type == "realistic" ? 40 : 90);
   if (!(camera_.fov > 0 && camera_.fov < 180))
     p.fail("fov", "is not between 0 and 180", "give it in degrees");
@@ -65,6 +66,19 @@ void Reader::read_camera(Params& p, const std::string& type) {
   if (!(camera_.exposure_time > 0)) p.fail("shutterclose", "is not after \"shutteropen\"");
   if (camera_.type == "orthographic" && camera_.lens_radius > 0)
     warn(p.where_of("lensradius"), "depth of field of orthographic cameras", "a sharp picture");
+}
+
+void Reader::read_lens(Params& p) {
+  camera_.type = "perspective";
+  camera_.focus_from_film = p.positive("focusdistance", 10);
+  const double aperture = static_cast<double>(p.positive("aperturediameter", 1));
+  const Place at = p.where_of("lensfile");
+  const auto lens = file(p.required_text("lensfile"), at, "lens file", "a perspective camera of 40 degrees");
+  p.ignore({"aperture"});
+  if (!lens.missing) {
+    camera_.lens = parse_lens(file_text(lens.name, at), lens.name, aperture, at);
+    warn(p.where(), "the lenses of the camera \"realistic\"", "a thin lens of the same view");
+  }
 }
 
 void Reader::read_film(Params& p, const std::string& type) {
@@ -101,8 +115,9 @@ void Reader::read_film(Params& p, const std::string& type) {
     warn(p.where_of("whitebalance"), "white balance", "colors as they are");
   if (p.has("maxcomponentvalue"))
     warn(p.where_of("maxcomponentvalue"), "a limit of the values of samples", "no limit");
-  p.ignore({"filename", "diagonal", "savefp16", "maxcomponentvalue", "coordinatesystem", "nbuckets",
-            "lambdamin", "lambdamax"});
+  film_diagonal_ = p.positive("diagonal", 35);
+  p.ignore({"filename", "savefp16", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin",
+            "lambdamax"});
   if (state_.space != ColorSpace::srgb)
     warn(p.where(), "pictures in another color space than sRGB's", "linear Rec. 709");
 }
@@ -176,6 +191,31 @@ void Reader::finish_camera() {
     film_.filter.radius = 1.5f;
   }
   imaging_ratio_ = camera_.exposure_time * iso_ / 100;
+  // Half the width of what the film sees, in what is 1 before the lens.
+  std::optional<double> half_width;
+  if (camera_.lens) {
+    // The lens file is in millimeters, the scene in meters.
+    constexpr double kMillimeter = 1e-3;
+    const Lens& lens = *camera_.lens;
+    const double to_object = static_cast<double>(camera_.focus_from_film) / kMillimeter;
+    const double image = lens.image_distance(to_object);
+    if (!(image > 0))
+      throw InputError(camera_.where, "nothing so near can be in focus", "give a greater \"focusdistance\"");
+    const double object = to_object - image - (lens.rear_principal - lens.front_principal);
+    // What is in focus is object/image times as large as its picture, and seen from the entrance pupil.
+    const double seen = object + lens.entrance_pupil - lens.front_principal;
+    const double aspect = static_cast<double>(film_.height) / static_cast<double>(film_.width);
+    const double width = static_cast<double>(film_diagonal_) / std::sqrt(1 + aspect * aspect);
+    half_width = 0.5 * width * object / image / seen;
+    camera_.lens_radius = static_cast<float>(lens.entrance_radius * kMillimeter);
+    camera_.focal_distance = static_cast<float>(seen * kMillimeter);
+    // The film is at the camera's place.
+    const double pupil = image + lens.rear_principal - lens.entrance_pupil;
+    camera_.to_world = camera_.to_world * Transform::translate(0, 0, pupil * kMillimeter);
+    // The film gets the light of the solid angle of the exit pupil, as on the axis.
+    const double behind = image + lens.rear_principal - lens.exit_pupil;
+    imaging_ratio_ *= static_cast<float>(M_PI * lens.exit_radius * lens.exit_radius / (behind * behind));
+  }
   scene_.lumens_per_unit = 1 / imaging_ratio_;  // pbrt's lights are of 1 nit, 1 lux or 1 candela
 
   SensorDesc out;
@@ -206,7 +246,7 @@ void Reader::finish_camera() {
     out.kind = camera_.lens_radius > 0 ? SensorKind::thinlens : SensorKind::perspective;
     out.aperture_radius = camera_.lens_radius;
     out.focus_distance = camera_.focal_distance;
-    const double half = std::tan(camera_.fov * M_PI / 360) * 0.5 * width;
+    const double half = half_width.value_or(std::tan(camera_.fov * M_PI / 360) * 0.5 * width);
     out.fov_x = static_cast<float>(std::atan(half) * 360 / M_PI);
   }
   scene_.sensors.push_back(std::move(out));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenedesc/meshes/mesh_reader.h"
+#include "scenedesc/pbrt/lens.h"
 #include "scenedesc/pbrt/params.h"
 #include "scenedesc/pbrt/spectra.h"
 #include "scenedesc/schema/scene_reader.h"
@@ -83,6 +84,7 @@ class Reader : public SceneReader {
 
   // camera.cpp
   void read_camera(Params& p, const std::string& type);
+  void read_lens(Params& p);
   void read_film(Params& p, const std::string& type);
   void read_filter(Params& p, const std::string& type);
   void read_sampler(Params& p, const std::string& type);
@@ -103,6 +105,8 @@ class Reader : public SceneReader {
     std::vector<float> window;
     int medium = kNone;  // a slot
     float fov = 90, lens_radius = 0, focal_distance = 1e6f, exposure_time = 1;
+    std::optional<Lens> lens;   // of "realistic"
+    float focus_from_film = 0;  // meters
   };
 
   void run(const File& file);
@@ -179,6 +183,7 @@ class Reader : public SceneReader {
 
   Camera camera_;
   FilmDesc film_;
+  float film_diagonal_ = 35;  // mm
   int samples_ = 16;
   bool has_camera_ = false, has_integrator_ = false;
   float iso_ = 100, imaging_ratio_ = 1;
