@@ -42,7 +42,8 @@ void light_if_dark(SceneDesc& scene, const ReadOptions& options) {
 }
 
 SceneDesc read_scene(const std::string& filename, const ReadOptions& options) {
-  std::string extension = std::filesystem::path(filename).extension().string();
+  const std::string plain = filename.ends_with(".gz") ? filename.substr(0, filename.size() - 3) : filename;
+  std::string extension = std::filesystem::path(plain).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool gltf = extension == ".gltf" || extension == ".glb";

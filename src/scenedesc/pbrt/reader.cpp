@@ -61,7 +61,7 @@ Reader::NamedFile Reader::file(const std::string& name, const Place& where, cons
 }
 
 std::string Reader::file_text(const std::string& path, const Place& where) const {
-  return read_file(path, where, kMaxText);
+  return read_file(path, where, kMaxPbrtText);
 }
 
 std::string Reader::take_text(Tokens& tokens, const Token& word, const char* what) {
@@ -282,7 +282,7 @@ SceneDesc parse_pbrt(const std::string& text, const std::string& filename, const
 }
 
 SceneDesc read_pbrt(const std::string& filename, const ReadOptions& options) {
-  return parse_pbrt(read_file(filename, SourceLocation{}, kMaxText), filename, options);
+  return parse_pbrt(read_file(filename, SourceLocation{}, kMaxPbrtText), filename, options);
 }
 
 }  // namespace lumirank::scenedesc

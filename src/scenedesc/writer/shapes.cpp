@@ -58,7 +58,9 @@ void MitsubaWriter::open_shape(const char* type, const std::string& id) {
 
 void MitsubaWriter::mesh(const MeshFileDesc& file, const std::string& id) {
   // Written with the normals as they come out of it.
-  if (file.max_smooth_angle || (!file.smooth_without_normals && !file.face_normals))
+  // Mitsuba unpacks no files.
+  if (file.filename.ends_with(".gz") || file.max_smooth_angle ||
+      (!file.smooth_without_normals && !file.face_normals))
     return ply(read_mesh(file), id, "");
   const char* types[] = {"obj", "ply", "serialized"};
   open_shape(types[static_cast<int>(file.format)], id);
