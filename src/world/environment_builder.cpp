@@ -48,6 +48,13 @@ void EnvironmentBuilder::add_constant(Rgb radiance, const sd::EmitterDesc& from)
   add(em::make_environment(1, 1, {radiance}, Frame{}), from);
 }
 
+namespace {
+void tint(image::Image& image, Rgb by) {
+  if (by == Rgb(1)) return;
+  for (Rgb& c : image.pixels) c *= by;
+}
+}  // namespace
+
 void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::EmitterDesc& from) {
   if (!std::isfinite(map.scale) || map.scale < 0)
     throw InputError(from.where, "the environment map's scale is negative or not finite", "give 0 or more");
@@ -73,7 +80,8 @@ void EnvironmentBuilder::add_map(const sd::EnvironmentMapDesc& map, const sd::Em
   if (map.projection == sd::EnvironmentProjection::equal_area)
     add_equal_area(map, std::move(image), from);
   else
-    add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
+    tint(image, map.tint),
+        add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
 }
 
 void EnvironmentBuilder::add_equal_area(const sd::EnvironmentMapDesc& map, image::Image image,
@@ -95,6 +103,7 @@ void EnvironmentBuilder::add_equal_area(const sd::EnvironmentMapDesc& map, image
                        "leave \"illuminance\" out");
     for (Rgb& c : image.pixels) c *= static_cast<float>(*map.illuminance / lux);
   }
+  tint(image, map.tint);
   add(em::make_environment(image.width, image.height, std::move(image.pixels), frame), from);
 }
 

@@ -163,5 +163,26 @@ TEST(PbrtAreaLight, InterfacesDoNotShine) {
   EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
+// The daylight of the temperature is white, as bright as it was.
+TEST(PbrtFilm, WhiteBalanceMakesDaylightWhite) {
+  const auto sky = [](const std::string& film) {
+    const SceneDesc scene =
+        pbrt_world("LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n", "Film \"rgb\" " + film);
+    EXPECT_TRUE(scene.warnings.empty()) << film;
+    return std::get<ConstantEnvironmentDesc>(scene.emitters.at(0).kind).radiance;
+  };
+  const Rgb plain = sky(""), white = sky("\"float whitebalance\" 6504"),
+            cool = sky("\"float whitebalance\" 4000"), warm = sky("\"float whitebalance\" 9000");
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(white[c], plain[c], 5e-3f * plain[c]);
+  // D50 is (0.9642, 1, 0.8251) in XYZ, so (1.176, 0.976, 0.722) in linear sRGB.
+  const Rgb d50 = sky("\"float whitebalance\" 5003");
+  EXPECT_NEAR(d50.r / plain.r, 1 / 1.176f, 0.003f);
+  EXPECT_NEAR(d50.g / plain.g, 1 / 0.976f, 0.003f);
+  EXPECT_NEAR(d50.b / plain.b, 1 / 0.722f, 0.003f);
+  EXPECT_LT(cool.r, cool.b);
+  EXPECT_GT(warm.r, warm.b);
+  EXPECT_THROW(sky("\"float whitebalance\" 10"), InputError);
+}
+
 }  // namespace
 }  // namespace lumirank::scenedesc

@@ -105,6 +105,21 @@ TEST(EqualArea, IlluminanceIsWhatPbrtMakesOfIt) {
   EXPECT_THROW(sky(image::Image(16, 16), map), InputError);
 }
 
+// Illuminance is that of the map before.
+TEST(EqualArea, TintIsOnTopOfEverything) {
+  sd::EnvironmentMapDesc map = octahedral();
+  map.illuminance = 100, map.tint = Rgb(2, 1, 0.5f);
+  for (const auto projection :
+       {sd::EnvironmentProjection::equal_area, sd::EnvironmentProjection::latitude_longitude}) {
+    map.projection = projection;
+    const Rgb seen = sky(image::Image(16, 16, Rgb(3)), map).background({0, 0, 1});
+    const float gray = projection == sd::EnvironmentProjection::equal_area ? 200 / kPi : 3;
+    EXPECT_NEAR(seen.r, 2 * gray, 1e-3f * gray);
+    EXPECT_NEAR(seen.g, gray, 1e-3f * gray);
+    EXPECT_NEAR(seen.b, 0.5f * gray, 1e-3f * gray);
+  }
+}
+
 TEST(EqualArea, OtherPicturesAreLatitudesAndLongitudesWithAWarning) {
   image::Image image(8, 4);
   image.at(1, 0) = Rgb(5);  // longitude 1.5/8 · 2π from +x towards +y, latitude 1/8 · π from +z

@@ -27,6 +27,22 @@ void crop(Params& p, FilmDesc& film, const char* name, const int v[4]) {
     film.crop_width = film.crop_height = 0;
 }
 
+// What makes CIE daylight of a temperature white (1, 1, 1) and leaves its luminance (CIE 15:2004,
+// section 3.1).
+Rgb white_balance_of(float kelvin) {
+  const double t = static_cast<double>(kelvin) * 1.4388 / 1.438;
+  const double x = t <= 7000 ? -4.607e9 / (t * t * t) + 2.9678e6 / (t * t) + 0.09911e3 / t + 0.244063
+                             : -2.0064e9 / (t * t * t) + 1.9018e6 / (t * t) + 0.24748e3 / t + 0.23704;
+  const double y = -3 * x * x + 2.87 * x - 0.275;
+  const double X = x / y, Z = (1 - x - y) / y;
+  const double white[3] = {3.2404542 * X - 1.5371385 - 0.4985314 * Z,
+                           -0.969266 * X + 1.8760108 + 0.041556 * Z,
+                           0.0556434 * X - 0.2040259 + 1.0572252 * Z};
+  Rgb out;
+  for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(1 / std::max(0.05, white[c]));
+  return out;
+}
+
 }  // namespace
 
 void Reader::read_camera(Params& p, const std::string& type) {
@@ -111,8 +127,12 @@ void Reader::read_film(Params& p, const std::string& type) {
   const std::string sensor = p.text("sensor", "cie1931");
   if (sensor != "cie1931")
     warn(p.where_of("sensor"), "the colors of the sensor \"" + sensor + "\"", "the CIE 1931 observer");
-  if (p.number("whitebalance", 0) != 0 && sensor == "cie1931")
-    warn(p.where_of("whitebalance"), "white balance", "colors as they are");
+  white_balance_ = Rgb(1);
+  if (const float kelvin = p.number("whitebalance", 0); kelvin != 0) {
+    if (!(kelvin >= 1000 && kelvin <= 25000))
+      p.fail("whitebalance", "is not between 1000 and 25000 kelvins", "6500 is the daylight that is white");
+    white_balance_ = white_balance_of(kelvin);
+  }
   if (p.has("maxcomponentvalue"))
     warn(p.where_of("maxcomponentvalue"), "a limit of the values of samples", "no limit");
   film_diagonal_ = p.positive("diagonal", 35);

@@ -9,10 +9,10 @@ namespace lumirank::scenedesc::pbrt {
 namespace {
 
 // "scale", and what the film makes of radiance.
-float scale_of(Params& p) {
+Rgb scale_of(Params& p) {
   const float scale = p.number("scale", 1);
   if (!(scale >= 0)) p.fail("scale", "is negative", "give 0 or more");
-  return scale * p.reader().imaging_ratio();
+  return p.reader().film_response() * scale;
 }
 
 Rgb spectrum(Params& p, const char* name) {
@@ -36,7 +36,7 @@ Vec3d end_of(Params& p, Vec3d from) {
 PointLightDesc point(Params& p, const Transform& to_world) {
   PointLightDesc out;
   out.position = to_world.place(p.point3("from", {0, 0, 0}));
-  out.intensity = spectrum(p, "I") * (scale_of(p) * power_scale(p, 4 * kPi));
+  out.intensity = spectrum(p, "I") * scale_of(p) * power_scale(p, 4 * kPi);
   return out;
 }
 
@@ -54,7 +54,7 @@ SpotLightDesc spot(Params& p, const Transform& to_world) {
   out.beam_width = std::max(out.cutoff_angle - delta, 0.0f);
   const float end = std::cos(cone * (kPi / 180)), start = std::cos((cone - delta) * (kPi / 180));
   out.intensity =
-      spectrum(p, "I") * (scale_of(p) * power_scale(p, 2 * kPi * ((1 - start) + (start - end) / 2)));
+      spectrum(p, "I") * scale_of(p) * power_scale(p, 2 * kPi * ((1 - start) + (start - end) / 2));
   out.edge = SpotLightDesc::Edge::smooth_cosine;
   return out;
 }
@@ -88,7 +88,8 @@ DirectionalLightDesc distant(Params& p, const Transform& to_world) {
 }
 
 decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform& to_world) {
-  const float scale = scale_of(p), illuminance = p.number("illuminance", -1);
+  const Rgb scale = scale_of(p);
+  const float illuminance = p.number("illuminance", -1);
   if (p.has("portal")) {
     p.ignore({"portal"});
     reader.warn(p.where_of("portal"), "portals of environments", "the whole environment");
@@ -102,9 +103,10 @@ decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform&
   const auto file =
       reader.file(p.text("filename", ""), p.where_of("filename"), "environment map", "a gray sky");
   out.filename = file.name;
-  out.scale = scale;
+  out.scale = p.reader().imaging_ratio() * p.number("scale", 1);
+  out.tint = p.reader().white_balance();
   if (file.missing)
-    return ConstantEnvironmentDesc{Rgb(scale * (illuminance > 0 ? illuminance / kPi : kMissingSky))};
+    return ConstantEnvironmentDesc{scale * (illuminance > 0 ? illuminance / kPi : kMissingSky)};
   if (illuminance > 0) out.illuminance = illuminance;
   out.projection = EnvironmentProjection::equal_area;
   out.to_world = to_world;
@@ -150,7 +152,7 @@ void Reader::read_area_light(Params& p, const std::string& type) {
   light->where = p.where();
   light->two_sided = p.flag("twosided", false);
   light->power = p.number("power", -1);
-  const float scale = scale_of(p);
+  const Rgb scale = scale_of(p);
   light->radiance = {Rgb(0), kNone};
   if (p.has("filename")) {
     if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
@@ -159,7 +161,7 @@ void Reader::read_area_light(Params& p, const std::string& type) {
     picture.filename = found.name, picture.missing = found.missing;
     picture.wrap_u = picture.wrap_v = WrapMode::clamp;
     const int texture = add_texture("", p.where(), std::move(picture));
-    light->radiance.texture = add_texture("", p.where(), ScaleTextureDesc{{Rgb(0), texture}, Rgb(scale)});
+    light->radiance.texture = add_texture("", p.where(), ScaleTextureDesc{{Rgb(0), texture}, scale});
     if (light->power > 0) {
       warn(p.where_of("power"), "the power of a lamp with a picture", "\"scale\" alone");
       light->power = -1;

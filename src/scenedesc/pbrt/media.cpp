@@ -241,7 +241,7 @@ void Reader::resolve_media() {
   for (ShapeDesc& shape : scene_.shapes) resolve(shape.media.inside), resolve(shape.media.outside);
   for (SensorDesc& sensor : scene_.sensors) resolve(sensor.medium);
   // Media may come before the camera that says what the film makes of radiance.
-  for (MediumDesc& medium : scene_.media) medium.emission.value *= imaging_ratio_;
+  for (MediumDesc& medium : scene_.media) medium.emission.value *= film_response();
 }
 
 }  // namespace lumirank::scenedesc::pbrt

@@ -45,6 +45,10 @@ class Reader : public SceneReader {
   GraphicsState& state() { return state_; }
   // Factor of pixel values to radiance: exposure time × ISO / 100.
   float imaging_ratio() const { return imaging_ratio_; }
+  // That and what makes the light white for which the camera is balanced, which is done to lights here: pbrt
+  // does it to the picture, in a space of cones. Where surfaces are colored the two differ a little.
+  Rgb white_balance() const { return white_balance_; }
+  Rgb film_response() const { return white_balance_ * imaging_ratio_; }
 
   // Names are relative to the main file's folder, or else to that of the file that says them. "" if there is
   // no such file.
@@ -187,6 +191,7 @@ class Reader : public SceneReader {
   int samples_ = 16;
   bool has_camera_ = false, has_integrator_ = false;
   float iso_ = 100, imaging_ratio_ = 1;
+  Rgb white_balance_{1};
 
   friend class ShapeBuilder;
 };

@@ -191,7 +191,8 @@ std::string kind(const EmitterDesc& e) {
                  [](const EnvironmentMapDesc& x) {
                    return "envmap " + x.filename + ", scale " + num(x.scale) +
                           (x.projection == EnvironmentProjection::equal_area ? ", equal-area" : "") +
-                          (x.illuminance ? ", illuminance " + num(*x.illuminance) : "") + show(x.to_world);
+                          (x.illuminance ? ", illuminance " + num(*x.illuminance) : "") +
+                          (x.tint == Rgb(1) ? "" : ", tint " + show(x.tint)) + show(x.to_world);
                  },
                  [](const SunSkyDesc& x) {
                    return std::string(x.sun ? (x.sky ? "sunsky" : "sun") : "sky") + ", turbidity " +

@@ -70,6 +70,7 @@ struct EnvironmentMapDesc {
   // Equal-area maps only, on top of `scale`: what pbrt-v4 computes as the illuminance of the local +z (half
   // of the true one) is made this.
   std::optional<float> illuminance = std::nullopt;
+  Rgb tint{1};  // on top of all that
 };
 // Of Mitsuba 3 and of 0.6; the sky is Hosek and Wilkie's in both.
 enum class SunModel { hosek_wilkie, preetham };
