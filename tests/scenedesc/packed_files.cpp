@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "pbrt_scene.h"
+#include "scenedesc/pbrt_scene.h"
 #include "scenedesc/schema/files.h"
 #include "support/scene_file.h"
 

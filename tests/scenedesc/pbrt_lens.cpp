@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "pbrt_scene.h"
+#include "scenedesc/pbrt_scene.h"
 #include "support/scene_file.h"
 
 namespace lumirank::scenedesc {

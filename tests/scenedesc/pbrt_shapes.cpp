@@ -143,5 +143,13 @@ TEST(PbrtShape, BezierCurves) {
   EXPECT_NEAR(length(raised[2] - Vec3f{4, 2, 0}), 0, 1e-6f);
 }
 
+// pbrt's default is a flat ribbon that faces the ray, which hair is here; other materials see a round thread.
+TEST(PbrtShape, FlatCurvesOfHairAreAsTheyAre) {
+  const std::string curve = "Shape \"curve\" \"point3 P\" [ 0 0 0  1 0 0  2 0 0  3 0 0 ]\n";
+  EXPECT_TRUE(pbrt_world("Material \"hair\"\n" + curve).warnings.empty());
+  EXPECT_NE(only_warning(pbrt_world(curve)).what.find("flat"), std::string::npos);
+  EXPECT_NE(only_warning(pbrt_world("Material \"diffuse\"\n" + curve)).what.find("flat"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lumirank::scenedesc

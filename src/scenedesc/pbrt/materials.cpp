@@ -339,6 +339,12 @@ void Reader::check_mixtures() const {
           "mixtures of mixtures multiply; simplify them");
 }
 
+bool Reader::material_is_hair() const {
+  if (state_.bsdf == kNone) return false;
+  const BsdfKind& kind = scene_.bsdfs[static_cast<std::size_t>(state_.bsdf)].kind;
+  return std::holds_alternative<HairFiberDesc>(kind) || std::holds_alternative<HairDesc>(kind);
+}
+
 int Reader::current_bsdf(const Place& where) {
   if (state_.bsdf != kNone) return state_.bsdf;
   if (default_bsdf_ == kNone) {

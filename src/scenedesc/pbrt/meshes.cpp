@@ -130,7 +130,9 @@ std::optional<ShapeKind> curve(Reader& reader, Params& p) {
   const std::string type = p.text("type", "flat"), basis = p.text("basis", "bezier");
   if (type != "flat" && type != "cylinder" && type != "ribbon")
     p.fail("type", "is " + in_quotes(type), "flat, cylinder and ribbon are known");
-  if (type != "cylinder") reader.warn_once(p.where(), "curves of the type \"" + type + "\"", "round curves");
+  // Hair is flat, and turned to the ray, here too.
+  if (type != "cylinder" && !(type == "flat" && reader.material_is_hair()))
+    reader.warn_once(p.where(), "curves of the type \"" + type + "\"", "round curves");
   if (basis != "bezier" && basis != "bspline")
     p.fail("basis", "is " + in_quotes(basis), "bezier and bspline are known");
   const int degree = p.integer("degree", 3);

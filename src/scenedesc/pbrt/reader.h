@@ -59,6 +59,8 @@ class Reader : public SceneReader {
                  const std::string& stand_in);
   std::string file_text(const std::string& path, const Place& where) const;
 
+  bool material_is_hair() const;  // the current one, if it is defined
+
   // textures.cpp
   int add_texture(const std::string& id, const Place& where, decltype(TextureDesc::kind) kind);
   void read_texture(Params& p, const std::string& name, const std::string& type, const std::string& kind);
