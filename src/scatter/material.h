@@ -140,10 +140,10 @@ struct MeasuredMaterial {
   std::shared_ptr<const MeasuredTable> table;
 };
 void add_lobes(const MeasuredMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
-// The table in the bytes of a file of the MERL database. InputError, at `where`, if that is not what they
-// are; `filename` only names them.
-std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const std::string& filename,
-                                                const SourceLocation& where);
+// The table in the bytes of a file of the MERL database, or of the RGL database (tensor_brdf.h). InputError,
+// at `where`, if that is not what they are; `filename` only names them.
+std::shared_ptr<const MeasuredTable> parse_measured(const std::string& bytes, const std::string& filename,
+                                                    const SourceLocation& where);
 // A thin sheet that reflects and lets through diffusely, alike on both sides.
 struct DiffuseTransmitterMaterial {
   static constexpr bool transmits = true;

@@ -200,7 +200,7 @@ class MaterialBuilder::Conversion {
   }
   int member(const auto&, sd::WardDesc::Variant variant) const { return static_cast<int>(variant); }
   std::shared_ptr<const sc::MeasuredTable> member(const auto&, const sd::FileInput& file) const {
-    return sc::parse_merl(sd::read_file(file.name, where_), file.name, where_);
+    return sc::parse_measured(sd::read_file(file.name, where_), file.name, where_);
   }
 
   MaterialBuilder& builder_;

@@ -142,7 +142,7 @@ std::string merl_of_diffuse(float reflectance) {
   return merl_bytes(4, 4, 4, [&](Vec3f, Vec3f) { return Rgb(1, 0.7f, 0.4f) * (reflectance * kInvPi); });
 }
 BsdfCase measured(std::string name, const std::string& bytes) {
-  return single("measured_" + name, MeasuredMaterial{parse_merl(bytes, name, {})});
+  return single("measured_" + name, MeasuredMaterial{parse_measured(bytes, name, {})});
 }
 
 std::vector<BsdfCase> build() {
@@ -278,7 +278,7 @@ std::vector<BsdfCase> build() {
   list.push_back(measured("too_bright", merl_of_diffuse(2)));
   list.push_back(measured("conductor_0.1", merl_of_conductor(0.1f)));
   list.push_back(measured("conductor_0.5", merl_of_conductor(0.5f)));
-  list.push_back(nested("coating_measured", MeasuredMaterial{parse_merl(merl_of_conductor(0.3f), "", {})},
+  list.push_back(nested("coating_measured", MeasuredMaterial{parse_measured(merl_of_conductor(0.3f), "", {})},
                         layer(kGgx, 0.1f, 1.5f, 0.1f, 1)));
   list.push_back(hair("diffuse", 1, 0, 0));
   list.push_back(hair("specular_0", 0, 1, 0));

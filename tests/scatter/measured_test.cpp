@@ -22,7 +22,7 @@ Rgb ggx(float alpha, Vec3f wo, Vec3f wi) {
 
 Closure closure_of(const std::string& bytes, Vec3f wo) {
   static std::vector<MaterialSet> kept;  // closures point into them
-  kept.emplace_back().materials.push_back(MeasuredMaterial{parse_merl(bytes, "test.binary", {})});
+  kept.emplace_back().materials.push_back(MeasuredMaterial{parse_measured(bytes, "test.binary", {})});
   return kept.back().closure(0, point_with_normal({0, 0, 1}), wo);
 }
 
@@ -113,7 +113,7 @@ TEST(Measured, BrokenFilesAreRefused) {
   const std::string good = merl_bytes(3, 3, 3, [](Vec3f, Vec3f) { return Rgb(0.1f); });
   const auto refused = [](const std::string& bytes, const std::string& says) {
     try {
-      parse_merl(bytes, "skin.binary", {"scene.xml", 7});
+      parse_measured(bytes, "skin.binary", {"scene.xml", 7});
     } catch (const InputError& e) {
       const std::string what = e.what();
       EXPECT_NE(what.find("scene.xml:7"), std::string::npos) << what;
@@ -128,7 +128,7 @@ TEST(Measured, BrokenFilesAreRefused) {
   EXPECT_TRUE(refused(good.substr(0, 11), "ends within its header"));
   EXPECT_TRUE(refused(good.substr(0, good.size() - 1), "bytes where its header asks for"));
   EXPECT_TRUE(refused(good + "x", "bytes where its header asks for"));
-  EXPECT_TRUE(refused("tensor_file" + good, "which is not read"));
+  EXPECT_TRUE(refused("tensor_file" + good, "RGL"));
   const auto with = [&](std::size_t place, auto value) {
     std::string bytes = good;
     std::memcpy(bytes.data() + place, &value, sizeof value);

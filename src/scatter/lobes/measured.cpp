@@ -12,11 +12,13 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/warp.h"
 #include "scatter/closure_builder.h"
 #include "scatter/lobes/bound_terms.h"
 #include "scatter/lobes/family.h"
 #include "scatter/microfacet.h"
+#include "scatter/tensor_brdf.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -193,20 +195,22 @@ void find_maxima(MeasuredTable& table) {
   }
 }
 
-const MeasuredTable& table_of(const Lobe& lobe) { return *static_cast<const MeasuredTable*>(lobe.table); }
+const MeasuredTable& measured_table(const Lobe& lobe) {
+  return *static_cast<const MeasuredTable*>(lobe.table);
+}
 
 Rgb measured_value(LobeView view, Vec3f wo, Vec3f wi) {
-  const MeasuredTable& table = table_of(view.lobe);
+  const MeasuredTable& table = measured_table(view.lobe);
   return view.lobe.color * not_above_albedo(table, table.at(wo, wi), wo.z, wi.z);
 }
 
 float measured_pdf(LobeView view, Vec3f wo, Vec3f wi) {
-  const MeasuredTable& table = table_of(view.lobe);
+  const MeasuredTable& table = measured_table(view.lobe);
   return table.density(wo, wi, table.alpha, table.share);
 }
 
 bool measured_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
-  const MeasuredTable& table = table_of(view.lobe);
+  const MeasuredTable& table = measured_table(view.lobe);
   if (u.x < table.share) {
     u.x /= table.share;
     wi = reflect(wo, sample_visible_normal(NormalDistribution::ggx, wo, u, table.alpha, table.alpha));
@@ -218,19 +222,19 @@ bool measured_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
 }
 
 Rgb measured_albedo(LobeView view, Vec3f wo) {
-  return view.lobe.color * look_up_albedo(table_of(view.lobe).kept, wo.z);
+  return view.lobe.color * look_up_albedo(measured_table(view.lobe).kept, wo.z);
 }
 
 float measured_importance(LobeView view, float cos_o) {
   const Rgb color = view.lobe.color;
   return std::max(kMinImportance * mean(color),
-                  mean(color * look_up_albedo(table_of(view.lobe).kept, cos_o)));
+                  mean(color * look_up_albedo(measured_table(view.lobe).kept, cos_o)));
 }
 
 float measured_factor(const Lobe&, float, float) { return 1; }
 
 Rgb measured_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) {
-  const MeasuredTable& table = table_of(*t.lobe);
+  const MeasuredTable& table = measured_table(*t.lobe);
   // A thousandth of a cell is for the roundings of angles.
   const float h = cells_of_half(std::atan2(r.tilt_sin, r.tilt_cos), table.n_h) - 1e-3f;
   const float d = cells_of_difference(std::acos(std::clamp(r.half_lo, 0.0f, 1.0f)), table.n_d) + 1e-3f;
@@ -239,7 +243,7 @@ Rgb measured_bound(const LobeTerm& t, const AngleRange& r, CosineFactor factor) 
          (factor == CosineFactor::cosine ? r.cos_hi : 1.0f);
 }
 
-float measured_roughness(const Lobe& lobe) { return table_of(lobe).alpha; }
+float measured_roughness(const Lobe& lobe) { return measured_table(lobe).alpha; }
 
 UnderCoat measured_under_coat(LobeView view) {
   return {UnderCoat::Sort::diffuse, measured_albedo(view, {0, 0, 1})};
@@ -265,14 +269,53 @@ void add_lobes(const MeasuredMaterial& m, ClosureBuilder& out, const SurfacePoin
   out.push(lobe, at, weight);
 }
 
-std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const std::string& filename,
-                                                const SourceLocation& where) {
+namespace {
+
+std::shared_ptr<const MeasuredTable> finished(std::shared_ptr<MeasuredTable> table) {
+  find_maxima(*table);
+  integrate_albedos(*table);
+  fit_draws(*table);
+  return table;
+}
+
+// f in the middles of cells. Pairs below the horizon have the value of a pair just above it.
+std::shared_ptr<const MeasuredTable> table_of(const TensorBrdf& f) {
+  auto table = std::make_shared<MeasuredTable>();
+  table->n_h = 90, table->n_d = 45, table->n_p = 45;
+  const auto lifted = [](Vec3f w) {
+    w.z = std::max(w.z, 0.02f);
+    return normalize(w);
+  };
+  const auto n_d = static_cast<std::size_t>(table->n_d), n_p = static_cast<std::size_t>(table->n_p);
+  table->cells.resize(static_cast<std::size_t>(table->n_h) * n_d * n_p);
+  parallel_for(static_cast<std::size_t>(table->n_h), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t h = begin; h < end; ++h) {
+      const float root = (static_cast<float>(h) + 0.5f) / static_cast<float>(table->n_h);
+      const float theta_h = 0.5f * kPi * root * root, s = std::sin(theta_h), c = std::cos(theta_h);
+      for (std::size_t d = 0; d < n_d; ++d) {
+        const float theta_d = 0.5f * kPi * (static_cast<float>(d) + 0.5f) / static_cast<float>(n_d);
+        for (std::size_t p = 0; p < n_p; ++p) {
+          const float phi = kPi * (static_cast<float>(p) + 0.5f) / static_cast<float>(n_p);
+          const Vec3f off = Vec3f{c * std::cos(phi), std::sin(phi), -s * std::cos(phi)} * std::sin(theta_d);
+          const Vec3f along = Vec3f{s, 0, c} * std::cos(theta_d);
+          table->cells[(h * n_d + d) * n_p + p] = f(lifted(along - off), lifted(along + off));
+        }
+      }
+    }
+  });
+  return finished(std::move(table));
+}
+
+}  // namespace
+
+std::shared_ptr<const MeasuredTable> parse_measured(const std::string& bytes, const std::string& filename,
+                                                    const SourceLocation& where) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(where, "the BRDF table " + filename + " " + what,
                      "give a whole file in the format of the MERL database (.binary)");
   };
   std::array<std::int32_t, 3> n{};
-  if (bytes.starts_with("tensor_file")) refuse("is one of Mitsuba 3's \"measured\" BSDF, which is not read");
+  if (TensorBrdf::is_one(bytes)) return table_of(TensorBrdf(bytes, filename, where));
   if (bytes.size() < sizeof n) refuse("ends within its header");
   std::memcpy(n.data(), bytes.data(), sizeof n);
   std::size_t cells = 1;
@@ -301,10 +344,7 @@ std::shared_ptr<const MeasuredTable> parse_merl(const std::string& bytes, const 
       table->cells[i][c] = std::max(0.0f, f);  // below 0: not measured
     }
   }
-  find_maxima(*table);
-  integrate_albedos(*table);
-  fit_draws(*table);
-  return table;
+  return finished(std::move(table));
 }
 
 }  // namespace lumirank::scatter

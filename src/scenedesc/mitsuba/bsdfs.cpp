@@ -22,6 +22,7 @@ const std::map<std::string, Builder>& builders() {
       {"principledthin", principled_thin},
       {"difftrans", plain_bsdf<DiffuseTransmitterDesc>},
       {"merl", plain_bsdf<MeasuredDesc>},
+      {"measured", plain_bsdf<MeasuredDesc>},
       {"hair", hair},
       {"kajiyakay", plain_bsdf<HairDesc>},  // only Lumirank has it
       {"coating", coating},

@@ -75,9 +75,11 @@ class MaterialMaker {
     if (type == "hair") return hair();
     if (type == "subsurface") return subsurface();
     if (type == "measured") {
-      reader_.warn(p_.where(), "the material \"measured\"", "diffuse of 0.5");
-      p_.ignore({"filename"});
-      return two_sided(DiffuseDesc{});
+      const auto found =
+          reader_.file(p_.required_text("filename"), p_.where_of("filename"), "BRDF file", "diffuse of 0.5");
+      MeasuredDesc measured;
+      measured.file.name = found.name, measured.file.missing = found.missing;
+      return two_sided(std::move(measured));
     }
     throw InputError(
         p_.where(), "the material " + in_quotes(type) + " is not known",
