@@ -65,7 +65,9 @@ float scale_at(const FiberTable::Part& part, float x, float c) {
 // 1 - cos(θo + θi - t).
 float off_mirror(const FiberTable::Part& part, float xo, float co, float xi, float ci) {
   const float cosine = co * ci - xo * xi, sine = xo * ci + co * xi;
-  return std::max(0.0f, 1 - cosine * part.tilt_cosine - sine * part.tilt_sine);
+  const float c = cosine * part.tilt_cosine + sine * part.tilt_sine;
+  const float s = sine * part.tilt_cosine - cosine * part.tilt_sine;
+  return c > 0 ? s * s / (1 + c) : 1 - c;  // 1 - c has no digits left where the lobe is
 }
 
 struct Latitude {

@@ -289,6 +289,8 @@ std::vector<BsdfCase> build() {
   list.push_back(hair_fiber("brown", {Rgb(0.4f, 0.7f, 1.6f), 1.55f, 0.25f, 0.4f, 0.05f}));
   list.push_back(hair_fiber("dark_smooth", {Rgb(3, 5, 8), 1.4f, 0.08f, 0.05f, 0.1f}));
   list.push_back(hair_fiber("rough", {Rgb(0.1f), 1.6f, 0.9f, 0.9f, -0.3f}));
+  list.push_back(hair_fiber("sharpest", {Rgb(0.5f), 1.5f, 0, 0, 0}));
+  list.push_back(hair_fiber("roughest_thin", {Rgb(0), 0.8f, 1, 1, 0}));
   list.push_back(
       nested("mask_hair", HairMaterial{gray(0.3f), gray(0.5f), number(20)}, MaskMaterial{number(0.6f), 0}));
   list.back().inside_too = list.back().fiber = true;
