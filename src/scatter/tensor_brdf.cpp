@@ -11,6 +11,7 @@
 namespace lumirank::scatter {
 namespace {
 
+constexpr float kMaxValue = 1e10f;
 constexpr std::size_t kMaxValues = std::size_t{1} << 28;
 constexpr int kMeanTurns = 12;  // over which an anisotropic material is averaged
 
@@ -27,7 +28,8 @@ class TensorFile {
  public:
   TensorFile(const std::string& bytes, const std::string& filename, const SourceLocation& where)
       : bytes_(bytes), filename_(filename), where_(where) {
-    at_ = 14;
+    constexpr std::size_t kVersion = 12;
+    at_ = std::min(bytes.size(), kVersion + 2);
     const auto fields = take<std::uint32_t>();
     if (fields > 256) refuse("states " + std::to_string(fields) + " fields");
     for (std::uint32_t k = 0; k < fields; ++k) {
@@ -61,7 +63,7 @@ class TensorFile {
     if (found->second.shape.size() != dimensions) refuse("has a field \"" + name + "\" of another shape");
     return found->second.shape;
   }
-  // All finite; not below `min_value`.
+  // All finite; not below `min_value`, nor so large that sums and products of them are not finite.
   std::vector<float> floats(const std::string& name, std::size_t dimensions, float min_value) const {
     shape(name, dimensions);
     const Tensor& tensor = tensors_.at(name);
@@ -70,7 +72,7 @@ class TensorFile {
     copy(tensor, out.data(), tensor.count * sizeof(float));
     for (float& v : out) {
       if (!std::isfinite(v)) refuse("has a value that is not a finite number");
-      v = std::max(v, min_value);
+      v = std::clamp(v, min_value, kMaxValue);
     }
     return out;
   }
@@ -178,7 +180,7 @@ TensorBrdf::TensorBrdf(const std::string& bytes, const std::string& filename, co
       if (y > 0) all += 0.5 * static_cast<double>(v.row[y - 1] + v.row[y]) / static_cast<double>(height - 1);
       v.before[y] = static_cast<float>(all);
     }
-    const float scale = all > 0 ? static_cast<float>(1 / all) : 0;
+    const float scale = all > 1e-20 ? static_cast<float>(1 / all) : 0;
     for (auto* list : {&v.density, &v.along, &v.row, &v.before})
       for (float& value : *list) value *= scale;
     visible_.push_back(std::move(v));

@@ -111,6 +111,28 @@ def ies():
         write("ies", path.name, path.read_bytes())
 
 
+def brdf():
+    def tensors(**fields):
+        size = 18 + sum(13 + len(name) + 8 * len(shape) for name, (shape, _) in fields.items())
+        head, body = b"tensor_file\0\1\0" + struct.pack("<I", len(fields)), b""
+        for name, (shape, values) in fields.items():
+            byte = name == "jacobian"
+            head += struct.pack("<H", len(name)) + name.encode() + struct.pack("<HBQ", len(shape), 1 if byte else 10, size + len(body))
+            head += struct.pack(f"<{len(shape)}Q", *shape)
+            body += bytes(values) if byte else struct.pack(f"<{len(values)}f", *values)
+        return head + body
+
+    for name, phi in (("isotropic", [0]), ("anisotropic", [-3.14159265, -1.5, 0])):
+        n = len(phi)
+        write("brdf", name + ".bsdf", tensors(
+            phi_i=([n], phi), theta_i=([2], [0, 1.5]), jacobian=([1], [1]), ndf=([2, 2], [1, 2, 3, 1]), sigma=([2, 2], [1] * 4),
+            vndf=([n, 2, 2, 2], [1, 2, 3, 4] * 2 * n), wavelengths=([3], [400, 500, 700]), spectra=([n, 2, 3, 2, 2], [0.1, 0.2, 0.3, 0.4] * 6 * n)))
+    write("brdf", "rgb.bsdf", tensors(
+        phi_i=([1], [0]), theta_i=([2], [0, 1.5]), jacobian=([1], [0]), ndf=([2, 2], [1] * 4), sigma=([2, 2], [1] * 4), vndf=([1, 2, 2, 2], [1] * 8),
+        rgb=([1, 2, 3, 2, 2], [0.5] * 24)))
+    write("brdf", "merl.binary", struct.pack("<3i", 2, 2, 2) + struct.pack("<24d", *[100.0] * 24))
+
+
 def gltf():
     corners = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
 
@@ -303,6 +325,7 @@ def main():
     ply()
     serialized()
     ies()
+    brdf()
     vol()
     nanovdb()
     gltf()
