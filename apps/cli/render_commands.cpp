@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -26,11 +27,13 @@ void add_render(CLI::App& app, Action& action) {
   command->callback([options, &action] {
     action = [options](Streams streams) {
       const CommonOptions& common = options->common;
-      const RenderSettings settings = common.render_settings();
+      RenderSettings settings = common.render_settings();
       validate(settings);
       check_outputs(options->outputs, settings);
       Console console(common.verbosity(), streams.err);
+      const auto start = std::chrono::steady_clock::now();
       const Scene scene = Scene::load(common.scene, common.load_options(), console.sinks());
+      settings.time_spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       check_inputs(options->outputs, settings, common, scene);
       const RenderResult result = render(scene, settings, console.sinks(), preview_writer(options->outputs));
       return write_outputs(options->outputs, result, console, common.quiet, streams);

@@ -138,6 +138,9 @@ struct RenderSettings {
   // What the clock decided in an earlier run under `time`, from its report: repeated instead of timed anew,
   // so that the picture has the same bits. Empty: the clock decides.
   std::map<std::string, std::vector<std::int64_t>> choices = {};
+  // Seconds of `time` that are gone before render() begins, as by reading the scene; they count in the
+  // report's total.
+  double time_spent = 0;
 };
 
 struct ReferenceSettings {

@@ -68,7 +68,7 @@ RenderResult api::render_by_choice(const Scene& scene, const RenderSettings& set
   const scenedesc::SceneDesc& desc = scene.impl().desc;
   if (pipeline::paths_by_default(desc, settings) && world::may_color_glass(desc)) {
     validate(settings);
-    shot.timer = Timer();
+    shot.timer = Timer(settings.time_spent);
     within_memory_and_threads(settings, [&] {
       // What there is to say of it is said once, of the world that is rendered.
       Sinks quiet = sinks;
@@ -101,7 +101,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
   RenderResult result;
   within_memory_and_threads(settings, [&] {
     pipeline::RenderTask task;
-    if (shot.timer) task.timer = *shot.timer;
+    task.timer = shot.timer ? *shot.timer : Timer(settings.time_spent);
     task.part_of_usual = shot.part_of_usual;
     task.shot_lights = shot.lights;
     task.view = pipeline::make_view(scene.impl().desc, settings.view);

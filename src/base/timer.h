@@ -9,12 +9,18 @@ namespace lumirank {
 // Of the wall clock.
 class Timer {
  public:
+  Timer() : Timer(0) {}
+  // As if it had been started `elapsed` seconds ago.
+  explicit Timer(double elapsed)
+      : start_(std::chrono::steady_clock::now() -
+               std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                   std::chrono::duration<double>(elapsed))) {}
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point start_;
 };
 
 // Of the calling thread's processor time, so that what others run beside it does not count.

@@ -22,7 +22,7 @@ struct RenderTask {
   bool may_be_paths = false;                      // instead of passes, where they have less noise
   bool by_default = false;                        // nobody asked for it: a short time may choose another
   double lumens_per_unit = 1;
-  Timer timer;  // since the scene was loaded
+  Timer timer;  // since the scene began to be read
   double build_seconds = 0;
   // Of the passes or paths that a picture has by default, where neither time nor error says how many.
   double part_of_usual = 1;

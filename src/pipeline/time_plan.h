@@ -10,7 +10,7 @@ namespace lumirank::pipeline {
 // Seconds, measured on a small part of each stage. A film sample is one receiver's share of a pixel, but for
 // those that are apart from receivers (film_sample, film_samples).
 struct TimeCosts {
-  double passed = 0;       // since the scene was loaded: building, and the pilots themselves
+  double passed = 0;       // since the scene began to be read: that, building, and the pilots themselves
   double pixels = 0;       // of the film that is traced, with what the filter reaches around a crop
   double receiver = 0;     // per film sample: following the eye's ray
   double film_sample = 0;  // of those apart from receivers: the same, and finding its receivers

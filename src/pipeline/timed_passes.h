@@ -5,7 +5,7 @@
 
 namespace lumirank::pipeline {
 
-// Seconds since the scene was loaded; tests give one that they turn by hand.
+// Seconds since the scene began to be read; tests give one that they turn by hand.
 using Clock = std::function<double()>;
 
 struct PassLimits {

@@ -1,5 +1,7 @@
 #include "lumirank/settings.h"
 
+#include <cmath>
+
 #include "lumirank/error.h"
 #include "methods/method.h"
 #include "settings/table.h"
@@ -51,6 +53,8 @@ void validate(const RenderSettings& settings) {
     RenderSettings scratch;
     row.set(scratch, row.get(settings));
   }
+  if (!(settings.time_spent >= 0 && std::isfinite(settings.time_spent)))
+    throw InputError("the time that is spent already is negative or not finite", "set 'time_spent' to 0");
   if (!settings.choices.empty() && settings.time <= 0)
     throw InputError("choices of a timed run need its time budget", "set 'time', or clear the choices");
   if (settings.traced.local_paths > 0) {

@@ -152,6 +152,19 @@ TEST(PathRender, WhereColumnsCarryLittlePathsGoAlone) {
   }
 }
 
+// A budget that is gone before the render begins leaves the least there is, and counts.
+TEST(PathRender, WhatWasSpentBeforeCounts) {
+  const Scene scene = load_text(under_glass(24));
+  RenderSettings settings;
+  settings.denoise = Denoise::off;
+  settings.time = 1000, settings.time_spent = 2000;
+  const RenderResult late = render(scene, settings);
+  EXPECT_GE(late.report.seconds.at("total"), 2000);
+  EXPECT_LT(late.report.seconds.at("total"), 2900);  // not another thousand
+  settings.time_spent = -1;
+  EXPECT_THROW(render(scene, settings), InputError);
+}
+
 // Lamps in glass are found from there alone, and then passes come first.
 TEST(PathRender, WhereLampsAreHiddenPassesComeFirst) {
   const Scene scene = load_text(lamp_in_glass(24));
