@@ -5,6 +5,7 @@
 
 #include "base/vec.h"
 #include "scatter/fresnel.h"
+#include "scatter/lobes/bound_terms.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -345,7 +346,7 @@ Rgb FiberTable::max_value(int p, float latitude_o, float lo, float hi) const {
   // θd is half of what lies between the latitudes.
   const float first = 0.5f * (lo - latitude_o), second = 0.5f * (hi - latitude_o);
   const float least = std::min(std::cos(first), std::cos(second)) - 1e-4f;
-  const float most = first <= 0 && second >= 0 ? 1.0f : std::max(std::cos(first), std::cos(second)) + 1e-4f;
+  const float most = max_sine_of(first, second) + 1e-4f;
   Rgb rows(0);
   for (std::size_t row = knots_about(least, kRows).below; row <= knots_about(most, kRows).below + 1; ++row)
     for (int c = 0; c < 3; ++c) rows[c] = std::max(rows[c], part.rows[row].max_value[c]);

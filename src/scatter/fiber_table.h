@@ -7,12 +7,12 @@
 // within, once or more. Local x runs along the fiber; xo and xi are the sines of the latitudes of wo and wi,
 // co and ci their cosines, phi the azimuth between both.
 //
-//   f = M_p(xo, xi) · s_p(co) · s_p(ci) · N_p(cos θd, phi),  cos θd = √((1 + co·ci + xo·xi)/2)
+//   f = M_p(θo, θi) · s_p(θo) · s_p(θi) · N_p(cos θd, phi),  cos θd = √((1 + co·ci + xo·xi)/2)
 //
 // M is the longitudinal part, about θi = t - θo (d'Eon et al. 2011, equation 7; t is the tilt of the scales,
-// see below), and N the azimuthal one with all attenuation. s, tabulated, makes both ends alike and keeps the
-// energy: a fiber without pigment sends on all light. (Chiang et al. tilt one end alone, divide by ci and
-// take θo for θd, which is another fiber from its other end.)
+// see below), and N the azimuthal one with all attenuation (Chiang et al., equations 8 to 11). s, tabulated,
+// makes both ends alike and keeps the energy: a fiber without pigment sends on all light. (Chiang et al. tilt
+// one end alone, divide by ci and take θo for θd, which is another fiber from its other end.)
 #pragma once
 
 #include <array>

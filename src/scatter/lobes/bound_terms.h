@@ -44,6 +44,11 @@ struct ConeWidth {
 // eval_f() answers above it.
 inline constexpr float kMinCosine = 1e-6f;
 
+// Of a fiber: the greatest sine of the angle to it between two latitudes (radians).
+inline float max_sine_of(float lo, float hi) {
+  return lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
+}
+
 // exp(-tan²/α²)/cos⁴ over all tilts.
 float gaussian_slopes(const AngleRange& range, float alpha);
 // G1 of a round distribution.

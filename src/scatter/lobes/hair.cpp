@@ -114,10 +114,6 @@ Rgb hair_specular_albedo(LobeView view, Vec3f wo) {
 
 float hair_diffuse_factor(const Lobe&, float, float) { return kInvPi * kInvPi; }
 float hair_specular_factor(const Lobe& lobe, float, float) { return lobe.alpha_v; }
-// Greatest sine of the angle to the fiber.
-float max_sine_of(float lo, float hi) {
-  return lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
-}
 Rgb hair_diffuse_bound(const LobeTerm& t, float, float lo, float hi, CosineFactor factor) {
   return t.scale * (factor == CosineFactor::cosine ? max_sine_of(lo, hi) : 1.0f);
 }

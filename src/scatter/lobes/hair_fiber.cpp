@@ -3,6 +3,7 @@
 
 #include "scatter/closure_builder.h"
 #include "scatter/fiber_table.h"
+#include "scatter/lobes/bound_terms.h"
 #include "scatter/lobes/family.h"
 
 namespace lumirank::scatter {
@@ -32,9 +33,8 @@ float hair_fiber_importance(LobeView view, float cos_o) {
 }
 float hair_fiber_factor(const Lobe&, float, float) { return 1; }
 Rgb hair_fiber_bound(const LobeTerm& t, float latitude_o, float lo, float hi, CosineFactor factor) {
-  const float max_sine = lo <= 0 && hi >= 0 ? 1.0f : std::max(std::cos(lo), std::cos(hi));
   return t.scale * fiber_table(*t.lobe).max_value(t.lobe->variant, latitude_o, lo, hi) *
-         (factor == CosineFactor::cosine ? max_sine : 1.0f);
+         (factor == CosineFactor::cosine ? max_sine_of(lo, hi) : 1.0f);
 }
 // cosⁿ of the same variance.
 float hair_fiber_roughness(const Lobe& lobe) {

@@ -8,17 +8,12 @@
 
 namespace lumirank::scenedesc {
 
-namespace {
-
-// Linear Rec. 709 of a chromaticity with Y = 1.
 Rgb from_chromaticity(double x, double y) {
   const double X = x / y, Z = (1 - x - y) / y;
   return {static_cast<float>(3.2404542 * X - 1.5371385 - 0.4985314 * Z),
           static_cast<float>(-0.9692660 * X + 1.8760108 + 0.0415560 * Z),
           static_cast<float>(0.0556434 * X - 0.2040259 + 1.0572252 * Z)};
 }
-
-}  // namespace
 
 std::optional<Rgb> named_illuminant(const std::string& name) {
   // Chromaticities of the CIE's illuminants for the 2° observer (CIE 15:2004, tables T.3 and T.8); F1 to F12

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenedesc/data/named_spectra.h"
 #include "scenedesc/pbrt/reader.h"
 
 namespace lumirank::scenedesc::pbrt {
@@ -34,12 +35,9 @@ Rgb white_balance_of(float kelvin) {
   const double x = t <= 7000 ? -4.607e9 / (t * t * t) + 2.9678e6 / (t * t) + 0.09911e3 / t + 0.244063
                              : -2.0064e9 / (t * t * t) + 1.9018e6 / (t * t) + 0.24748e3 / t + 0.23704;
   const double y = -3 * x * x + 2.87 * x - 0.275;
-  const double X = x / y, Z = (1 - x - y) / y;
-  const double white[3] = {3.2404542 * X - 1.5371385 - 0.4985314 * Z,
-                           -0.969266 * X + 1.8760108 + 0.041556 * Z,
-                           0.0556434 * X - 0.2040259 + 1.0572252 * Z};
+  const Rgb white = from_chromaticity(x, y);
   Rgb out;
-  for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(1 / std::max(0.05, white[c]));
+  for (int c = 0; c < 3; ++c) out[c] = 1 / std::max(0.05f, white[c]);
   return out;
 }
 
