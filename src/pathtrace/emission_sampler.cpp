@@ -78,6 +78,7 @@ std::optional<EmissionSampler::Start> EmissionSampler::sample(SampleStream& rand
   start.ray = {emission.origin, emission.direction};
   const auto& kind = world_.emitters()[static_cast<std::size_t>(start.emitter)].kind;
   const bool area = std::holds_alternative<AreaEmitter>(kind);
+  start.far = is_far(kind);
   if (area)
     start.ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
   start.delta = !area && !std::holds_alternative<EnvironmentEmitter>(kind);

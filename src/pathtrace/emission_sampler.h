@@ -28,6 +28,7 @@ class EmissionSampler {
     int emitter = -1;
     std::uint32_t triangle = 0;  // of an area emitter
     bool delta = false;          // eye paths meet it by light sampling alone
+    bool far = false;            // it comes from without the scene
   };
   std::optional<Start> sample(SampleStream& random) const;
 

@@ -2,7 +2,8 @@
 // and Willems 1993). They find at once what eye paths meet by chance: light that leaves its emitter through
 // glass, by a mirror, from under a shade. Both carry, together, all paths whose vertex next to the eye is
 // seen directly and is not specular; but direct light from emitters that light sampling finds from there,
-// which it does best.
+// which it does best. Within a medium that scatters, each flight shows one place of it, made to collide there
+// (media/forced_collision.h), besides where the path itself collides and turns.
 //
 // A path counts in every way in which it is found, by weights that sum to one: the balance heuristic (Veach
 // 1997, section 9.2), with densities as if what scatters between the vertex next to the emitter and the one
@@ -12,17 +13,13 @@
 
 #include <vector>
 
+#include "media/tracking.h"
 #include "pathtrace/emission_sampler.h"
 #include "pathtrace/path_tracer.h"
 #include "world/camera.h"
+#include "world/emitter_media.h"
 
 namespace lumirank::pathtrace {
-
-// Light paths for one eye path, at the vertex next to the eye, over the density of their starts and the share
-// of those eye paths that find the emitter by their BSDF. `eye`: eye paths per area across their direction;
-// `pdf`: of wi, the eye path's direction there.
-float light_path_ratio(double light_paths, float eye, const world::SurfaceHit& hit,
-                       const scatter::Closure& closure, Vec3f wo, Vec3f wi, float pdf);
 
 class LightTracer {
  public:
@@ -33,15 +30,10 @@ class LightTracer {
       return film.x >= min.x && film.y >= min.y && film.x <= max.x && film.y <= max.y;
     }
   };
-  // `light_paths` of them for one eye path in each pixel. Must outlive it: the world, the camera, the starts.
+  // `light_paths` of them for one eye path in each pixel. `eye_medium`: around the camera. Must outlive it:
+  // the world, the camera, the starts.
   LightTracer(const world::World& world, const world::Camera& camera, const EmissionSampler& starts,
-              const Window& window, const PathSettings& settings, double light_paths)
-      : world_(world),
-        camera_(camera),
-        starts_(starts),
-        window_(window),
-        settings_(settings),
-        light_paths_(light_paths) {}
+              const Window& window, const PathSettings& settings, double light_paths, int eye_medium);
 
   // What a path adds to a picture whose pixels are means of eye paths.
   struct Splat {
@@ -55,9 +47,18 @@ class LightTracer {
 
  private:
   struct Flight;
+  enum class Way { arrived, scattered, ended };
+  void begin_in_medium(const EmissionSampler::Start& start, Flight& flight) const;
+  Way fly(Flight& flight, float distance) const;
+  bool scatter_in_medium(const EmissionSampler::Start& start, Flight& flight) const;
+  bool leave_first(const EmissionSampler::Start& start, const emitters::LitPoint& at, Vec3f wi, float turned,
+                   Flight& flight) const;
   bool leave_first(const EmissionSampler::Start& start, const world::SurfaceHit& hit,
                    const scatter::BsdfSample& next, Flight& flight) const;
-  bool show(const Flight& flight, const world::SurfaceHit& hit, Vec2f lens, std::vector<Splat>& splats) const;
+  bool may_turn(const Flight& flight) const;
+  bool survives(Flight& flight) const;
+  bool show(Flight& flight, const world::SurfaceHit& hit, std::vector<Splat>& splats) const;
+  bool show_along(Flight& flight, float distance, std::vector<Splat>& splats) const;
 
   const world::World& world_;
   const world::Camera& camera_;
@@ -65,6 +66,7 @@ class LightTracer {
   Window window_;
   PathSettings settings_;
   double light_paths_;
+  world::EmitterMedia emitter_media_;
 };
 
 }  // namespace lumirank::pathtrace

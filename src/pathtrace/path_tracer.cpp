@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "pathtrace/found_emission.h"
-#include "pathtrace/light_tracer.h"
 #include "scatter/closure.h"
 
 namespace lumirank::pathtrace {
@@ -56,7 +55,7 @@ Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t
             .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
             .ray = ray,
             .counts = settings_.paths != Paths::rest,
-            .from_eye = starts_ != nullptr};
+            .from_eye = beside_.has_value()};
   finish(walk);
   walk.sum.segments = walk.segments;
   return walk.sum;
@@ -114,19 +113,13 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
   const FoundEmission found = found_emission(world_, lights_, walk.specular ? nullptr : &walk.from, hit,
                                              walk.ray.direction, walk.traveled);
   if (is_black(found.radiance)) return;
-  const auto shared = [&](float share) {
-    const float density =
-        hit ? starts_->density(hit->emitter, hit->hit.triangle, hit->point.position, walk.ray.direction)
-            : starts_->density(world_.environment(), 0, walk.ray.origin, walk.ray.direction);
-    return share / (1 + walk.light_paths * share * density);
-  };
   float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + found.light_pdf);
   if (walk.light_paths > 0 && (walk.specular || walk.non_delta_vertices > 1)) {
     if (!hit && walk.specular) {
-      walk.add(walk.throughput * starts_->background_left(walk.ray, walk.light_paths));
+      walk.add(walk.throughput * beside_->background_left(walk.ray, walk.light_paths));
       return;
     }
-    weight = shared(weight);
+    weight /= beside_->over_found(walk.light_paths, weight, hit, walk.ray, world_.environment());
   }
   walk.add(walk.throughput * found.radiance * weight);
 }
@@ -146,21 +139,10 @@ void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const C
   if (is_black(visible)) return;
   const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
   float share = 1;
-  if (walk.light_paths > 0) share = share_of_sampled(walk, hit.point.position, s, closure, bsdf_pdf);
+  if (walk.light_paths > 0)
+    share = 1 / beside_->over_sampled(walk.light_paths, hit.point.position, s,
+                                      scatter::pdf(closure, wo, s.direct.direction, Lobes::all));
   walk.add(walk.throughput * f * s.direct.radiance * visible * (share / (s.pdf + bsdf_pdf)));
-}
-
-// What light paths leave to a sampled light.
-float PathTracer::share_of_sampled(const Walk& walk, Vec3f place, const world::LightSampler::Sample& s,
-                                   const Closure& closure, float bsdf_pdf) const {
-  const emitters::DirectSample& direct = s.direct;
-  const Vec3f on_emitter = direct.distance < kInfinity ? place + direct.direction * direct.distance : place;
-  const float density =
-      direct.delta ? starts_->delta_density(s.emitter, place, direct.direction, direct.distance) *
-                         scatter::pdf(closure, -walk.ray.direction, direct.direction, Lobes::all) / s.pdf
-                   : starts_->density(s.emitter, direct.triangle, on_emitter, direct.direction) * bsdf_pdf /
-                         (s.pdf + bsdf_pdf);
-  return 1 / (1 + walk.light_paths * density);
 }
 
 Rgb PathTracer::missing(float connection, const Closure& closure, Vec3f wo, Vec3f wi) const {
@@ -230,8 +212,7 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   if (!pass) {
     if (!may_continue) return false;
     if (walk.from_eye && !next->delta)
-      walk.light_paths = light_path_ratio(light_paths_, camera_->density(walk.ray, walk.traveled), hit,
-                                          closure, wo, next->wi, next->pdf);
+      walk.light_paths = beside_->ratio_on(walk.ray, walk.traveled, hit, closure, next->wi, next->pdf);
     walk.from_eye = false;
     ++walk.segments;
     walk.traveled = 0;

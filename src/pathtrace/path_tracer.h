@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "base/rgb.h"
 #include "base/sample_stream.h"
+#include "pathtrace/light_path_balance.h"
 #include "world/camera.h"
 #include "world/light_sampler.h"
 #include "world/world.h"
@@ -48,18 +50,12 @@ struct Reach {
   float max = kInfinity;  // that it is anywhere
 };
 
-class EmissionSampler;
-
 class PathTracer {
  public:
   PathTracer(const world::World& world, const PathSettings& settings);
 
-  // Light paths are traced beside (light_tracer.h), so many of them for one eye path of `camera` in each
-  // pixel, and what they find as well counts the less. Both must outlive it.
-  void share_with_light_paths(const EmissionSampler& starts, const world::Camera& camera,
-                              double light_paths) {
-    starts_ = &starts, camera_ = &camera, light_paths_ = light_paths;
-  }
+  // Light paths are traced beside, and what they find as well counts the less.
+  void share_with_light_paths(const LightPathBalance& balance) { beside_ = balance; }
 
   // Radiance arriving along `ray`, one random path keyed by (pixel, sample). Passing straight through null
   // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth.
@@ -86,8 +82,6 @@ class PathTracer {
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
                      double u_light, float connection) const;
-  float share_of_sampled(const Walk& walk, Vec3f place, const world::LightSampler::Sample& s,
-                         const scatter::Closure& closure, float bsdf_pdf) const;
   // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular
   // vertices.
   Rgb missing(float connection, const scatter::Closure& closure, Vec3f wo, Vec3f wi) const;
@@ -99,9 +93,7 @@ class PathTracer {
   const world::World& world_;
   const world::LightSampler& lights_;
   PathSettings settings_;
-  const EmissionSampler* starts_ = nullptr;
-  const world::Camera* camera_ = nullptr;
-  double light_paths_ = 0;
+  std::optional<LightPathBalance> beside_;
 };
 
 }  // namespace lumirank::pathtrace

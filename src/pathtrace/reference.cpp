@@ -121,7 +121,8 @@ struct PathFilm::Impl {
   }
 
   void trace_light_paths(const world::World& world) {
-    if (!(options.light_paths > 0) || options.paths == Paths::columns || !world.media().empty()) return;
+    if (!(options.light_paths > 0) || options.paths == Paths::columns) return;
+    if (options.paths != Paths::all && !world.media().empty()) return;
     const Vec3f eye = tracing.front().camera.eye();
     starts.emplace(world, options.aim_light_paths ? LightTargets(world, eye) : LightTargets());
     light_paths = static_cast<std::size_t>(std::ceil(options.light_paths * static_cast<double>(pixels)));
@@ -134,8 +135,10 @@ struct PathFilm::Impl {
                                      {corner.x + static_cast<float>(view.width) + reach,
                                       corner.y + static_cast<float>(view.height) + reach}};
     light_tracer.emplace(world, by.camera, *starts, window,
-                         PathSettings{options.seed, view.max_depth, options.paths, {}}, number);
-    std::get<PathTracer>(by.tracer).share_with_light_paths(*starts, by.camera, number);
+                         PathSettings{options.seed, view.max_depth, options.paths, {}}, number,
+                         view.sensor.medium);
+    const LightPathBalance balance(*starts, by.camera, number);
+    std::visit([&](auto& tracer) { tracer.share_with_light_paths(balance); }, by.tracer);
   }
 
   const Tracing& at(std::uint64_t pixel, int sample) const {

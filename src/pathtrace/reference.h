@@ -30,7 +30,7 @@ struct ReferenceOptions {
   // then.
   CarriedByColumns carried;
   // Paths from the emitters for each pixel and path from the eye, which share the work with these
-  // (light_tracer.h); 0: none. Not with media, nor over several instants.
+  // (light_tracer.h); 0: none. Not over several instants; with media only of all paths.
   double light_paths = 0;
   bool aim_light_paths = false;  // half of them at light_targets.h's
 };

@@ -47,6 +47,8 @@ struct VolumePathTracer::Walk {
   Vertex vertex{};             // the last non-delta one
   float traveled = 0;          // since then
   float eta_scale = 1;         // undoes refraction's scaling for Russian roulette
+  bool from_eye = false;       // light paths may show the vertex that comes next
+  float light_paths = 0;       // LightPathBalance's ratio of the first vertex, if they may have shown that
   Radiance sum{};
 
   void add(Rgb value) {
@@ -69,7 +71,8 @@ Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::ui
             .ray = ray,
             .hero = 0,
             .medium = eye_medium_,
-            .path = {}};
+            .path = {},
+            .from_eye = beside_.has_value()};
   walk.ray.direction = normalize(ray.direction);
   const float longer = length(ray.direction);
   walk.ray.t_min *= longer, walk.ray.t_max *= longer;
@@ -86,6 +89,7 @@ Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::ui
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit || !scatter_on_surface(walk, *hit)) break;
   }
+  walk.sum.segments = walk.segments;
   return walk.sum;
 }
 
@@ -166,7 +170,8 @@ void VolumePathTracer::sample_lamp_along(Walk& walk, const media::Medium& medium
   const Rgb visible = world::pass_straight(
       world_, {place, Vec3f{}, light.direct.direction, light.direct.distance, walk.medium}, random);
   ++walk.non_delta_vertices;
-  walk.add(walk.path.throughput * before * at.scattering * f * light.direct.radiance * visible * (1 / all));
+  walk.add(walk.path.throughput * before * at.scattering * f * light.direct.radiance * visible *
+           (left_of_sampled(walk, place, light, mean(f)) / all));
   --walk.non_delta_vertices;
 }
 
@@ -192,13 +197,16 @@ bool VolumePathTracer::scatter_in_medium(Walk& walk, const media::Coefficients& 
                             : vertex.along(place + light.direct.direction * light.direct.distance,
                                            lights_.pdf_place(vertex.flight.chosen_for(), light));
     const float all = vertex.all(light.pdf, light.direct.delta ? Rgb{0} : f, along);
-    walk.add(walk.path.weight() * f * light.direct.radiance * visible * (mean(vertex.reached) / all));
+    walk.add(walk.path.weight() * f * light.direct.radiance * visible *
+             (left_of_sampled(walk, place, light, mean(f)) * mean(vertex.reached) / all));
   }
 
   const Vec3f next = phase.sample(forward, walk.hero, u_lobe, walk.random.next_2d());
   const Rgb f = phase.eval(dot(forward, next));
   if (!(f[walk.hero] > 0)) return false;
   walk.path.event(f, f, walk.hero);
+  if (walk.from_eye) walk.light_paths = beside_->ratio_within(walk.ray, walk.traveled, mean(f));
+  walk.from_eye = false;
   vertex.direction = f;
   walk.specular = false;
   walk.traveled = 0;
@@ -222,6 +230,15 @@ void VolumePathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) co
                                                                   walk.ray.direction, walk.traveled));
     weight = mean(vertex.reached * vertex.direction) / vertex.all(found.light_pdf, vertex.direction, along);
   }
+  if (walk.light_paths > 0 && (walk.specular || walk.non_delta_vertices > 1)) {
+    if (!hit && walk.specular) {
+      walk.add(walk.path.weight() * beside_->background_left(walk.ray, walk.light_paths));
+      return;
+    }
+    const float turned = mean(vertex.direction);
+    const float share = walk.specular ? 1.0f : turned / (turned + found.light_pdf);
+    weight /= beside_->over_found(walk.light_paths, share, hit, walk.ray, world_.environment());
+  }
   walk.add(walk.path.weight() * found.radiance * weight);
 }
 
@@ -242,9 +259,11 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
       const auto random = [&walk] { return walk.random.next_float(); };
       const Rgb visible = world::pass_straight(
           world_, {hit.point.position, hit.point.ng, wi, light.direct.distance, medium}, random);
-      const float pdf = light.direct.delta ? 0.0f : scatter::pdf(closure, wo, wi, Lobes::all);
+      const float turned = scatter::pdf(closure, wo, wi, Lobes::all);
+      const float pdf = light.direct.delta ? 0.0f : turned;
       ++walk.non_delta_vertices;
-      walk.add(walk.path.weight() * f * light.direct.radiance * visible * (1 / (light.pdf + pdf)));
+      walk.add(walk.path.weight() * f * light.direct.radiance * visible *
+               (left_of_sampled(walk, hit.point.position, light, turned) / (light.pdf + pdf)));
       --walk.non_delta_vertices;
     }
   }
@@ -255,6 +274,9 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
   const bool pass = next->delta && next->kind == LobeKind::delta_pass;
   if (!pass) {
     if (!may_continue) return false;
+    if (walk.from_eye && !next->delta)
+      walk.light_paths = beside_->ratio_on(walk.ray, walk.traveled, hit, closure, next->wi, next->pdf);
+    walk.from_eye = false;
     ++walk.segments;
     walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;
@@ -267,6 +289,13 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
   walk.medium = world_.medium_beyond(hit, next->wi, walk.medium);
   walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), normalize(next->wi)};
   return true;
+}
+
+// What light paths leave of a light sampled at `place`, where an eye path turns towards it with a density of
+// `turned`.
+float VolumePathTracer::left_of_sampled(const Walk& walk, Vec3f place,
+                                        const world::LightSampler::Sample& light, float turned) const {
+  return walk.light_paths > 0 ? 1 / beside_->over_sampled(walk.light_paths, place, light, turned) : 1.0f;
 }
 
 // Russian roulette; false ends the path.

@@ -25,6 +25,9 @@ class VolumePathTracer {
   // a vertex.
   VolumePathTracer(const world::World& world, std::uint64_t seed, int max_depth, int eye_medium);
 
+  // As PathTracer's.
+  void share_with_light_paths(const LightPathBalance& balance) { beside_ = balance; }
+
   // As PathTracer::trace; scattering in a medium is a non-specular vertex, and what a medium emits is
   // emission.
   Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
@@ -39,11 +42,14 @@ class VolumePathTracer {
   void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
   bool scatter_on_surface(Walk& walk, const world::SurfaceHit& hit) const;
   bool survives(Walk& walk) const;
+  float left_of_sampled(const Walk& walk, Vec3f place, const world::LightSampler::Sample& light,
+                        float turned) const;
 
   const world::World& world_;
   const world::LightSampler& lights_;
   std::uint64_t seed_;
   int max_depth_, eye_medium_;
+  std::optional<LightPathBalance> beside_;
 };
 
 }  // namespace lumirank::pathtrace

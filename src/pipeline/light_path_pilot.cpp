@@ -4,11 +4,13 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "pathtrace/light_tracer.h"
+#include "pathtrace/volume_path_tracer.h"
 #include "pipeline/recipe.h"
 
 namespace lumirank::pipeline {
@@ -49,6 +51,7 @@ class Pilot {
         aim_(!targets.empty()),
         starts_(world, std::move(targets)),
         settings_{seed_, view.max_depth, paths, {}},
+        eye_medium_(view.sensor.medium),
         width_(camera_.width()),
         height_(camera_.height()),
         across_((width_ + kBlock - 1) / kBlock),
@@ -59,9 +62,7 @@ class Pilot {
     if (starts_.empty()) return pilot;
     find_brightness();
     if (!(usual_ > 0)) return pilot;
-    pathtrace::PathTracer eye(world_, settings_);
-    eye.share_with_light_paths(starts_, camera_, pixels());
-    Noise other = noise_of(eye);
+    Noise other = noise_of(eye_tracer(settings_));
     if (settings_.paths != pathtrace::Paths::all) light_ = trace_light(settings_);
     std::vector<Found> found;
     for (const LightTracer::Splat& splat : light_.splats) found.push_back(found_by(splat));
@@ -111,6 +112,7 @@ class Pilot {
     std::vector<LightTracer::Splat> splats;
     std::size_t rays = 0;  // that they took
   };
+  using EyeTracer = std::variant<pathtrace::PathTracer, pathtrace::VolumePathTracer>;
   // Of a picture: noise, and light that is missed.
   struct Error {
     double noise, lost;
@@ -134,13 +136,24 @@ class Pilot {
     double light;
     std::size_t rays;
   };
-  EyePath trace_eye(const pathtrace::PathTracer& tracer, int x, int y, int k) const {
+  EyeTracer eye_tracer(const pathtrace::PathSettings& settings) const {
+    const pathtrace::LightPathBalance balance(starts_, camera_, pixels());
+    const auto shared = [&balance](auto tracer) {
+      tracer.share_with_light_paths(balance);
+      return tracer;
+    };
+    if (world_.media().empty()) return shared(pathtrace::PathTracer(world_, settings));
+    return shared(pathtrace::VolumePathTracer(world_, settings.seed, settings.max_depth, eye_medium_));
+  }
+  EyePath trace_eye(const EyeTracer& tracer, int x, int y, int k) const {
     const auto p =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
     Rng random(seed_, Stage::reference, ~p, static_cast<std::uint64_t>(k));
     const Vec2f jitter = random.next_2d();
     const Vec2f film{static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y};
-    const auto radiance = tracer.trace(camera_.ray(film, random.next_2d()), p, static_cast<std::uint64_t>(k));
+    const geometry::Ray ray = camera_.ray(film, random.next_2d());
+    const auto radiance =
+        std::visit([&](const auto& by) { return by.trace(ray, p, static_cast<std::uint64_t>(k)); }, tracer);
     // Besides its segments a path has a ray to a light at each vertex.
     return {static_cast<double>(luminance(radiance.direct + radiance.indirect)),
             2 * static_cast<std::size_t>(radiance.segments)};
@@ -162,8 +175,7 @@ class Pilot {
   void find_brightness() {
     pathtrace::PathSettings all = settings_;
     all.paths = pathtrace::Paths::all;
-    pathtrace::PathTracer tracer(world_, all);
-    tracer.share_with_light_paths(starts_, camera_, pixels());
+    const EyeTracer tracer = eye_tracer(all);
     std::vector<int> count(brightness_.size());
     for_rows([&](std::size_t, int y) {
       for (int x = 0; x < width_; ++x) {
@@ -181,7 +193,7 @@ class Pilot {
     }
   }
 
-  Noise noise_of(const pathtrace::PathTracer& tracer) const {
+  Noise noise_of(const EyeTracer& tracer) const {
     std::vector<Noise> rows(static_cast<std::size_t>(height_));
     for_rows([&](std::size_t row, int y) {
       for (int x = 0; x < width_; ++x) {
@@ -202,7 +214,7 @@ class Pilot {
   Light trace_light(const pathtrace::PathSettings& settings) const {
     const LightTracer tracer(world_, camera_, starts_,
                              {{0, 0}, {static_cast<float>(width_), static_cast<float>(height_)}}, settings,
-                             pixels());
+                             pixels(), eye_medium_);
     std::vector<std::vector<LightTracer::Splat>> parts(kLightPaths / kLightPathsOfPart);
     std::vector<std::size_t> rays_of(parts.size());
     parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -244,6 +256,7 @@ class Pilot {
   bool aim_;
   pathtrace::EmissionSampler starts_;
   pathtrace::PathSettings settings_;
+  int eye_medium_;
   int width_, height_, across_;
   std::vector<double> brightness_;  // by blocks
   double usual_ = 0;
@@ -255,7 +268,8 @@ class Pilot {
 LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
                                  pathtrace::Paths paths, const Sinks& sinks) {
   // What the eye looks through would stop paths that arrive from lamps.
-  if (!world.media().empty() || world.hides_emitters()) return {};
+  if (world.hides_emitters()) return {};
+  if (paths != pathtrace::Paths::all && !world.media().empty()) return {};
   const LightPathPilot freely = Pilot(world, view, seed, paths, {}, sinks).run();
   pathtrace::LightTargets targets(world, world::Camera(view.sensor, world.units()).eye());
   if (targets.empty()) return freely;

@@ -62,12 +62,12 @@ void make_rows(PreparedMedia& made, const Sinks& sinks) {
 }
 
 transport::MediaLightSettings light_settings_in_media(const Recipe& recipe, const View& view,
-                                                      std::size_t count) {
+                                                      const world::Units& units, std::size_t count) {
   transport::MediaLightSettings settings;
   settings.seed = recipe.light_seed;
   settings.count = count;
   settings.max_depth = recipe.max_depth;
-  settings.eye_medium = view.sensor.medium;
+  settings.eye = world::Camera(view.sensor, units).eye(), settings.eye_medium = view.sensor.medium;
   settings.direct = recipe.only != LightPart::indirect;
   settings.indirect = recipe.only != LightPart::direct;
   settings.least_direct = kLeastDirect;
@@ -78,7 +78,8 @@ void make_columns(PreparedMedia& made, const Sinks& sinks) {
   const Timer timer;
   const std::uint64_t seed = made.recipe.light_seed;
   made.lights = transport::trace_lights_in_media(
-      *made.world, light_settings_in_media(made.recipe, made.view, made.plan.lights), sinks);
+      *made.world, light_settings_in_media(made.recipe, made.view, made.world->units(), made.plan.lights),
+      sinks);
   made.whole_rays = made.lights.rays.size();
   made.seconds["lights"] = timer.seconds();
   const Timer cutting;
@@ -141,8 +142,8 @@ std::vector<std::shared_ptr<const PreparedMedia>> prepare_shot_in_media(
         "some of this scene's move",
         "name another --method");
   const Timer timer;
-  std::vector<transport::LightsInMedia> lights =
-      transport::trace_lights_of_moments(seen, light_settings_in_media(recipe, views.front(), count), sinks);
+  std::vector<transport::LightsInMedia> lights = transport::trace_lights_of_moments(
+      seen, light_settings_in_media(recipe, views.front(), seen.front()->units(), count), sinks);
   const double light_seconds = timer.seconds() / static_cast<double>(worlds.size());
   std::vector<std::shared_ptr<const PreparedMedia>> frames;
   for (std::size_t k = 0; k < worlds.size(); ++k) {

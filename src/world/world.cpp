@@ -30,17 +30,6 @@ int World::medium_beyond(const SurfaceHit& hit, Vec3f direction, int current) co
   if (!media.divides) return current;
   return dot(direction, hit.point.ng) < 0 ? media.inside : media.outside;
 }
-int World::medium_around(geometry::Ray ray, int fallback) const {
-  constexpr int kMaxSurfaces = 256;
-  for (int k = 0; k < kMaxSurfaces; ++k) {
-    const auto hit = intersect(ray);
-    if (!hit) return fallback;
-    if (impl_->placements[hit->hit.instance].media.divides)
-      return medium_beyond(*hit, -ray.direction, fallback);
-    ray.origin = offset_origin(hit->point.position, hit->point.ng, ray.direction);
-  }
-  return fallback;
-}
 int World::environment() const { return impl_->environment; }
 const LightSampler& World::light_sampler() const {
   std::call_once(impl_->sampler_made, [this] { impl_->sampler = std::make_unique<LightSampler>(*this); });

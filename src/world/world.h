@@ -77,9 +77,6 @@ class World {
   bool divides_media(std::uint32_t placement) const;
   // The medium that a ray is in which leaves the hit into `direction`, having come through `current`.
   int medium_beyond(const SurfaceHit& hit, Vec3f direction, int current) const;
-  // The medium at a place, by the first surface that divides media along a ray from there; `fallback` if
-  // there is none.
-  int medium_around(geometry::Ray ray, int fallback) const;
   // The emitter that fills the background, or -1. At most one EnvironmentEmitter exists (sky and map are
   // merged or warned about).
   int environment() const;

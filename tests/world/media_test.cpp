@@ -1,6 +1,7 @@
 // Media of a built world: where they are, and in which units.
 #include <gtest/gtest.h>
 
+#include "world/emitter_media.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::world {
@@ -32,10 +33,6 @@ TEST(Media, AreWhereSurfacesSay) {
   std::vector<sd::Warning> warnings;
   const World world = built(cube_of_fog(1), true, warnings);
   const Vec3f direction = normalize(Vec3f{1, 0.2f, 0.3f});
-  EXPECT_EQ(world.medium_around({{0, 0, 0}, direction}, -1), 0);
-  EXPECT_EQ(world.medium_around({{0, 0, 2}, {0, 0, -1}}, -1), -1);
-  // No surface that divides is met: what is said to be everywhere.
-  EXPECT_EQ(world.medium_around({{0, 0, 2}, {0, 0, 1}}, 7), 7);
   const auto hit = world.intersect({{0, 0, 0}, direction});
   ASSERT_TRUE(hit);
   EXPECT_EQ(world.medium_beyond(*hit, direction, 0), -1);
@@ -43,6 +40,51 @@ TEST(Media, AreWhereSurfacesSay) {
   const auto wall = world.intersect({{0, 0, 2}, {0, 0, 1}});
   ASSERT_TRUE(wall);
   EXPECT_EQ(world.medium_beyond(*wall, {0, 0, -1}, 5), 5);
+}
+
+// A lamp where light starts: in the fog, without it, by walls or by its own surface.
+TEST(EmitterMedia, AreThoseInWhichLightStarts) {
+  const auto medium_of = [&](const sd::SceneDesc& desc, std::size_t emitter, int eye_medium) {
+    std::vector<sd::Warning> warnings;
+    const World world = built(desc, true, warnings);
+    const Vec3f origin = world.units().to_world(Vec3d{0, 0, 2});
+    return EmitterMedia(world, world.units().to_world(Vec3d{0, 0, 3}), eye_medium)
+        .of(static_cast<int>(emitter), {origin, {0, 0, -1}});
+  };
+  sd::SceneDesc desc = cube_of_fog(1);  // its point is in the fog
+  EXPECT_EQ(medium_of(desc, 0, -1), 0);
+  add_emitter(desc, sd::PointLightDesc{{0, 0, 2}, Rgb(1)});
+  EXPECT_EQ(medium_of(desc, 1, -1), -1);
+  // Nothing divides media: what is said to be everywhere.
+  desc.shapes[0].media = {};
+  EXPECT_EQ(medium_of(desc, 0, 0), 0);
+  EXPECT_EQ(medium_of(desc, 1, -1), -1);
+}
+
+// A room of opaque walls, of which only the open front divides its fog from what is outside.
+TEST(EmitterMedia, WallsNeedNotDivideThem) {
+  sd::SceneDesc desc = cube_of_fog(1);
+  desc.shapes.clear();
+  const int white = add_bsdf(desc, sd::DiffuseDesc{});
+  const auto wall = [&](const Transform& to_world, int bsdf) {
+    const int s = add_shape(desc, sd::RectangleDesc{}, to_world);
+    desc.shapes[static_cast<std::size_t>(s)].bsdf = bsdf;
+    return s;
+  };
+  wall(Transform::translate(0, 0, -1), white);
+  for (const double side : {-1.0, 1.0}) {
+    wall(Transform::translate(side, 0, 0) * Transform::rotate(0, 1, 0, 90), white);
+    wall(Transform::translate(0, side, 0) * Transform::rotate(1, 0, 0, 90), white);
+  }
+  const int front = wall(Transform::translate(0, 0, 1), 0);
+  desc.shapes[static_cast<std::size_t>(front)].media = {true, 0, sd::kNone};
+  std::vector<sd::Warning> warnings;
+  const World world = built(desc, true, warnings);
+  const auto seen_from = [&](Vec3d eye) {
+    return EmitterMedia(world, world.units().to_world(eye), -1).of(0, {{0, 0, 0}, {0, -1, 0}});
+  };
+  EXPECT_EQ(seen_from({0, 0, 3}), 0);  // through the front
+  EXPECT_EQ(seen_from({0, 3, 0}), 0);  // through the roof, which tells nothing
 }
 
 TEST(Media, AreAsThickInAnyUnits) {
@@ -112,7 +154,6 @@ TEST(Media, AreLeftOutWithAWarning) {
   EXPECT_TRUE(world.media().empty());
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].what.find("participating media"), std::string::npos);
-  EXPECT_EQ(world.medium_around({{0, 0, 0}, {1, 0, 0}}, -1), -1);
 }
 
 TEST(Media, NumbersThatMakeNoSenseAreToldOf) {

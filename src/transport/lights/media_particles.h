@@ -18,6 +18,7 @@
 #include "transport/lights/light_areas.h"
 #include "transport/lights/light_record.h"
 #include "transport/lights/ray_lights.h"
+#include "world/emitter_media.h"
 
 namespace lumirank::transport {
 
@@ -71,6 +72,7 @@ class ParticlesInMedia {
         world_(shared.world()),
         choice_(choice),
         settings_(settings),
+        emitter_media_(shared.world(), settings.eye, settings.eye_medium),
         stage_(stage),
         paths_(paths),
         deepest_(deepest) {}
@@ -99,7 +101,7 @@ class ParticlesInMedia {
     if (std::holds_alternative<emitters::AreaEmitter>(
             world_.emitters()[static_cast<std::size_t>(start.emitter)].kind))
       p.ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
-    p.medium = world_.medium_around(p.ray, settings_.eye_medium);
+    p.medium = emitter_media_.of(start.emitter, p.ray);
     for (int step = 0; step < kMaxSteps && advance(p); ++step) {
     }
   }
@@ -211,6 +213,7 @@ class ParticlesInMedia {
   const world::World& world_;
   const world::EmitterChoice& choice_;
   const MediaLightSettings& settings_;
+  world::EmitterMedia emitter_media_;
   Stage stage_;
   std::size_t paths_;
   int deepest_;

@@ -45,7 +45,8 @@ struct MediaLightSettings {
   std::uint64_t seed = 1;
   std::size_t count = 100000;  // of points and rays together, about
   int max_depth = -1;          // Mitsuba's count
-  int eye_medium = -1;         // what emitters stand in where no surface around them tells
+  Vec3f eye{};                 // where the camera is
+  int eye_medium = -1;         // and in what, see world::EmitterMedia
   bool direct = true, indirect = true;
   // An emitter's column with more than one part of so many of all emitters' light stands there several times,
   // each time with a part of the power, and what a segment gets from it is estimated at as many places.

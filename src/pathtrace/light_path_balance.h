@@ -1,0 +1,58 @@
+// How eye paths and the light paths that are traced beside them (light_tracer.h) share what both find.
+#pragma once
+
+#include "pathtrace/emission_sampler.h"
+#include "scatter/closure.h"
+#include "world/camera.h"
+#include "world/light_sampler.h"
+
+namespace lumirank::pathtrace {
+
+// Light paths for one eye path, at the vertex next to the eye, over the density of their starts and the share
+// of those eye paths that find the emitter by their BSDF. `eye`: eye paths per area across their direction;
+// `pdf`: of wi, the eye path's direction there.
+float light_path_ratio(double light_paths, float eye, const world::SurfaceHit& hit,
+                       const scatter::Closure& closure, Vec3f wo, Vec3f wi, float pdf);
+// The same within a medium, where both collide alike; what has been absorbed and scattered on the way to the
+// eye is left out of both, as of all weights.
+float light_path_ratio(double light_paths, float eye, float phase_pdf);
+
+// Cosine of what arrives or leaves: with the surface itself, or across a fiber.
+float crossing(const world::SurfaceHit& hit, const scatter::Closure& closure, Vec3f w);
+
+// The eye paths' side. What they find counts divided by what these return: one and the light paths over the
+// eye paths that could have found it, `ratio` being light_path_ratio() at the path's first vertex.
+class LightPathBalance {
+ public:
+  // `light_paths` for one eye path of `camera` in each pixel. Starts and camera must outlive it.
+  LightPathBalance(const EmissionSampler& starts, const world::Camera& camera, double light_paths)
+      : starts_(&starts), camera_(&camera), light_paths_(light_paths) {}
+
+  // At the first vertex, which the eye sees at `distance` along `ray`, where the path takes wi.
+  float ratio_on(const geometry::Ray& ray, float distance, const world::SurfaceHit& hit,
+                 const scatter::Closure& closure, Vec3f wi, float pdf) const {
+    return light_path_ratio(light_paths_, camera_->density(ray, distance), hit, closure, -ray.direction, wi,
+                            pdf);
+  }
+  float ratio_within(const geometry::Ray& ray, float distance, float phase_pdf) const {
+    return light_path_ratio(light_paths_, camera_->density(ray, distance), phase_pdf);
+  }
+
+  // Of an emitter met by direction; `share`: of that among all ways in which eye paths find it. `hit`:
+  // nullptr where the path leaves the scene.
+  float over_found(float ratio, float share, const world::SurfaceHit* hit, const geometry::Ray& ray,
+                   int environment) const;
+  // Of a light sampled at `place`, where `turned` is the density of its direction by scattering.
+  float over_sampled(float ratio, Vec3f place, const world::LightSampler::Sample& light, float turned) const;
+  // What is left of the background, whose emitters light paths find each as often as it is chosen.
+  Rgb background_left(const geometry::Ray& ray, float ratio) const {
+    return starts_->background_left(ray, ratio);
+  }
+
+ private:
+  const EmissionSampler* starts_;
+  const world::Camera* camera_;
+  double light_paths_;
+};
+
+}  // namespace lumirank::pathtrace
