@@ -12,6 +12,9 @@
 
 namespace lumirank::media {
 
+// So little extinction for each length is none: nothing would notice it, and its inverse may be infinite.
+inline constexpr float kNoExtinction = 1e-30f;
+
 // What is carried along a path whose distances are drawn for one channel, the hero: its throughput for that
 // choice, and how much likelier each other channel would have made the same path. Its contribution is
 // weight(), the balance heuristic over the three choices.
@@ -48,7 +51,7 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
     float t = piece.begin;
     const Rgb bound = piece.extinction.most;
     while (true) {
-      const float step = bound[hero] > 0 ? -std::log1p(-random()) / bound[hero] : kInfinity;
+      const float step = bound[hero] > kNoExtinction ? -std::log1p(-random()) / bound[hero] : kInfinity;
       if (!(t + step < piece.end)) {
         const Rgb through = passed(bound, piece.end - t);
         if (is_black(through)) return false;  // an endless medium, or one that lets nothing through
@@ -89,7 +92,7 @@ void OpticalPath::add(const Medium& medium, Vec3f origin, Vec3f direction, float
     const Rgb middle = piece.extinction.middle();
     const float bound = piece.extinction.half();
     depth += middle * (piece.end - piece.begin);
-    if (!(bound > 0)) continue;
+    if (!(bound > kNoExtinction)) continue;
     if (free < 0) free = -std::log(1 - random());
     float t = piece.begin;
     // What is left of the distance goes on in the next piece.

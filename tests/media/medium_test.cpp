@@ -169,6 +169,26 @@ TEST(Transmittance, AgreesWithQuadrature) {
   }
 }
 
+// Smoke files end in numbers near the least that there are, and random numbers may be 0.
+TEST(Flight, HardlyAnySmokeIsNone) {
+  std::vector<float> values(64, 1e-42f);
+  for (std::size_t k = 0; k < values.size(); k += 3) values[k] = 3e-41f;
+  const Field extinction{
+      Rgb(1), std::make_shared<const Grid>(std::array<int, 3>{4, 4, 4}, 1, values, Grid::Sampling::centers),
+      Transform{}, true};
+  const Medium medium{Medium::Form::extinction_and_albedo, extinction, Field{Rgb(0.9f)}, Field{},
+                      PhaseFunction{}};
+  const auto zero = [] { return 0.0f; };
+  const Vec3f from{-1, 0.4f, 0.3f}, along{1, 0, 0};
+  EXPECT_EQ(transmittance(medium, from, along, 3, zero), Rgb(1));
+  ChannelThroughput path;
+  EXPECT_TRUE(fly(medium, from, along, 3, 1, zero, path, [](float, const Coefficients&, Rgb) {
+    ADD_FAILURE() << "nothing to collide with";
+    return true;
+  }));
+  EXPECT_EQ(path.weight(), Rgb(1));
+}
+
 TEST(Transmittance, IsExactInAHomogeneousMedium) {
   const Medium medium(Medium::Form::absorption_and_scattering, Field{{0.5f, 0, 2}}, Field{{0.25f, 0, 1}},
                       Field{}, {});
