@@ -67,10 +67,15 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
   return true;
 }
 
+inline constexpr float kMaxResidual = 0.25f;
+// So little of light is rather lost by chance than followed on.
+inline constexpr float kFaint = 0.05f;
+
 // What is left of light along several ways, one after the other: exp(-depth) · ratio. The exponential is
 // taken once, of all of them.
 struct OpticalPath {
   Rgb depth{0}, ratio{1};
+  float residual = 0;  // optical distance over which ratio may have grown
 
   void add_even(Rgb extinction, float distance) { depth += over_length(extinction, distance); }
   // Along a way through a medium, as an unbiased estimate; exact where it is homogeneous. All channels share
@@ -88,17 +93,31 @@ void OpticalPath::add(const Medium& medium, Vec3f origin, Vec3f direction, float
   float free = -1;  // optical distance by the bounds to the next place; < 0: not drawn yet
   while (walk.next(piece)) {
     // The middle of what may be there is counted as if it were there, and what differs from it is tracked:
-    // half as many places and half the variance of counting the least.
-    const Rgb middle = piece.extinction.middle();
-    const float bound = piece.extinction.half();
-    depth += middle * (piece.end - piece.begin);
+    // half as many places and half the variance of counting the least. But where there is less, the ratio
+    // grows, by exp(kMaxResidual) in the mean of its square, and that is where light gets through.
+    float bound = piece.extinction.half();
+    const float length = piece.end - piece.begin;
+    const bool grows = residual + bound * length < kMaxResidual;
+    if (grows)
+      residual += bound * length;
+    else
+      bound *= 2;
+    const Rgb counted = grows ? piece.extinction.middle() : piece.extinction.least;
+    depth += counted * length;
     if (!(bound > kNoExtinction)) continue;
     if (free < 0) free = -std::log(1 - random());
     float t = piece.begin;
     // What is left of the distance goes on in the next piece.
     while (free < bound * (piece.end - t)) {
       t += free / bound;
-      ratio *= Rgb(1) - (walk.extinction(t) - middle) * (1 / bound);
+      ratio *= Rgb(1) - (walk.extinction(t) - counted) * (1 / bound);
+      if (const float most = max_component(ratio); most < kFaint) {
+        if (!(random() * kFaint < most)) {
+          ratio = Rgb(0);
+          return;
+        }
+        ratio *= kFaint / most;
+      }
       free = -std::log(1 - random());
     }
     free -= bound * (piece.end - t);

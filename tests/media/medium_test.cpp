@@ -169,6 +169,27 @@ TEST(Transmittance, AgreesWithQuadrature) {
   }
 }
 
+// Beside a dense wall, in cells whose bounds reach from nothing to 100 mean free paths in each.
+TEST(Transmittance, BesideDenseSmokeIsNotSpentInNoise) {
+  constexpr int kSide = 24;
+  std::vector<float> values(kSide * kSide * kSide);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = k / kSide % kSide % 4 == 3 ? 3000.0f : 0.01f;
+  const Field extinction{Rgb(1),
+                         std::make_shared<const Grid>(std::array<int, 3>{kSide, kSide, kSide}, 1, values,
+                                                      Grid::Sampling::centers),
+                         Transform{}, true};
+  const Medium medium{Medium::Form::extinction_and_albedo, extinction, Field{Rgb(0.9f)}, Field{},
+                      PhaseFunction{}};
+  Rng rng(1, Stage::test);
+  RunningMean left;
+  for (int k = 0; k < 2000; ++k)
+    left.add(static_cast<double>(transmittance(medium, {-1, 1.5f / kSide, 0.5f}, {1, 0, 0}, 3, [&rng] {
+                                   return rng.next_float();
+                                 }).r));
+  expect_mean(left, std::exp(-0.01));
+  EXPECT_LT(left.standard_error(), 0.02);
+}
+
 // Smoke files end in numbers near the least that there are, and random numbers may be 0.
 TEST(Flight, HardlyAnySmokeIsNone) {
   std::vector<float> values(64, 1e-42f);
