@@ -31,6 +31,7 @@ struct AreaEmitter {
   std::vector<Triangle> triangles;
   Distribution1D by_power;  // area × luminance of mean radiance
   float total_area = 0;
+  bool seen = true;  // false: no ray meets it
 };
 struct PointEmitter {
   Vec3f position;

@@ -81,7 +81,9 @@ std::optional<EmissionSampler::Start> EmissionSampler::sample(SampleStream& rand
   start.far = is_far(kind);
   if (area)
     start.ray.origin = world::World::offset_origin(emission.origin, emission.normal, emission.direction);
-  start.delta = !area && !std::holds_alternative<EnvironmentEmitter>(kind);
+  const bool seen =
+      area ? std::get<AreaEmitter>(kind).seen : std::holds_alternative<EnvironmentEmitter>(kind);
+  start.delta = !seen;
   if (!targets_.empty()) {
     const float u = random.next_float();
     aim(start, emission, u, random.next_2d());
@@ -132,7 +134,7 @@ float EmissionSampler::density(int emitter, std::uint32_t triangle, Vec3f place,
   const auto e = static_cast<std::size_t>(emitter);
   const auto& kind = world_.emitters()[e].kind;
   if (const auto* area = std::get_if<AreaEmitter>(&kind)) {
-    if (triangle >= area->triangles.size()) return 0;
+    if (triangle >= area->triangles.size() || !area->seen) return 0;
     const auto& t = area->triangles[triangle];
     if (!(t.area > 0)) return 0;
     float leaving = kInvPi;  // per projected solid angle

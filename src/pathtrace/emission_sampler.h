@@ -36,7 +36,7 @@ class EmissionSampler {
   // arrive there; `place`: on the triangle, or anywhere on the way. 0 for emitters that these cannot meet.
   float density(int emitter, std::uint32_t triangle, Vec3f place, Vec3f direction) const;
   // Of emitters that light sampling alone can find: starts per area across the light, where it arrives at a
-  // place from `direction` after `distance`.
+  // place from `direction` after `distance`. 0 of lamps that cannot be seen, which stay with eye paths.
   float delta_density(int emitter, Vec3f place, Vec3f direction, float distance) const;
   // Radiance along a ray on which an eye path leaves the scene, each emitter's over 1 + ratio·density.
   Rgb background_left(const geometry::Ray& ray, float ratio) const;

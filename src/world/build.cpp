@@ -252,7 +252,9 @@ class World::Builder {
       check_light(max_component(t.mean_radiance), "the radiance", shape.emitter->where);
     }
     if (!(area.by_power.total() > 0)) return;  // black
-    placement.emitter = static_cast<std::uint32_t>(w_.emitters.size());
+    area.seen = shape.emitter->seen;
+    // Rays pass through what cannot be seen, and find no emitter there.
+    if (area.seen) placement.emitter = static_cast<std::uint32_t>(w_.emitters.size());
     emitters::Emitter emitter;
     emitter.kind = std::move(area);
     names_.name(emitter, shape.emitter->id.empty() ? shape.id : shape.emitter->id, shape.emitter->where);

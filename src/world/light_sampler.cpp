@@ -122,6 +122,7 @@ LightSampler::Sample LightSampler::sample_leaf(std::uint32_t leaf, Vec3f at, Vec
   if (const auto* area = std::get_if<emitters::AreaEmitter>(&kind)) {
     s.direct = emitters::sample_direct_triangle(area->triangles[triangle], at, u);
     s.direct.triangle = triangle;
+    s.direct.delta = !area->seen;
     if (s.direct.pdf > 0) s.direct.radiance = world_.emitted(emitter, triangle, s.direct.barycentric);
   } else {
     s.direct = world_.sample_direct(emitter, at, 0, u);

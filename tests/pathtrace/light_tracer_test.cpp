@@ -117,6 +117,45 @@ TEST(LightTracer, WhatIsAimedIsTheSameFromEveryEmitter) {
                 means(scene, Paths::all, 1, kPicturesOfEach, true));
 }
 
+// A large lamp before the wall behind the eye, of which it takes the place where it is seen.
+SceneMaker lamp_behind_the_eye(bool seen) {
+  SceneMaker scene = room();
+  auto& lamp = scene.lamp({0, 0.3f, -0.97f}, {0.5f, 0, 0}, {0, 0.5f, 0}, Rgb(3),
+                          seen ? 0 : scene.bsdf(scenedesc::NullBsdfDesc{}));
+  lamp.emitter->seen = seen;
+  return scene;
+}
+
+TEST(LampThatCannotBeSeen, LightsAsMuchAsOneThatCan) {
+  expect_same(means(lamp_behind_the_eye(true), Paths::all, 0, kPicturesOfEach),
+              means(lamp_behind_the_eye(false), Paths::all, 0, kPicturesOfEach));
+}
+
+TEST(LampThatCannotBeSeen, NoRayMeetsIt) {
+  const Vec3f eye{0.2f, 0.6f, 0}, to_lamp{0, 0, -1};
+  for (const bool seen : {true, false}) {
+    const world::World world = lamp_behind_the_eye(seen).build();
+    const PathTracer tracer(world, {});
+    const Vec3f from = world.units().to_world(
+        Vec3d{static_cast<double>(eye.x), static_cast<double>(eye.y), static_cast<double>(eye.z)});
+    test::RunningMean indirect;
+    for (std::uint64_t k = 0; k < 200; ++k) {
+      const Radiance radiance = tracer.trace({from, to_lamp}, k, 0);
+      EXPECT_EQ(radiance.emission.r > 0, seen);
+      indirect.add(static_cast<double>(luminance(radiance.indirect)));
+    }
+    EXPECT_GT(indirect.mean(), 0);  // of the wall behind it, or its own
+  }
+}
+
+// Eye paths carry all that it sends, and share what a bulb in glass sends.
+TEST(LampThatCannotBeSeen, LeavesItsLightToEyePaths) {
+  SceneMaker scene = lamp_behind_the_eye(false);
+  add_ball_lamp(scene, {0.3f, 0.4f, 0.2f}, 0.18, 20);
+  scene.shape(scenedesc::SphereDesc{}, ball({0.3f, 0.4f, 0.2f}, 0.25), scene.glass(1.5f));
+  expect_same(means(scene, Paths::all, 0, kPicturesOfEach), means(scene, Paths::all, 1, kPicturesOfEach));
+}
+
 TEST(LightTargets, AreWhatSendsLightOnSharply) {
   SceneMaker scene = room();
   const world::World room_alone = scene.build();

@@ -222,6 +222,11 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
     scene.textures.emplace_back().kind = ThresholdTextureDesc{{Rgb(0), 0}};
     scene.bsdfs.emplace_back().kind = DiffuseDesc{{Rgb(0), 1}};
   });
+  expect("cannot be seen", [](SceneDesc& scene) {
+    scene.bsdfs.emplace_back().kind = NullBsdfDesc{};
+    scene.shapes[0].emitter = AreaEmitterDesc{};
+    scene.shapes[0].emitter->seen = false;
+  });
   expect("edge of a spot", [](SceneDesc& scene) {
     SpotLightDesc light;
     light.edge = SpotLightDesc::Edge::smooth_cosine;

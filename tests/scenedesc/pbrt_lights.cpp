@@ -157,6 +157,23 @@ TEST(PbrtAreaLight, TwoSidesAreTwoShapes) {
   EXPECT_NEAR(shape<SphereDesc>(scene, 3).radius, 1, 2e-4f);
 }
 
+// pbrt samples such a lamp, and no ray of its meets it.
+TEST(PbrtAreaLight, AnAlphaOfNothingCannotBeSeen) {
+  const SceneDesc scene = pbrt_world(
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"fog\"\n"
+      "AreaLightSource \"diffuse\" \"bool twosided\" true\n"
+      "Shape \"sphere\" \"float alpha\" 0\nShape \"sphere\" \"float alpha\" 1\n");
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  EXPECT_TRUE(scene.warnings.empty());
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(scene.shapes[k].emitter->seen, k >= 2);
+    EXPECT_EQ(scene.shapes[k].media.divides, k >= 2);
+    EXPECT_EQ(std::holds_alternative<NullBsdfDesc>(
+                  scene.bsdfs.at(static_cast<std::size_t>(scene.shapes[k].bsdf)).kind),
+              k < 2);
+  }
+}
+
 TEST(PbrtAreaLight, InterfacesDoNotShine) {
   const SceneDesc scene = pbrt_world("AreaLightSource \"diffuse\" Material \"interface\" Shape \"sphere\"\n");
   EXPECT_FALSE(scene.shapes.at(0).emitter.has_value());

@@ -137,8 +137,9 @@ class Reader : public SceneReader {
   void require_world(const Token& word, const Place& where, bool in_world) const;
   void finish();
 
-  int masked(Params& p, int bsdf);
-  void add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light);
+  int masked(Params& p, const FloatInput& alpha, int bsdf);
+  void add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light,
+                 bool lamp_is_seen);
 
   int make_medium(Params& p, const std::string& name);  // kNone: it was left out
   int use_medium(int slot);                             // returns it

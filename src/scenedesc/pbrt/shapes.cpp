@@ -31,14 +31,9 @@ void join(CurvesDesc& all, const CurvesDesc& more) {
 }  // namespace
 
 // The shape's own cut-out around its material.
-int Reader::masked(Params& p, int bsdf) {
-  const FloatInput alpha = scalar(p, "alpha", {1});
+int Reader::masked(Params& p, const FloatInput& alpha, int bsdf) {
   if (alpha.texture == kNone && alpha.value >= 1) return bsdf;
   if (alpha.texture == kNone) {
-    if (state_.light && alpha.value <= 0) {
-      warn(p.where_of("alpha"), "a lamp that cannot be seen", "one that can");
-      return bsdf;
-    }
     return add_bsdf("", p.where_of("alpha"), MaskDesc{{std::max(alpha.value, 0.0f)}, bsdf});
   }
   const auto [it, fresh] = masks_.try_emplace({bsdf, alpha.texture}, kNone);
@@ -56,7 +51,11 @@ void Reader::read_shape(Params& p, const std::string& type) {
     throw InputError(p.where(), "the transform of " + p.title() + " is singular", "a Scale by 0 perhaps");
   auto kind = make_shape(*this, p, type, shape.to_world);
   const int bsdf = current_bsdf(p.where());
-  shape.bsdf = masked(p, bsdf);
+  const FloatInput alpha = scalar(p, "alpha", {1});
+  // What no ray meets still casts light.
+  const bool unseen_lamp = state_.light && alpha.texture == kNone && alpha.value <= 0;
+  shape.bsdf = unseen_lamp ? add_bsdf("", p.where_of("alpha"), NullBsdfDesc{}) : masked(p, alpha, bsdf);
+  if (unseen_lamp) shape.media = {};
   if (!kind) return;
   shape.kind = std::move(*kind);
   std::shared_ptr<const AreaLight> light = state_.light;
@@ -73,10 +72,11 @@ void Reader::read_shape(Params& p, const std::string& type) {
               "no light");
     light = nullptr;
   }
-  add_shape(p, std::move(shape), light);
+  add_shape(p, std::move(shape), light, !unseen_lamp);
 }
 
-void Reader::add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light) {
+void Reader::add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const AreaLight>& light,
+                       bool lamp_is_seen) {
   shape.in_group = in_object_;
   if (!scene_.shapes.empty() && joins(scene_.shapes.back(), shape)) {
     join(std::get<CurvesDesc>(scene_.shapes.back().kind), std::get<CurvesDesc>(shape.kind));
@@ -84,6 +84,8 @@ void Reader::add_shape(Params& p, ShapeDesc shape, const std::shared_ptr<const A
   }
   std::optional<ShapeDesc> back;
   if (light) back = shine(*this, p, shape, *light);
+  for (ShapeDesc* side : {&shape, back ? &*back : nullptr})
+    if (side && side->emitter) side->emitter->seen = lamp_is_seen;
   scene_.shapes.push_back(std::move(shape));
   const auto add_to_object = [&] {
     if (!in_object_) return;

@@ -75,6 +75,7 @@ struct AreaEmitterDesc {
   ColorInput radiance{Rgb(1)};
   std::string id;  // for --aov light:NAME; the shape's id if the emitter has none
   SourceLocation where;
+  bool seen = true;  // false: what the shape sends arrives, but no ray meets it
 };
 
 struct ShapeDesc {

@@ -177,6 +177,7 @@ void MitsubaWriter::shape(int index) {
       else
         xml_.open("emitter", {{"type", "area"}, {"id", unique_id(s.emitter->id, "")}});
       color("radiance", s.emitter->radiance);
+      if (!s.emitter->seen) warn(s.emitter->where, "a lamp that cannot be seen", "one that can");
       xml_.close();
     }
   }
