@@ -36,7 +36,6 @@ struct LightTracer::Flight {
   bool after_specular = false;
 
   bool first() const { return segments == 1; }
-  float next_float() { return random.next_float(); }
 };
 
 LightTracer::LightTracer(const world::World& world, const world::Camera& camera,

@@ -137,11 +137,12 @@ void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const C
       world::visible_fraction(world_, hit.point.position, hit.point.ng, s.direct.direction, s.direct.distance,
                               mix64(walk.key + static_cast<std::uint64_t>(walk.segments)));
   if (is_black(visible)) return;
-  const float bsdf_pdf = s.direct.delta ? 0.0f : scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
-  float share = 1;
+  float turned = 0, share = 1;
+  if (!s.direct.delta || walk.light_paths > 0)
+    turned = scatter::pdf(closure, wo, s.direct.direction, Lobes::all);
+  const float bsdf_pdf = s.direct.delta ? 0.0f : turned;
   if (walk.light_paths > 0)
-    share = 1 / beside_->over_sampled(walk.light_paths, hit.point.position, s,
-                                      scatter::pdf(closure, wo, s.direct.direction, Lobes::all));
+    share = 1 / beside_->over_sampled(walk.light_paths, hit.point.position, s, turned);
   walk.add(walk.throughput * f * s.direct.radiance * visible * (share / (s.pdf + bsdf_pdf)));
 }
 
