@@ -1,6 +1,7 @@
 #include "pipeline/light_path_pilot.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/timer.h"
 #include "pathtrace/light_tracer.h"
 #include "pathtrace/volume_path_tracer.h"
 #include "pipeline/recipe.h"
@@ -37,15 +39,19 @@ constexpr double kMoreIsWorth = 0.9;
 // Eye paths per pixel of the picture that is thought of. What a single find adds to it beyond what is usual
 // there is a speck, which a denoiser takes away, with the light that it stood for.
 constexpr double kPicture = 16;
+// Of a time that is asked for: light paths that cannot be judged in it are none. Where media are dense and
+// full of holes, one path may take hundredths of a second.
+constexpr double kPartOfTime = 0.25;
 
 using pathtrace::LightTracer;
 
 class Pilot {
  public:
   Pilot(const world::World& world, const world::View& view, std::uint64_t seed, pathtrace::Paths paths,
-        pathtrace::LightTargets targets, const Sinks& sinks)
+        pathtrace::LightTargets targets, double seconds, const Sinks& sinks)
       : world_(world),
         sinks_(sinks),
+        seconds_(seconds),
         seed_(hash_ids(seed, Stage::pilot, ~2ull)),
         camera_(whole_film(view, kEyePixels), world.units()),
         aim_(!targets.empty()),
@@ -61,12 +67,12 @@ class Pilot {
     LightPathPilot pilot;
     if (starts_.empty()) return pilot;
     find_brightness();
-    if (!(usual_ > 0)) return pilot;
+    if (!(usual_ > 0) || stopped_) return pilot;
     Noise other = noise_of(eye_tracer(settings_));
     if (settings_.paths != pathtrace::Paths::all) light_ = trace_light(settings_);
     std::vector<Found> found;
     for (const LightTracer::Splat& splat : light_.splats) found.push_back(found_by(splat));
-    if (sinks_.cancelled()) return pilot;
+    if (stopped_) return pilot;
     const double light_path_time = kRayOfLight * static_cast<double>(light_.rays) / kLightPaths /
                                    (static_cast<double>(other.rays) / (kEyePaths * pixels()));
     double shown = 0, brightest = 0;
@@ -125,6 +131,11 @@ class Pilot {
     std::size_t rays = 0;  // that it took
   };
 
+  // What is asked before each path: whether it is too late, or nobody wants to know any more.
+  bool stops() const {
+    if (!stopped_ && (timer_.seconds() > seconds_ || sinks_.cancelled())) stopped_ = true;
+    return stopped_;
+  }
   double pixels() const { return static_cast<double>(width_) * height_; }
   std::size_t block(int x, int y) const {
     return static_cast<std::size_t>((y / kBlock) * across_ + x / kBlock);
@@ -146,6 +157,7 @@ class Pilot {
     return shared(pathtrace::VolumePathTracer(world_, settings.seed, settings.max_depth, eye_medium_));
   }
   EyePath trace_eye(const EyeTracer& tracer, int x, int y, int k) const {
+    if (stops()) return {0, 0};
     const auto p =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
     Rng random(seed_, Stage::reference, ~p, static_cast<std::uint64_t>(k));
@@ -164,7 +176,7 @@ class Pilot {
   void for_rows(const OfRow& of_row) const {
     const auto rows = static_cast<std::size_t>((height_ + kBlock - 1) / kBlock);
     parallel_for(rows, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end && !sinks_.cancelled(); ++row) {
+      for (std::size_t row = begin; row < end && !stops(); ++row) {
         const int first = static_cast<int>(row) * kBlock;
         for (int y = first; y < std::min(height_, first + kBlock); ++y) of_row(row, y);
       }
@@ -218,8 +230,8 @@ class Pilot {
     std::vector<std::vector<LightTracer::Splat>> parts(kLightPaths / kLightPathsOfPart);
     std::vector<std::size_t> rays_of(parts.size());
     parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t part = begin; part < end && !sinks_.cancelled(); ++part) {
-        for (std::size_t k = 0; k < kLightPathsOfPart; ++k) {
+      for (std::size_t part = begin; part < end && !stops(); ++part) {
+        for (std::size_t k = 0; k < kLightPathsOfPart && !stops(); ++k) {
           const std::uint64_t number = part * kLightPathsOfPart + k;
           rays_of[part] += static_cast<std::size_t>(
               tracer.trace(SampleStream(seed_, Stage::light_paths, 0, 2 * number),
@@ -251,6 +263,9 @@ class Pilot {
 
   const world::World& world_;
   const Sinks& sinks_;
+  double seconds_;
+  Timer timer_;
+  mutable std::atomic<bool> stopped_ = false;
   std::uint64_t seed_;
   world::Camera camera_;
   bool aim_;
@@ -266,14 +281,16 @@ class Pilot {
 }  // namespace
 
 LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
-                                 pathtrace::Paths paths, const Sinks& sinks) {
+                                 pathtrace::Paths paths, double time, const Sinks& sinks) {
   // What the eye looks through would stop paths that arrive from lamps.
   if (world.hides_emitters()) return {};
   if (paths != pathtrace::Paths::all && !world.media().empty()) return {};
-  const LightPathPilot freely = Pilot(world, view, seed, paths, {}, sinks).run();
+  const Timer timer;
+  const auto left = [&] { return time > 0 ? kPartOfTime * time - timer.seconds() : kInfinity; };
+  const LightPathPilot freely = Pilot(world, view, seed, paths, {}, left(), sinks).run();
   pathtrace::LightTargets targets(world, world::Camera(view.sensor, world.units()).eye());
   if (targets.empty()) return freely;
-  const LightPathPilot aimed = Pilot(world, view, seed, paths, std::move(targets), sinks).run();
+  const LightPathPilot aimed = Pilot(world, view, seed, paths, std::move(targets), left(), sinks).run();
   return aimed.left < kMoreIsWorth * freely.left ? aimed : freely;
 }
 

@@ -22,9 +22,10 @@ struct LightPathPilot {
   double shown = 0;
 };
 
-// The same for every size and window of the film. None if it was cancelled.
+// The same for every size and window of the film. `time`: seconds that the whole picture may take, 0: any.
+// None if a quarter of that is not enough to know, or if it was cancelled.
 LightPathPilot pilot_light_paths(const world::World& world, const world::View& view, std::uint64_t seed,
-                                 pathtrace::Paths paths, const Sinks& sinks);
+                                 pathtrace::Paths paths, double time, const Sinks& sinks);
 
 // Which light paths a timed run has, as a choice: frames of a shot repeat it, so that no caustic comes and
 // goes. What is given is the pilot's, and stays if there was no earlier run. `of`: whose they are.

@@ -40,7 +40,8 @@ class PathRun {
         denoising_(asked, task_.view, choices_, sinks, task_.denoiser_pixel_seconds),
         view_(denoising_.filtered(task_.view)),
         options_(reference_options(asked.view.only, asked.seed, ReferencePaths::all)) {
-    const LightPathPilot light = pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, sinks);
+    const LightPathPilot light =
+        pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, asked.time, sinks);
     options_.light_paths = light.light_paths, options_.aim_light_paths = light.aim;
     if (timed()) choose_light_paths(choices_, "all", options_.light_paths, options_.aim_light_paths);
   }

@@ -19,7 +19,8 @@ pathtrace::ReferenceOptions all_light(const world::World& world, const View& vie
                                       const Sinks& sinks) {
   pathtrace::ReferenceOptions options =
       reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
-  const LightPathPilot light = pilot_light_paths(world, view, settings.seed, options.paths, sinks);
+  const LightPathPilot light =
+      pilot_light_paths(world, view, settings.seed, options.paths, settings.time, sinks);
   options.light_paths = light.light_paths, options.aim_light_paths = light.aim;
   if (choices) choose_light_paths(*choices, "beside", options.light_paths, options.aim_light_paths);
   return options;

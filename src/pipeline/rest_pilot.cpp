@@ -125,7 +125,8 @@ RestPlan plan_rest(const world::World& world, const View& view, const RenderSett
   // What the pilot's paths from the eye hardly find, paths from the emitters may show: by what sends light on
   // sharply, if there is any.
   if (plan.paths == 0 && pathtrace::LightTargets(world, {}).empty()) return plan;
-  const LightPathPilot light = pilot_light_paths(world, view, settings.seed, pathtrace::Paths::rest, sinks);
+  const LightPathPilot light =
+      pilot_light_paths(world, view, settings.seed, pathtrace::Paths::rest, settings.time, sinks);
   if (plan.paths == 0 && !(light.light_paths > 0 && light.shown > RestPilot::kMinShown)) return plan;
   plan.light_paths = light.light_paths, plan.aim_light_paths = light.aim;
   if (!plan.piloted) return plan;

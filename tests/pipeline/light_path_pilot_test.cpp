@@ -36,7 +36,7 @@ LightPathPilot pilot(bool bulb, int width, int crop) {
   const world::World world = scene.build();
   world::ViewChoice choice;
   choice.crop[2] = choice.crop[3] = crop;
-  return pilot_light_paths(world, world::make_view(scene.desc, choice), 1, pathtrace::Paths::all, {});
+  return pilot_light_paths(world, world::make_view(scene.desc, choice), 1, pathtrace::Paths::all, 0, {});
 }
 
 TEST(LightPathPilot, ABulbInGlassIsWorthLightPathsAndASkyIsNot) {
@@ -46,6 +46,16 @@ TEST(LightPathPilot, ABulbInGlassIsWorthLightPathsAndASkyIsNot) {
   EXPECT_GT(bulb.seconds, 1);
   EXPECT_EQ(sky.light_paths, 0);
   EXPECT_EQ(sky.variance, 1);
+}
+
+TEST(LightPathPilot, WhatCannotBeKnownInTimeIsNone) {
+  test::SceneMaker scene = floor_under(true);
+  const world::World world = scene.build();
+  const auto in_seconds = [&](double time) {
+    return pilot_light_paths(world, world::make_view(scene.desc, {}), 1, pathtrace::Paths::all, time, {});
+  };
+  EXPECT_GE(in_seconds(1e6).light_paths, 1);
+  EXPECT_EQ(in_seconds(1e-9).light_paths, 0);
 }
 
 TEST(LightPathPilot, ASunOnASmallBallOfGlassIsWorthAimedOnes) {
@@ -59,7 +69,7 @@ TEST(LightPathPilot, ASunOnASmallBallOfGlassIsWorthAimedOnes) {
   scene.desc.sensors.push_back(test::sensor({0, 1.5f, -2}, {0.1f, 0.2f, 0}, {0, 1, 0}, 45, 64, 48));
   const world::World world = scene.build();
   const LightPathPilot found =
-      pilot_light_paths(world, world::make_view(scene.desc, {}), 1, pathtrace::Paths::all, {});
+      pilot_light_paths(world, world::make_view(scene.desc, {}), 1, pathtrace::Paths::all, 0, {});
   EXPECT_GT(found.light_paths, 0);
   EXPECT_TRUE(found.aim);
   EXPECT_LT(found.left, 0.7);
