@@ -17,6 +17,9 @@ using emitters::PointEmitter;
 using emitters::ProfileEmitter;
 using emitters::SpotEmitter;
 
+// Of rounding, where the scene's disc ends.
+constexpr float kSlack = 1 + 1e-4f;
+
 float disc_pdf(const DirectionalEmitter& sun) { return 1 / (2 * kPi * (1 - sun.cos_half_angle)); }
 
 // Per solid angle, for those that shine from a point.
@@ -106,7 +109,7 @@ void EmissionSampler::aim(Start& start, const emitters::Emission& emission, floa
       const Vec3f to = targets_.place_on(*target, w, where) - world_.bounds().center();
       start.ray.origin = world_.bounds().center() + to - w * (dot(to, w) + world_.bounds().radius());
     }
-    start.flux *= 1 / (disc_ * targets_.per_area(start.ray.origin, w, 1 / disc_));
+    start.flux *= 1 / (disc_ * across(start.ray.origin, -w));
     return;
   }
   const Vec3f place = emission.origin, normal = area ? emission.normal : Vec3f{0, 0, 0};
@@ -126,8 +129,16 @@ void EmissionSampler::aim(Start& start, const emitters::Emission& emission, floa
 }
 
 float EmissionSampler::across(Vec3f place, Vec3f direction) const {
-  const float own = 1 / disc_;
+  // All surfaces are within the disc; a medium may reach beyond it, and beyond where light starts.
+  const bool media = !world_.media().empty();
+  if (media && dot(place - world_.bounds().center(), direction) > kSlack * world_.bounds().radius()) return 0;
+  const float own = !media || passes_scene(place, direction) ? 1 / disc_ : 0.0f;
   return targets_.empty() ? own : targets_.per_area(place, direction, own);
+}
+
+bool EmissionSampler::passes_scene(Vec3f place, Vec3f direction) const {
+  const Vec3f to = place - world_.bounds().center();
+  return length_squared(to - direction * dot(to, direction)) <= square(kSlack * world_.bounds().radius());
 }
 
 float EmissionSampler::density(int emitter, std::uint32_t triangle, Vec3f place, Vec3f direction) const {

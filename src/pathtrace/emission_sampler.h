@@ -43,8 +43,10 @@ class EmissionSampler {
 
  private:
   void aim(Start& start, const emitters::Emission& emission, float u, Vec2f where) const;
-  // Densities of starts of what shines from all around: per area across `direction`, in which light goes.
+  // Densities of starts of what shines from all around, per area across: of light that arrives at a place
+  // from `direction`. 0 of places to which none gets without having passed the scene by.
   float across(Vec3f place, Vec3f direction) const;
+  bool passes_scene(Vec3f place, Vec3f direction) const;
 
   const world::World& world_;
   LightTargets targets_;

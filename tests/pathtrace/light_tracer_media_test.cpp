@@ -21,12 +21,13 @@ scenedesc::MediumDesc fog(Rgb extinction, Rgb albedo, Rgb g) {
 }
 
 // Of the room, in lumps.
-int add_smoke_grid(SceneMaker& scene) {
+int add_smoke_grid(SceneMaker& scene, double half = 1) {
   auto grid = std::make_shared<scenedesc::GridData>();
   grid->size = {6, 6, 6};
   for (int k = 0; k < 6 * 6 * 6; ++k) grid->values.push_back(k % 5 == 0 ? 3.0f : (k % 3 == 0 ? 0.5f : 0.0f));
   scenedesc::VolumeDesc volume;
-  volume.to_world = Transform::translate(-1, -1, -1) * Transform::scale(2, 2, 2);
+  volume.to_world =
+      Transform::scale(half, half, half) * Transform::translate(-1, -1, -1) * Transform::scale(2, 2, 2);
   volume.kind = std::shared_ptr<const scenedesc::GridData>(grid);
   scene.desc.volumes.push_back(volume);
   return static_cast<int>(scene.desc.volumes.size()) - 1;
@@ -68,6 +69,27 @@ SceneMaker block_of_fog_in_the_sun() {
   scene.light(sun);
   scene.desc.sensors.push_back(
       test::sensor({0.2f, 1.2f, -2.5f}, {0.15f, 0.5f, 0}, {0, 1, 0}, 40, kWidth, kHeight));
+  return scene;
+}
+
+// A lamp that eye paths find in every way that they have: from a place drawn for it, from where they collide,
+// by chance.
+SceneMaker open_lamp_in_fog() {
+  SceneMaker scene = room();
+  add_ball_lamp(scene, {0.3f, 0.2f, 0.2f}, 0.1, 20);
+  fill(scene, fog({1.5f, 1.2f, 0.9f}, Rgb(0.95f), Rgb(0.3f)));
+  return scene;
+}
+
+// The sky's light has come through smoke that reaches beyond the scene.
+SceneMaker sky_through_smoke() {
+  SceneMaker scene;
+  scene.rectangle({0, -1, 0}, {1, 0, 0}, {0, 0, -1}, scene.diffuse(Rgb(0.8f)));
+  scene.rectangle({0, 0, 1}, {1, 0, 0}, {0, -1, 0}, scene.diffuse(Rgb(0.8f)));
+  scene.light(scenedesc::ConstantEnvironmentDesc{Rgb(1)});
+  scene.desc.sensors.push_back(test::sensor({0.3f, 0.3f, -1}, {0, -0.5f, 1}, {0, 1, 0}, 60, kWidth, kHeight));
+  fill(scene, fog(Rgb(0.3f), Rgb(0.5f), Rgb(0)));
+  scene.desc.media[0].extinction.volume = add_smoke_grid(scene, 6);
   return scene;
 }
 
@@ -120,6 +142,16 @@ TEST(LightTracerInMedia, ASunIntoABlockOfFogIsTheSame) {
 TEST(LightTracerInMedia, ASpotAndASkyInSmokeAreTheSame) {
   expect_same(means(spot_and_sky_in_smoke(), Paths::all, 0, kPicturesOfEach),
               means(spot_and_sky_in_smoke(), Paths::all, 1, kPicturesOfEach));
+}
+
+TEST(LightTracerInMedia, AnOpenLampIsTheSame) {
+  expect_same(means(open_lamp_in_fog(), Paths::all, 0, kPicturesOfEach),
+              means(open_lamp_in_fog(), Paths::all, 4, kPicturesOfEach));
+}
+
+TEST(LightTracerInMedia, ASkyThroughSmokeIsTheSame) {
+  expect_same(means(sky_through_smoke(), Paths::all, 0, kPicturesOfEach),
+              means(sky_through_smoke(), Paths::all, 4, kPicturesOfEach));
 }
 
 TEST(LightTracerInMedia, DepthIsLimitedAlike) {
