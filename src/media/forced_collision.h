@@ -3,7 +3,8 @@
 //
 // Places are drawn as those of a flight's first collision, given that there is one, with one channel of the
 // medium chosen for each and the density over all three. Where a medium is a grid the density takes the
-// middle of its bounds for its extinction, cell by cell.
+// middle of its bounds for its extinction, cell by cell. (Lux, Koblinger, "Monte Carlo Particle Transport
+// Methods: Neutron and Photon Calculations", 1991, on forced collisions.)
 #pragma once
 
 #include "base/equiangular.h"

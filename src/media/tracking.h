@@ -67,6 +67,7 @@ bool fly(const Medium& medium, Vec3f origin, Vec3f direction, float t_max, int h
   return true;
 }
 
+// Optical distance, by half of the bounds, along which their middle is counted.
 inline constexpr float kMaxResidual = 0.25f;
 // So little of light is rather lost by chance than followed on.
 inline constexpr float kFaint = 0.05f;
