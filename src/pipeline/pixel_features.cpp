@@ -28,6 +28,8 @@ constexpr float kOverNeighbors = 4, kOverUsual = 16;
 // nothing is known at a place.
 constexpr int kMediumParts = 4;
 constexpr float kUsualAlbedo = 0.8f;
+// What of a sample is left by media: less is dark, and its inverse may be infinite.
+constexpr float kLeastWeight = 1e-30f;
 
 float distance(Rgb a, Rgb b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
@@ -90,7 +92,7 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
           albedo += seen.hidden * seen.albedo;
           weights += luminance(seen.hidden);
         }
-        if (weights > 0) normal = normal * (1 / weights);
+        if (weights > kLeastWeight) normal = normal * (1 / weights);
         const Rgb color = albedo + min_of(sample.straight, Rgb(kWhite));
         sums.emission += sample.emission, sums.straight += sample.straight, sums.sharp += sample.sharp;
         sums.albedo += albedo;
