@@ -19,6 +19,11 @@ float light_path_ratio(double light_paths, float eye, float phase_pdf) {
   return from_eye > 0 ? static_cast<float>(light_paths) / from_eye : 0.0f;
 }
 
+float merged_light_path_ratio(double light_paths, float area, const world::SurfaceHit& hit,
+                              const scatter::Closure& closure, Vec3f wi, float pdf) {
+  return pdf > 0 ? static_cast<float>(light_paths) * area * crossing(hit, closure, wi) / pdf : 0.0f;
+}
+
 float LightPathBalance::over_found(float ratio, float share, const world::SurfaceHit* hit,
                                    const geometry::Ray& ray, int environment) const {
   const float density =

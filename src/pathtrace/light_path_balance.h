@@ -17,6 +17,10 @@ float light_path_ratio(double light_paths, float eye, const world::SurfaceHit& h
 // eye is left out of both, as of all weights.
 float light_path_ratio(double light_paths, float eye, float phase_pdf);
 
+// The same where they are merged within `area` (vertex_merging.h), at the vertex that eye paths come to.
+float merged_light_path_ratio(double light_paths, float area, const world::SurfaceHit& hit,
+                              const scatter::Closure& closure, Vec3f wi, float pdf);
+
 // Cosine of what arrives or leaves: with the surface itself, or across a fiber.
 float crossing(const world::SurfaceHit& hit, const scatter::Closure& closure, Vec3f w);
 
@@ -25,8 +29,14 @@ float crossing(const world::SurfaceHit& hit, const scatter::Closure& closure, Ve
 class LightPathBalance {
  public:
   // `light_paths` for one eye path of `camera` in each pixel. Starts and camera must outlive it.
-  LightPathBalance(const EmissionSampler& starts, const world::Camera& camera, double light_paths)
-      : starts_(&starts), camera_(&camera), light_paths_(light_paths) {}
+  // `merged_pixels`: the area within which light paths are merged behind mirrors and glass, as a part of what
+  // a pixel sees at that distance; 0: they are not.
+  LightPathBalance(const EmissionSampler& starts, const world::Camera& camera, double light_paths,
+                   double merged_pixels = 0)
+      : starts_(&starts),
+        camera_(&camera),
+        light_paths_(light_paths),
+        merged_pixels_(static_cast<float>(merged_pixels)) {}
 
   // At the first vertex, which the eye sees at `distance` along `ray`, where the path takes wi.
   float ratio_on(const geometry::Ray& ray, float distance, const world::SurfaceHit& hit,
@@ -36,6 +46,19 @@ class LightPathBalance {
   }
   float ratio_within(const geometry::Ray& ray, float distance, float phase_pdf) const {
     return light_path_ratio(light_paths_, camera_->density(ray, distance), phase_pdf);
+  }
+
+  // Area of the disc around the first vertex that is not specular, behind others, at `distance` along a path
+  // that left the eye along `ray`; 0: none. Mirrors and glass count as flat.
+  float merge_area(const geometry::Ray& ray, float distance, const scatter::Closure& closure) const {
+    // Strands are thinner than any disc.
+    if (!(merged_pixels_ > 0) || closure.is_fiber()) return 0;
+    const float area = merged_pixels_ / camera_->density(ray, distance);
+    return area >= kLeastArea && area < kInfinity ? area : 0;
+  }
+  float ratio_merged(float area, const world::SurfaceHit& hit, const scatter::Closure& closure, Vec3f wi,
+                     float pdf) const {
+    return merged_light_path_ratio(light_paths_, area, hit, closure, wi, pdf);
   }
 
   // Of an emitter met by direction; `share`: of that among all ways in which eye paths find it. `hit`:
@@ -52,7 +75,9 @@ class LightPathBalance {
  private:
   const EmissionSampler* starts_;
   const world::Camera* camera_;
+  static constexpr float kLeastArea = 1e-30f;
   double light_paths_;
+  float merged_pixels_;
 };
 
 }  // namespace lumirank::pathtrace

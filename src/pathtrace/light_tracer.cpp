@@ -49,7 +49,8 @@ LightTracer::LightTracer(const world::World& world, const world::Camera& camera,
       light_paths_(light_paths),
       emitter_media_(world, camera.eye(), eye_medium) {}
 
-int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const {
+int LightTracer::trace(SampleStream random, std::uint64_t key, const MergePoints& points,
+                       Found& found) const {
   const auto start = starts_.sample(random);
   if (!start) return 0;
   Flight flight{random, key, start->ray, {start->flux, Rgb(1)}, max_component(start->flux)};
@@ -61,7 +62,7 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat
     ++rays;
     if (flight.medium >= 0 && !world_.media().empty()) {
       const float distance = hit ? hit->hit.t : kInfinity;
-      rays += show_along(flight, distance, splats) ? 1 : 0;
+      rays += show_along(flight, distance, found.splats) ? 1 : 0;
       const Way way = fly(flight, distance);
       if (way == Way::ended) break;
       if (way == Way::scattered) {
@@ -76,7 +77,10 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, std::vector<Splat
     const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
     if (flight.first()) flight.traveled += hit->hit.t;
     const bool wanted = settings_.paths != Paths::rest || flight.after_specular;
-    if (!flight.first() && wanted && closure.has_non_delta()) rays += show(flight, *hit, splats) ? 1 : 0;
+    if (!flight.first() && wanted && closure.has_non_delta()) {
+      rays += show(flight, *hit, found.splats) ? 1 : 0;
+      merge(flight, *hit, points, found.merged);
+    }
     const Vec2f u = flight.random.next_2d();
     const auto next = scatter::sample(closure, incoming, flight.random.next_float(), u, Lobes::all, true);
     if (!next) break;
@@ -227,6 +231,25 @@ bool LightTracer::show(Flight& flight, const world::SurfaceHit& hit, std::vector
   if (is_black(value) || !is_finite(value)) return true;
   splats.push_back({seen->film, value, flight.non_delta_vertices == 0, ratio});
   return true;
+}
+
+void LightTracer::merge(const Flight& flight, const world::SurfaceHit& hit, const MergePoints& points,
+                        std::vector<Merged>& merged) const {
+  const Vec3f wi = -flight.ray.direction;
+  points.for_each_around(hit.point, [&](const MergePoint& point) {
+    if (settings_.max_depth >= 0 && point.segments + flight.segments > settings_.max_depth) return;
+    Closure closure = world_.materials().closure(point.hit.material, point.hit.point, point.wo);
+    scatter::face_viewer(closure, point.wo);
+    const float across = crossing(point.hit, closure, wi);
+    const float pdf = scatter::pdf(closure, point.wo, wi, Lobes::all);
+    if (!(across > 0) || !(pdf > 0)) return;
+    const float ratio =
+        flight.density * merged_light_path_ratio(light_paths_, point.area, point.hit, closure, wi, pdf);
+    const Rgb value = point.throughput * scatter::eval(closure, point.wo, wi) * flight.carried.weight() *
+                      (ratio / (1 + ratio) / (across * point.area * static_cast<float>(light_paths_)));
+    if (is_black(value) || !is_finite(value)) return;
+    merged.push_back({point.pixel, value, flight.non_delta_vertices == 0, ratio});
+  });
 }
 
 // The same of a place on the way through a medium.

@@ -42,8 +42,19 @@ class LightTracer {
     bool direct;
     float ratio;  // density of light paths over that of eye paths
   };
-  // Returns how many rays that took.
-  int trace(SampleStream random, std::uint64_t key, std::vector<Splat>& splats) const;
+  // What it adds where it is merged with the eye path of a pixel.
+  struct Merged {
+    std::uint32_t pixel;
+    Rgb value;
+    bool direct;
+    float ratio;
+  };
+  struct Found {
+    std::vector<Splat> splats;
+    std::vector<Merged> merged;
+  };
+  // Returns how many rays that took. `points`: of one eye path from each pixel.
+  int trace(SampleStream random, std::uint64_t key, const MergePoints& points, Found& found) const;
 
  private:
   struct Flight;
@@ -58,6 +69,8 @@ class LightTracer {
   bool may_turn(const Flight& flight) const;
   bool survives(Flight& flight) const;
   bool show(Flight& flight, const world::SurfaceHit& hit, std::vector<Splat>& splats) const;
+  void merge(const Flight& flight, const world::SurfaceHit& hit, const MergePoints& points,
+             std::vector<Merged>& merged) const;
   bool show_along(Flight& flight, float distance, std::vector<Splat>& splats) const;
 
   const world::World& world_;

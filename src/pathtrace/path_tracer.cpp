@@ -36,7 +36,10 @@ struct PathTracer::Walk {
   bool from_eye = false;        // the eye sees the vertex that comes next
   // Of the light that will be drawn at the next vertex that is no mirror and no smooth glass.
   std::optional<world::LightSampler::Ahead> light{};
-  float light_paths = 0;  // light_path_ratio() of a first vertex that the eye sees; 0: of none
+  float light_paths = 0;  // ratio of light paths at the first vertex that is not specular; 0: none
+  geometry::Ray eye_ray{};
+  float from_camera = 0;  // way from the camera to the last vertex
+  std::vector<MergePoint>* merge_points = nullptr;
   Radiance sum{};
 
   void add(Rgb value) {
@@ -50,12 +53,15 @@ struct PathTracer::Walk {
 PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
     : world_(world), lights_(world.light_sampler()), settings_(settings) {}
 
-Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
+Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+                           std::vector<MergePoint>* merge_points) const {
   Walk walk{.random = SampleStream(settings_.seed, Stage::reference, pixel, sample),
             .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
             .ray = ray,
             .counts = settings_.paths != Paths::rest,
-            .from_eye = beside_.has_value()};
+            .from_eye = beside_.has_value(),
+            .eye_ray = ray,
+            .merge_points = merge_points};
   finish(walk);
   walk.sum.segments = walk.segments;
   return walk.sum;
@@ -206,15 +212,22 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   }
 
   const Vec3f wo = -walk.ray.direction;
+  // Behind what is specular alone, a departed walk not being of these.
+  float merge_area = 0;
+  if (beside_ && walk.non_delta_vertices == 0 && !walk.from_eye && closure.has_non_delta())
+    merge_area = beside_->merge_area(walk.eye_ray, walk.from_camera + walk.traveled, closure);
+  if (merge_area > 0 && walk.merge_points && may_continue)
+    walk.merge_points->push_back({hit, wo, walk.throughput, merge_area, walk.segments});
   const auto next = scatter::sample(closure, wo, u_lobe, walk.random.next_2d(), Lobes::all);
   if (!next || is_black(next->weight)) return false;
   walk.throughput *= next->weight;
   const bool pass = next->delta && next->kind == LobeKind::delta_pass;
   if (!pass) {
     if (!may_continue) return false;
-    if (walk.from_eye && !next->delta)
-      walk.light_paths = beside_->ratio_on(walk.ray, walk.traveled, hit, closure, next->wi, next->pdf);
+    if (walk.non_delta_vertices == 0 && !next->delta)
+      walk.light_paths = light_paths_at(walk, hit, closure, *next, merge_area);
     walk.from_eye = false;
+    walk.from_camera += walk.traveled;
     ++walk.segments;
     walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;
@@ -239,6 +252,12 @@ bool PathTracer::scatter(Walk& walk, const world::SurfaceHit& hit, Closure& clos
   walk.medium = world_.medium_beyond(hit, next->wi, walk.medium);
   walk.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
   return true;
+}
+
+float PathTracer::light_paths_at(const Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
+                                 const scatter::BsdfSample& next, float merge_area) const {
+  if (walk.from_eye) return beside_->ratio_on(walk.ray, walk.traveled, hit, closure, next.wi, next.pdf);
+  return merge_area > 0 ? beside_->ratio_merged(merge_area, hit, closure, next.wi, next.pdf) : 0.0f;
 }
 
 }  // namespace lumirank::pathtrace

@@ -10,6 +10,7 @@
 #include "base/rgb.h"
 #include "base/sample_stream.h"
 #include "pathtrace/light_path_balance.h"
+#include "pathtrace/vertex_merging.h"
 #include "world/camera.h"
 #include "world/light_sampler.h"
 #include "world/world.h"
@@ -58,8 +59,10 @@ class PathTracer {
   void share_with_light_paths(const LightPathBalance& balance) { beside_ = balance; }
 
   // Radiance arriving along `ray`, one random path keyed by (pixel, sample). Passing straight through null
-  // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth.
-  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
+  // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth. Places at which light
+  // paths are to be merged with it are added to `merge_points`, if not nullptr, without their pixels.
+  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+                 std::vector<MergePoint>* merge_points = nullptr) const;
 
   // A non-specular vertex, and the direction in which a path leaves it.
   struct Departure {
@@ -89,6 +92,9 @@ class PathTracer {
   void keep_traced_lobes(const Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
   bool survives(Walk& walk) const;
   bool scatter(Walk& walk, const world::SurfaceHit& hit, scatter::Closure& closure) const;
+  // How many light paths there are for the step to `next`.
+  float light_paths_at(const Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
+                       const scatter::BsdfSample& next, float merge_area) const;
 
   const world::World& world_;
   const world::LightSampler& lights_;

@@ -33,7 +33,7 @@ struct PathFilmHalf {
 
 namespace {
 
-constexpr std::size_t kPixelsAtOnce = 8192, kLightPathsAtOnce = 1024;
+constexpr std::size_t kPixelsAtOnce = 8192, kPixelsOfPart = 256, kLightPathsAtOnce = 1024;
 
 struct ImageParts {
   bool emission, direct, indirect;
@@ -88,8 +88,9 @@ struct PathFilm::Impl {
     std::variant<PathTracer, VolumePathTracer> tracer;
     world::Camera camera;
 
-    Radiance trace(const geometry::Ray& ray, std::uint64_t pixel, std::uint64_t sample) const {
-      return std::visit([&](const auto& by) { return by.trace(ray, pixel, sample); }, tracer);
+    Radiance trace(const geometry::Ray& ray, std::uint64_t pixel, std::uint64_t sample,
+                   std::vector<MergePoint>* points) const {
+      return std::visit([&](const auto& by) { return by.trace(ray, pixel, sample, points); }, tracer);
     }
   };
   world::View view;
@@ -137,7 +138,7 @@ struct PathFilm::Impl {
     light_tracer.emplace(world, by.camera, *starts, window,
                          PathSettings{options.seed, view.max_depth, options.paths, {}}, number,
                          view.sensor.medium);
-    const LightPathBalance balance(*starts, by.camera, number);
+    const LightPathBalance balance(*starts, by.camera, number, options.merged_pixels);
     std::visit([&](auto& tracer) { tracer.share_with_light_paths(balance); }, by.tracer);
   }
 
@@ -151,7 +152,8 @@ struct PathFilm::Impl {
                             tracing.size() - 1)];
   }
 
-  void trace_pixel(std::size_t p, int begin, int end) {
+  // `points`: nullptr, or where light paths are to be merged with what is traced.
+  void trace_pixel(std::size_t p, int begin, int end, std::vector<MergePoint>* points) {
     const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
     const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
     const std::uint64_t id =
@@ -163,8 +165,11 @@ struct PathFilm::Impl {
       const auto at = filter.sample(random.next_2d());
       const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
                        static_cast<float>(y) + 0.5f + at.offset.y};
+      const std::size_t before = points ? points->size() : 0;
       const Radiance radiance =
-          now.trace(now.camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s));
+          now.trace(now.camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s), points);
+      for (std::size_t k = before; points && k < points->size(); ++k)
+        (*points)[k].pixel = static_cast<std::uint32_t>(p), (*points)[k].throughput *= at.weight;
       if (!is_finite(radiance.total()))
         throw InternalError("the reference met a value that is not finite; replay pixel " +
                             std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
@@ -178,6 +183,8 @@ struct PathFilm::Impl {
       half.squares[p] += light * light;
     }
   }
+
+  bool merges() const { return light_tracer && options.merged_pixels > 0; }
 
   ImageParts wanted() const { return {options.emission, options.direct, options.indirect}; }
   ImageParts sent() const { return {false, options.direct, options.indirect}; }
@@ -198,9 +205,9 @@ struct PathFilm::Impl {
   }
 
   // Those that belong to sample s of all pixels. The order of sums is fixed.
-  void add_light_paths(int s, const Sinks& sinks) {
+  void add_light_paths(int s, const MergePoints& points, const Sinks& sinks) {
     const std::size_t parts = (light_paths + kLightPathsAtOnce - 1) / kLightPathsAtOnce;
-    std::vector<std::vector<LightTracer::Splat>> splats(parts);
+    std::vector<LightTracer::Found> found(parts);
     const auto half = static_cast<std::uint64_t>(s & 1);
     const std::uint64_t before = (static_cast<std::uint64_t>(s) >> 1) * light_paths;
     parallel_for(parts, 1, [&](std::size_t begin, std::size_t end) {
@@ -210,26 +217,29 @@ struct PathFilm::Impl {
              k < std::min(light_paths, (part + 1) * kLightPathsAtOnce); ++k) {
           const std::uint64_t number = 2 * (before + k) + half;
           light_tracer->trace(SampleStream(options.seed, Stage::light_paths, 0, number),
-                              hash_ids(options.seed, Stage::opacity, ~0ull, number), splats[part]);
+                              hash_ids(options.seed, Stage::opacity, ~0ull, number), points, found[part]);
         }
     });
     if (sinks.cancelled()) return;
-    PathFilmHalf& sums = halves[s & 1];
+    const auto add = [&](std::size_t p, Rgb value, bool direct) {
+      PathFilmHalf& sums = halves[s & 1];
+      (direct ? sums.direct : sums.indirect)[p].add(value);
+      const double light = sent_luminance(direct ? value : Rgb{}, direct ? Rgb{} : value);
+      sums.squares[p] += light * light;
+    };
     std::uint64_t number = 0;
-    for (const auto& part : splats)
-      for (const LightTracer::Splat& splat : part) {
+    for (const LightTracer::Found& part : found) {
+      for (const LightTracer::Splat& splat : part.splats) {
         Rng random(options.seed, Stage::light_paths, ~static_cast<std::uint64_t>(s), ++number);
         const auto pixel = filter.pixel(splat.film, random.next_2d());
         const int x = pixel.at.x - view.crop_x, y = pixel.at.y - view.crop_y;
         if (x < 0 || y < 0 || x >= view.width || y >= view.height) continue;
         const std::size_t p =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
-        (splat.direct ? sums.direct : sums.indirect)[p].add(splat.value * pixel.weight);
-        const double light =
-            sent_luminance(splat.direct ? splat.value : Rgb{}, splat.direct ? Rgb{} : splat.value) *
-            static_cast<double>(pixel.weight);
-        sums.squares[p] += light * light;
+        add(p, splat.value * pixel.weight, splat.direct);
       }
+      for (const LightTracer::Merged& merged : part.merged) add(merged.pixel, merged.value, merged.direct);
+    }
   }
 };
 
@@ -276,13 +286,25 @@ bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(doubl
   const ImageParts wanted = m.wanted();
   const int begin_path = m.result.spp, end_path = begin_path + paths;
   std::atomic<std::size_t> finished{0};
-  parallel_for(m.pixels, 256, [&](std::size_t begin, std::size_t end) {
-    if (sinks.cancelled()) return;
-    for (std::size_t p = begin; p < end; ++p) m.trace_pixel(p, begin_path, end_path);
-    const double fraction = static_cast<double>(finished += end - begin) / static_cast<double>(m.pixels);
-    if (progress) progress(fraction);
-  });
-  for (int s = begin_path; s < end_path && m.light_tracer; ++s) m.add_light_paths(s, sinks);
+  const double all = static_cast<double>(m.pixels) * (m.merges() ? paths : 1);
+  const auto trace = [&](int begin_sample, int end_sample, std::vector<std::vector<MergePoint>>* points) {
+    parallel_for(m.pixels, kPixelsOfPart, [&](std::size_t begin, std::size_t end) {
+      if (sinks.cancelled()) return;
+      for (std::size_t p = begin; p < end; ++p)
+        m.trace_pixel(p, begin_sample, end_sample, points ? &(*points)[begin / kPixelsOfPart] : nullptr);
+      const double fraction = static_cast<double>(finished += end - begin) / all;
+      if (progress) progress(fraction);
+    });
+  };
+  if (!m.merges()) trace(begin_path, end_path, nullptr);
+  for (int s = begin_path; s < end_path && m.light_tracer && !sinks.cancelled(); ++s) {
+    std::vector<std::vector<MergePoint>> points;
+    if (m.merges()) {
+      points.resize((m.pixels + kPixelsOfPart - 1) / kPixelsOfPart);
+      trace(s, s + 1, &points);
+    }
+    m.add_light_paths(s, MergePoints(points), sinks);
+  }
   if (sinks.cancelled()) {
     // The pass was left half done: its samples are unevenly spread and cannot be used.
     m.result.interrupted = true;

@@ -21,6 +21,9 @@ struct ReferenceResult {
   bool interrupted = false;
 };
 
+// One light path counts in about so many pixels.
+inline constexpr double kMergedPixels = 2;
+
 struct ReferenceOptions {
   std::uint64_t seed = 1;
   Paths paths = Paths::all;
@@ -33,6 +36,9 @@ struct ReferenceOptions {
   // (light_tracer.h); 0: none. Not over several instants; with media only of all paths.
   double light_paths = 0;
   bool aim_light_paths = false;  // half of them at light_targets.h's
+  // Of what a pixel sees: where light paths are merged with eye paths behind mirrors and glass
+  // (vertex_merging.h), which blurs by as much; 0: nowhere.
+  double merged_pixels = kMergedPixels;
 };
 
 // The scene at an instant of an open shutter, and the view of it: windows are of one size and place.

@@ -48,7 +48,10 @@ struct VolumePathTracer::Walk {
   float traveled = 0;          // since then
   float eta_scale = 1;         // undoes refraction's scaling for Russian roulette
   bool from_eye = false;       // light paths may show the vertex that comes next
-  float light_paths = 0;       // LightPathBalance's ratio of the first vertex, if they may have shown that
+  float light_paths = 0;       // LightPathBalance's ratio of the first vertex that is not specular; 0: none
+  geometry::Ray eye_ray{};
+  float from_camera = 0;  // way from the camera to the last vertex
+  std::vector<MergePoint>* merge_points = nullptr;
   Radiance sum{};
 
   void add(Rgb value) {
@@ -66,14 +69,17 @@ VolumePathTracer::VolumePathTracer(const world::World& world, std::uint64_t seed
       max_depth_(max_depth),
       eye_medium_(eye_medium) {}
 
-Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const {
+Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+                                 std::vector<MergePoint>* merge_points) const {
   Walk walk{.random = SampleStream(seed_, Stage::reference, pixel, sample),
             .ray = ray,
             .hero = 0,
             .medium = eye_medium_,
             .path = {},
-            .from_eye = beside_.has_value()};
-  walk.ray.direction = normalize(ray.direction);
+            .from_eye = beside_.has_value(),
+            .eye_ray = ray,
+            .merge_points = merge_points};
+  walk.ray.direction = walk.eye_ray.direction = normalize(ray.direction);
   const float longer = length(ray.direction);
   walk.ray.t_min *= longer, walk.ray.t_max *= longer;
   walk.hero = std::min(2, static_cast<int>(3 * walk.random.next_float()));
@@ -268,6 +274,11 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
     }
   }
 
+  float merge_area = 0;
+  if (beside_ && walk.non_delta_vertices == 0 && !walk.from_eye && closure.has_non_delta())
+    merge_area = beside_->merge_area(walk.eye_ray, walk.from_camera + walk.traveled, closure);
+  if (merge_area > 0 && walk.merge_points && may_continue)
+    walk.merge_points->push_back({hit, wo, walk.path.weight(), merge_area, walk.segments});
   const auto next = scatter::sample(closure, wo, u_lobe, walk.random.next_2d(), Lobes::all);
   if (!next || is_black(next->weight)) return false;
   walk.path.multiply(next->weight);
@@ -276,7 +287,10 @@ bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& h
     if (!may_continue) return false;
     if (walk.from_eye && !next->delta)
       walk.light_paths = beside_->ratio_on(walk.ray, walk.traveled, hit, closure, next->wi, next->pdf);
+    else if (merge_area > 0 && !next->delta)
+      walk.light_paths = beside_->ratio_merged(merge_area, hit, closure, next->wi, next->pdf);
     walk.from_eye = false;
+    walk.from_camera += walk.traveled;
     ++walk.segments;
     walk.traveled = 0;
     walk.eta_scale *= next->eta * next->eta;

@@ -29,8 +29,9 @@ class VolumePathTracer {
   void share_with_light_paths(const LightPathBalance& balance) { beside_ = balance; }
 
   // As PathTracer::trace; scattering in a medium is a non-specular vertex, and what a medium emits is
-  // emission.
-  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample) const;
+  // emission. Light paths are merged on surfaces alone.
+  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+                 std::vector<MergePoint>* merge_points = nullptr) const;
 
  private:
   struct Vertex;

@@ -72,6 +72,7 @@ class Pilot {
     if (settings_.paths != pathtrace::Paths::all) light_ = trace_light(settings_);
     std::vector<Found> found;
     for (const LightTracer::Splat& splat : light_.splats) found.push_back(found_by(splat));
+    for (const LightTracer::Merged& merged : light_.merged) found.push_back(found_by(merged));
     if (stopped_) return pilot;
     const double light_path_time = kRayOfLight * static_cast<double>(light_.rays) / kLightPaths /
                                    (static_cast<double>(other.rays) / (kEyePaths * pixels()));
@@ -114,8 +115,7 @@ class Pilot {
   struct Found {
     double light, number, ratio;
   };
-  struct Light {
-    std::vector<LightTracer::Splat> splats;
+  struct Light : LightTracer::Found {
     std::size_t rays = 0;  // that they took
   };
   using EyeTracer = std::variant<pathtrace::PathTracer, pathtrace::VolumePathTracer>;
@@ -148,7 +148,7 @@ class Pilot {
     std::size_t rays;
   };
   EyeTracer eye_tracer(const pathtrace::PathSettings& settings) const {
-    const pathtrace::LightPathBalance balance(starts_, camera_, pixels());
+    const pathtrace::LightPathBalance balance(starts_, camera_, pixels(), pathtrace::kMergedPixels);
     const auto shared = [&balance](auto tracer) {
       tracer.share_with_light_paths(balance);
       return tracer;
@@ -156,7 +156,8 @@ class Pilot {
     if (world_.media().empty()) return shared(pathtrace::PathTracer(world_, settings));
     return shared(pathtrace::VolumePathTracer(world_, settings.seed, settings.max_depth, eye_medium_));
   }
-  EyePath trace_eye(const EyeTracer& tracer, int x, int y, int k) const {
+  EyePath trace_eye(const EyeTracer& tracer, int x, int y, int k,
+                    std::vector<pathtrace::MergePoint>* points = nullptr) const {
     if (stops()) return {0, 0};
     const auto p =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
@@ -164,8 +165,11 @@ class Pilot {
     const Vec2f jitter = random.next_2d();
     const Vec2f film{static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y};
     const geometry::Ray ray = camera_.ray(film, random.next_2d());
-    const auto radiance =
-        std::visit([&](const auto& by) { return by.trace(ray, p, static_cast<std::uint64_t>(k)); }, tracer);
+    const std::size_t before = points ? points->size() : 0;
+    const auto radiance = std::visit(
+        [&](const auto& by) { return by.trace(ray, p, static_cast<std::uint64_t>(k), points); }, tracer);
+    for (std::size_t j = before; points && j < points->size(); ++j)
+      (*points)[j].pixel = static_cast<std::uint32_t>(p);
     // Besides its segments a path has a ray to a light at each vertex.
     return {static_cast<double>(luminance(radiance.direct + radiance.indirect)),
             2 * static_cast<std::size_t>(radiance.segments)};
@@ -189,16 +193,23 @@ class Pilot {
     all.paths = pathtrace::Paths::all;
     const EyeTracer tracer = eye_tracer(all);
     std::vector<int> count(brightness_.size());
-    for_rows([&](std::size_t, int y) {
+    std::vector<std::vector<pathtrace::MergePoint>> points(static_cast<std::size_t>(height_));
+    for_rows([&](std::size_t row, int y) {
       for (int x = 0; x < width_; ++x) {
+        // Light paths are merged with one of them.
         for (int k = 0; k < kEyePaths; ++k)
-          brightness_[block(x, y)] += trace_eye(tracer, x, y, k).light / kEyePaths;
+          brightness_[block(x, y)] +=
+              trace_eye(tracer, x, y, k, k == 0 ? &points[row] : nullptr).light / kEyePaths;
         ++count[block(x, y)];
       }
     });
+    merge_points_ = pathtrace::MergePoints(points);
     light_ = trace_light(all);
-    for (const LightTracer::Splat& splat : light_.splats)
-      brightness_[block_of(splat)] += static_cast<double>(luminance(splat.value)) * pixels() / kLightPaths;
+    const auto brighter = [&](Vec2i at, Rgb value) {
+      brightness_[block(at.x, at.y)] += static_cast<double>(luminance(value)) * pixels() / kLightPaths;
+    };
+    for (const LightTracer::Splat& splat : light_.splats) brighter(pixel_of(splat), splat.value);
+    for (const LightTracer::Merged& merged : light_.merged) brighter(pixel_of(merged), merged.value);
     for (std::size_t b = 0; b < brightness_.size(); ++b) {
       usual_ += brightness_[b] / pixels();
       brightness_[b] /= std::max(1, count[b]);
@@ -227,7 +238,7 @@ class Pilot {
     const LightTracer tracer(world_, camera_, starts_,
                              {{0, 0}, {static_cast<float>(width_), static_cast<float>(height_)}}, settings,
                              pixels(), eye_medium_);
-    std::vector<std::vector<LightTracer::Splat>> parts(kLightPaths / kLightPathsOfPart);
+    std::vector<LightTracer::Found> parts(kLightPaths / kLightPathsOfPart);
     std::vector<std::size_t> rays_of(parts.size());
     parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t part = begin; part < end && !stops(); ++part) {
@@ -235,12 +246,15 @@ class Pilot {
           const std::uint64_t number = part * kLightPathsOfPart + k;
           rays_of[part] += static_cast<std::size_t>(
               tracer.trace(SampleStream(seed_, Stage::light_paths, 0, 2 * number),
-                           hash_ids(seed_, Stage::opacity, ~0ull, number), parts[part]));
+                           hash_ids(seed_, Stage::opacity, ~0ull, number), merge_points_, parts[part]));
         }
       }
     });
     Light all;
-    for (const auto& part : parts) all.splats.insert(all.splats.end(), part.begin(), part.end());
+    for (const auto& part : parts) {
+      all.splats.insert(all.splats.end(), part.splats.begin(), part.splats.end());
+      all.merged.insert(all.merged.end(), part.merged.begin(), part.merged.end());
+    }
     for (const std::size_t r : rays_of) all.rays += r;
     return all;
   }
@@ -249,15 +263,16 @@ class Pilot {
     return {std::clamp(static_cast<int>(splat.film.x), 0, width_ - 1),
             std::clamp(static_cast<int>(splat.film.y), 0, height_ - 1)};
   }
-  std::size_t block_of(const LightTracer::Splat& splat) const {
-    const Vec2i at = pixel_of(splat);
-    return block(at.x, at.y);
+  Vec2i pixel_of(const LightTracer::Merged& merged) const {
+    const int p = static_cast<int>(merged.pixel);
+    return {p % width_, p / width_};
   }
-  Found found_by(const LightTracer::Splat& splat) const {
-    const Vec2i at = pixel_of(splat);
-    const double ratio = static_cast<double>(splat.ratio);
+  template <typename Way>
+  Found found_by(const Way& way) const {
+    const Vec2i at = pixel_of(way);
+    const double ratio = static_cast<double>(way.ratio);
     // Its share goes away: what it would bring without the eye paths.
-    const double light = static_cast<double>(luminance(splat.value)) * (1 + ratio) / ratio;
+    const double light = static_cast<double>(luminance(way.value)) * (1 + ratio) / ratio;
     return {relative(light, at.x, at.y), pixels() / kLightPaths, ratio};
   }
 
@@ -275,6 +290,7 @@ class Pilot {
   int width_, height_, across_;
   std::vector<double> brightness_;  // by blocks
   double usual_ = 0;
+  pathtrace::MergePoints merge_points_;
   Light light_;  // of the paths asked for, in the end
 };
 

@@ -17,6 +17,8 @@ namespace lumirank::pathtrace {
 using test::SceneMaker;
 
 inline constexpr int kWidth = 12, kHeight = 8, kPicturesOfEach = 100;
+// Pixels are large here, and what merging blurs must not be seen.
+inline constexpr double kMergedPart = 0.1;
 
 inline Transform ball(Vec3f center, double radius) {
   return Transform::translate(static_cast<double>(center.x), static_cast<double>(center.y),
@@ -53,7 +55,7 @@ struct PixelMeans {
 };
 
 inline PixelMeans means(const SceneMaker& maker, Paths paths, double light_paths, int pictures,
-                        bool aim = false) {
+                        bool aim = false, double merged_pixels = kMergedPart) {
   SceneMaker scene = maker;
   const world::World world = scene.build();
   world::View view = world::make_view(scene.desc, {});
@@ -63,6 +65,7 @@ inline PixelMeans means(const SceneMaker& maker, Paths paths, double light_paths
     options.seed = hash_ids(7, Stage::test, static_cast<std::uint64_t>(k), light_paths > 0 ? 1 : 0);
     options.paths = paths, options.light_paths = light_paths, options.aim_light_paths = aim;
     options.emission = false;  // seen directly it is alike in both
+    options.merged_pixels = merged_pixels;
     PathFilm film(world, view, options);
     EXPECT_TRUE(film.add(8, {}));
     for (std::size_t p = 0; p < sums.of.size(); ++p)
