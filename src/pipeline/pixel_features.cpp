@@ -28,6 +28,10 @@ constexpr float kOverNeighbors = 4, kOverUsual = 16;
 // nothing is known at a place.
 constexpr int kMediumParts = 4;
 constexpr float kUsualAlbedo = 0.8f;
+// Which of the ways through many panes of glass a sample took, where it could not take them all, is noise,
+// and a denoiser keeps what features have. So samples of unlikely ways hardly count, unless there are no
+// others; and from which trust on one tells edges.
+constexpr float kLeastTrusted = 1e-3f, kTrusted = 0.5f;
 // What of a sample is left by media: less is dark, and its inverse may be infinite.
 constexpr float kLeastWeight = 1e-30f;
 
@@ -48,6 +52,22 @@ PartOfMedium look_at(const world::World& world, const transport::EyeSegment& par
     if (there.extinction[c] > 0) albedo[c] = there.scattering[c] / there.extinction[c];
   const auto within = [](Rgb c) { return min_of(max_of(c, Rgb(0)), Rgb(1)); };
   return {within(part.weight * (Rgb(1) - part.through)), within(albedo)};
+}
+
+// Albedos and normals by weight, and the weights of all.
+struct SeenSurfaces {
+  Rgb albedo{0};
+  Vec3f normal{0, 0, 0};
+  float weight = 0;
+};
+SeenSurfaces look_at(const std::vector<transport::EyeVertex>& vertices) {
+  SeenSurfaces seen;
+  for (const transport::EyeVertex& v : vertices) {
+    const float weight = luminance(v.weight);
+    seen.albedo += v.weight * v.albedo;
+    seen.normal = seen.normal + v.normal * weight, seen.weight += weight;
+  }
+  return seen;
 }
 
 }  // namespace
@@ -79,25 +99,22 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
       Sums& sums = sums_[p];
       for (int k = 0; k < samples; ++k) {
         const transport::FilmSample sample = eye.trace(k, nullptr);
-        Rgb albedo{0};
-        Vec3f normal{0, 0, 0};
-        float weights = 0;
-        for (const transport::EyeVertex& v : eye.vertices()) {
-          const float weight = luminance(v.weight);
-          albedo += v.weight * v.albedo;
-          normal = normal + v.normal * weight, weights += weight;
-        }
+        auto [albedo, normal, weights] = look_at(eye.vertices());
         for (const transport::EyeSegment& part : eye.segments()) {
           const PartOfMedium seen = look_at(world_, part);
           albedo += seen.hidden * seen.albedo;
           weights += luminance(seen.hidden);
         }
         if (weights > kLeastWeight) normal = normal * (1 / weights);
+        const float trusted =
+            std::max(kLeastTrusted, square(square(square(1 - std::min(1.0f, eye.unlikely())))));
         const Rgb color = albedo + min_of(sample.straight, Rgb(kWhite));
         sums.emission += sample.emission, sums.straight += sample.straight, sums.sharp += sample.sharp;
-        sums.albedo += albedo;
-        sums.min_color = min_of(sums.min_color, color), sums.max_color = max_of(sums.max_color, color);
-        sums.normal = sums.normal + normal, sums.normals += length(normal);
+        sums.albedo += albedo * trusted;
+        if (trusted >= kTrusted)
+          sums.min_color = min_of(sums.min_color, color), sums.max_color = max_of(sums.max_color, color);
+        sums.normal = sums.normal + normal * trusted, sums.normals += length(normal) * trusted;
+        sums.trusted += trusted;
         ++sums.count;
       }
     }
@@ -125,8 +142,7 @@ bool PixelFeatureTracing::trace_another(std::uint64_t number, const Sinks& sinks
 
 void PixelFeatureTracing::mark_edges() {
   const auto color = [](const Sums& s) {
-    const float part = 1 / static_cast<float>(s.count);
-    return s.albedo * part + min_of(s.straight * part, Rgb(kWhite));
+    return s.albedo * (1 / s.trusted) + min_of(s.straight * (1 / static_cast<float>(s.count)), Rgb(kWhite));
   };
   const auto mark = [&](std::size_t p, float colors, bool of_normals) {
     const Edge edge = colors > kGlare                     ? Edge::glaring
@@ -137,7 +153,7 @@ void PixelFeatureTracing::mark_edges() {
   const auto compare = [&](std::size_t p, std::size_t q) {
     const Sums &a = sums_[p], &b = sums_[q];
     const float colors = distance(color(a), color(b));
-    const bool of_normals = length(a.normal - b.normal) > kNormalEdge * static_cast<float>(a.count);
+    const bool of_normals = length(a.normal / a.trusted - b.normal / b.trusted) > kNormalEdge;
     mark(p, colors, of_normals), mark(q, colors, of_normals);
   };
   const auto width = static_cast<std::size_t>(view_.width), height = static_cast<std::size_t>(view_.height);
@@ -145,7 +161,9 @@ void PixelFeatureTracing::mark_edges() {
     for (std::size_t x = 0; x < width; ++x) {
       const std::size_t p = y * width + x;
       const Sums& s = sums_[p];
-      mark(p, distance(s.max_color, s.min_color), length(s.normal) < (1 - kNormalSpread) * s.normals);
+      const bool known = s.min_color.r <= s.max_color.r;  // by a sample that is trusted
+      mark(p, known ? distance(s.max_color, s.min_color) : 0.0f,
+           !known || length(s.normal) < (1 - kNormalSpread) * s.normals);
       if (x + 1 < width) compare(p, p + 1);
       if (y + 1 < height) compare(p, p + width);
       if (luminance(s.straight - s.sharp) <= kGlare * static_cast<float>(s.count)) continue;
@@ -171,8 +189,9 @@ PixelFeatures PixelFeatureTracing::means() const {
     const float part = 1 / static_cast<float>(std::max(1, s.count));
     features.emission.pixels[p] = s.sharp * part,
     features.noisy_emission.pixels[p] = (s.emission - s.sharp) * part;
-    features.albedo.pixels[p] = s.albedo * part;
-    features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * part;
+    const float of_trusted = s.count > 0 ? 1 / s.trusted : 0;
+    features.albedo.pixels[p] = s.albedo * of_trusted;
+    features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * of_trusted;
   }
   return features;
 }

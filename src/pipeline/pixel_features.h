@@ -52,6 +52,7 @@ class PixelFeatureTracing {
     Rgb albedo{0}, min_color{kInfinity}, max_color{0};  // the latter two: albedo + straight emission
     Vec3f normal{0, 0, 0};
     float normals = 0;  // Σ |normal| of the samples: longer than their sum where they differ
+    float trusted = 0;  // what samples count for in albedo and normals, together
     int count = 0;
   };
   enum class Edge : std::uint8_t { none, some, glaring };

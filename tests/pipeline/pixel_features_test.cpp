@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/statistics.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::pipeline {
@@ -195,6 +196,36 @@ TEST(PixelFeatures, SmokeHasNoNoise) {
   const float through = std::exp(-0.8f), expected = 0.4f * through + 0.9f * (1 - through);
   for (const Rgb& p : features.albedo.pixels) EXPECT_NEAR(p.g, expected, 0.02f);
   for (const Rgb& p : features.normal.pixels) EXPECT_NEAR(p.b, through, 0.02f);
+}
+
+// A wall behind four blocks of glass, whose eight faces are more than an eye ray follows both ways; behind
+// the eye, which the faces mirror, it is red. Film samples that drew another way than most tell nothing of
+// the wall.
+TEST(PixelFeatures, ManyPanesHaveNoNoise) {
+  auto desc = square_in_view();
+  const int gray = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0.4f)}}),
+            red = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb{1, 0, 0}}}),
+            glass = add_bsdf(desc, sd::DielectricDesc{.eta = 1.5f});
+  use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(5, 5, 1)), gray);
+  use(desc,
+      add_shape(desc, sd::RectangleDesc{},
+                Transform::translate(0, 0, 12) * Transform::rotate(1, 0, 0, 180) * Transform::scale(9, 9, 1)),
+      red);
+  for (const double z : {1.0, 2.5, 4.0, 5.5})
+    use(desc, add_shape(desc, sd::CubeDesc{}, Transform::translate(0, 0, z) * Transform::scale(8, 8, 0.5)),
+        glass);
+  const world::World world = build(desc);
+  const View view = view_of(desc);
+  PixelFeatureTracing tracing(world, view, make_recipe({}, view));
+  ASSERT_TRUE(tracing.trace_all(8, {}));
+  const PixelFeatures features = tracing.means();
+  // What the first faces mirror is followed by all samples, and is as red everywhere.
+  test::RunningMean green, towards_eye;
+  for (const Rgb& p : features.albedo.pixels) green.add(static_cast<double>(p.g));
+  for (const Rgb& p : features.normal.pixels) towards_eye.add(static_cast<double>(p.b));
+  EXPECT_GT(green.mean(), 0.2);
+  EXPECT_LT(green.standard_error() * kFilmSide, 0.02);
+  EXPECT_LT(towards_eye.standard_error() * kFilmSide, 0.05);
 }
 
 TEST(PixelFeatures, OnePixelIsAFireflyAndTwoAreALamp) {

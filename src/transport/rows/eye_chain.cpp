@@ -96,6 +96,7 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
   if (count == 0) return;
 
   int splits = s.splits;
+  bool unlikely = s.unlikely;
   if (count > 1 && splits >= settings_.max_splits) {
     float total = 0;
     for (int k = 0; k < count; ++k) total += max_component(next[k].weight);
@@ -103,9 +104,14 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
     int drawn = 0;
     while (drawn + 1 < count && u >= max_component(next[drawn].weight))
       u -= max_component(next[drawn++].weight);
+    bool likeliest = true;
+    for (int k = 0; k < count; ++k)
+      likeliest = likeliest && max_component(next[k].weight) <= max_component(next[drawn].weight);
     next[0] = next[drawn];
     numbers[0] = numbers[drawn];
     next[0].weight *= total / max_component(next[0].weight);
+    if (!likeliest && !unlikely) unlikely_ += luminance(s.weight * next[0].weight);
+    unlikely = unlikely || !likeliest;
     count = 1;
   } else if (count > 1) {
     ++splits;
@@ -129,7 +135,8 @@ void EyeChain::continue_from(const world::SurfaceHit& hit, const Closure& closur
                         mix64(s.id + 1 + numbers[k]),
                         chain,
                         s.length + hit.hit.t,
-                        world_.medium_beyond(hit, next[k].wi, s.medium)});
+                        world_.medium_beyond(hit, next[k].wi, s.medium),
+                        unlikely});
   }
 }
 
@@ -187,6 +194,7 @@ Rgb EyeChain::follow(const geometry::Ray& eye, std::uint64_t id, std::uint32_t s
                      std::vector<EyeVertex>& out, scatter::ClosurePool* pool, FirstHit* first) {
   Rgb emission{0};
   straight_emission_.clear();
+  unlikely_ = 0;
   const auto add_emission = [&](const Segment& s, const world::SurfaceHit* at, Rgb value) {
     if (is_black(value)) return;
     emission += s.weight * value;

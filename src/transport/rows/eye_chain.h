@@ -72,6 +72,9 @@ class EyeChain {
                    scatter::ClosurePool& pool);
   // Of the emission that the last follow() returned what no mirror or glass has turned aside.
   const std::vector<SeenEmission>& straight_emission() const { return straight_emission_; }
+  // Part of the eye ray that the last follow() sent along continuations that were drawn though others were
+  // likelier: what ends there says little about the place that is seen.
+  float unlikely() const { return unlikely_; }
   // What the last follow() passed of participating media.
   const std::vector<EyeSegment>& segments() const { return segments_; }
 
@@ -86,6 +89,7 @@ class EyeChain {
     std::uint64_t chain;  // hash of the specular vertices, straight passes excluded
     float length;         // of the segments before
     int medium;
+    bool unlikely = false;
   };
   void add_receiver(const world::SurfaceHit& hit, const scatter::Closure& closure, const Segment& s,
                     std::uint32_t sample, std::vector<EyeVertex>& out, scatter::ClosurePool* pool) const;
@@ -98,6 +102,7 @@ class EyeChain {
   std::vector<Segment> pending_;  // reused between samples
   std::vector<EyeSegment> segments_;
   std::vector<SeenEmission> straight_emission_;
+  float unlikely_ = 0;
   std::vector<float> cuts_;
   media::DepthProfile profile_;
 };

@@ -38,6 +38,7 @@ class FilmEye {
   FilmSample trace(int k, FirstHit* first, scatter::ClosurePool* pool = nullptr);
   // Of the sample traced last; without a pool they have their albedo and roughness.
   const std::vector<EyeVertex>& vertices() const { return vertices_; }
+  float unlikely() const { return chain_.unlikely(); }
   // What it passed of participating media, if settings ask for segments.
   const std::vector<EyeSegment>& segments() const { return chain_.segments(); }
   // Width of a pixel where a vertex lies, out of focus that of the circle of confusion. An estimate: mirrors
