@@ -79,7 +79,7 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, const MergePoints
     const bool wanted = settings_.paths != Paths::rest || flight.after_specular;
     if (!flight.first() && wanted && closure.has_non_delta()) {
       rays += show(flight, *hit, found.splats) ? 1 : 0;
-      merge(flight, *hit, points, found.merged);
+      merge(flight, *hit, points, found);
     }
     const Vec2f u = flight.random.next_2d();
     const auto next = scatter::sample(closure, incoming, flight.random.next_float(), u, Lobes::all, true);
@@ -233,23 +233,28 @@ bool LightTracer::show(Flight& flight, const world::SurfaceHit& hit, std::vector
   return true;
 }
 
-void LightTracer::merge(const Flight& flight, const world::SurfaceHit& hit, const MergePoints& points,
-                        std::vector<Merged>& merged) const {
+// With one of the eye paths that it is near to, for all of them: where one light path adds to several pixels
+// noise has a grain that a denoiser keeps.
+void LightTracer::merge(Flight& flight, const world::SurfaceHit& hit, const MergePoints& points,
+                        Found& found) const {
+  points.around(hit.point, found.near);
+  if (found.near.empty()) return;
+  const auto number = static_cast<float>(found.near.size());
+  const auto drawn = static_cast<std::size_t>(number * flight.random.next_float());
+  const MergePoint& point = *found.near[std::min(drawn, found.near.size() - 1)];
+  if (settings_.max_depth >= 0 && point.segments + flight.segments > settings_.max_depth) return;
   const Vec3f wi = -flight.ray.direction;
-  points.for_each_around(hit.point, [&](const MergePoint& point) {
-    if (settings_.max_depth >= 0 && point.segments + flight.segments > settings_.max_depth) return;
-    Closure closure = world_.materials().closure(point.hit.material, point.hit.point, point.wo);
-    scatter::face_viewer(closure, point.wo);
-    const float across = crossing(point.hit, closure, wi);
-    const float pdf = scatter::pdf(closure, point.wo, wi, Lobes::all);
-    if (!(across > 0) || !(pdf > 0)) return;
-    const float ratio =
-        flight.density * merged_light_path_ratio(light_paths_, point.area, point.hit, closure, wi, pdf);
-    const Rgb value = point.throughput * scatter::eval(closure, point.wo, wi) * flight.carried.weight() *
-                      (ratio / (1 + ratio) / (across * point.area * static_cast<float>(light_paths_)));
-    if (is_black(value) || !is_finite(value)) return;
-    merged.push_back({point.pixel, value, flight.non_delta_vertices == 0, ratio});
-  });
+  Closure closure = world_.materials().closure(point.hit.material, point.hit.point, point.wo);
+  scatter::face_viewer(closure, point.wo);
+  const float across = crossing(point.hit, closure, wi);
+  const float pdf = scatter::pdf(closure, point.wo, wi, Lobes::all);
+  if (!(across > 0) || !(pdf > 0)) return;
+  const float ratio =
+      flight.density * merged_light_path_ratio(light_paths_, point.area, point.hit, closure, wi, pdf);
+  const Rgb value = point.throughput * scatter::eval(closure, point.wo, wi) * flight.carried.weight() *
+                    (number * ratio / (1 + ratio) / (across * point.area * static_cast<float>(light_paths_)));
+  if (is_black(value) || !is_finite(value)) return;
+  found.merged.push_back({point.pixel, value, flight.non_delta_vertices == 0, ratio});
 }
 
 // The same of a place on the way through a medium.

@@ -52,6 +52,7 @@ class LightTracer {
   struct Found {
     std::vector<Splat> splats;
     std::vector<Merged> merged;
+    std::vector<const MergePoint*> near;  // reused
   };
   // Returns how many rays that took. `points`: of one eye path from each pixel.
   int trace(SampleStream random, std::uint64_t key, const MergePoints& points, Found& found) const;
@@ -69,8 +70,7 @@ class LightTracer {
   bool may_turn(const Flight& flight) const;
   bool survives(Flight& flight) const;
   bool show(Flight& flight, const world::SurfaceHit& hit, std::vector<Splat>& splats) const;
-  void merge(const Flight& flight, const world::SurfaceHit& hit, const MergePoints& points,
-             std::vector<Merged>& merged) const;
+  void merge(Flight& flight, const world::SurfaceHit& hit, const MergePoints& points, Found& found) const;
   bool show_along(Flight& flight, float distance, std::vector<Splat>& splats) const;
 
   const world::World& world_;

@@ -85,4 +85,15 @@ MergePoints::MergePoints(std::span<const std::vector<MergePoint>> of_parts) {
     for (const Entry& entry : part) entries_[next[entry.key & (buckets - 1)]++] = entry;
 }
 
+void MergePoints::around(const scatter::SurfacePoint& at, std::vector<const MergePoint*>& found) const {
+  found.clear();
+  for (const int level : levels_) {
+    const std::uint64_t key = key_of(cell_of(at.position, level), level);
+    const std::size_t bucket = key & (begins_.size() - 2);
+    for (std::uint32_t k = begins_[bucket]; k < begins_[bucket + 1]; ++k)
+      if (entries_[k].key == key && on_disc(points_[entries_[k].point], at))
+        found.push_back(&points_[entries_[k].point]);
+  }
+}
+
 }  // namespace lumirank::pathtrace

@@ -34,18 +34,8 @@ class MergePoints {
 
   bool empty() const { return points_.empty(); }
 
-  // Calls visit(point) for those on whose disc `at` lies, in their order.
-  template <typename Visit>
-  void for_each_around(const scatter::SurfacePoint& at, const Visit& visit) const {
-    for (const int level : levels_) {
-      const std::uint64_t key = key_of(cell_of(at.position, level), level);
-      for (const Entry& entry : bucket(key)) {
-        if (entry.key != key) continue;
-        const MergePoint& point = points_[entry.point];
-        if (on_disc(point, at)) visit(point);
-      }
-    }
-  }
+  // Those on whose disc `at` lies; `found` is emptied first.
+  void around(const scatter::SurfacePoint& at, std::vector<const MergePoint*>& found) const;
 
  private:
   struct Cell {
@@ -60,10 +50,6 @@ class MergePoints {
   static Cell cell_of(Vec3f place, int level);
   static std::uint64_t key_of(const Cell& cell, int level);
   static bool on_disc(const MergePoint& point, const scatter::SurfacePoint& at);
-  std::span<const Entry> bucket(std::uint64_t key) const {
-    const std::size_t b = key & (begins_.size() - 2);
-    return {entries_.data() + begins_[b], entries_.data() + begins_[b + 1]};
-  }
 
   std::vector<MergePoint> points_;
   std::vector<int> levels_;     // that occur
