@@ -123,7 +123,8 @@ Aim learn_aim(const world::World& world, const world::EmitterChoice& choice, con
     settings.seed = asked.seed, settings.stage = Stage::pilot;
     settings.paths = asked.brief_survey ? kPathsPerRound / 2 : kPathsPerRound, settings.deepest = deepest;
     settings.first_id = static_cast<std::uint64_t>(round + 1) << 40;  // numbers of its own
-    settings.guide = &aim.guide, settings.lobes = asked.lobes;
+    settings.guide = &aim.guide, settings.lobes = asked.lobes.unwidened();
+    settings.paths = paths_worth_tracing(world, choice, settings);
     const Round found = run_round(world, choice, settings, relevance);
     seen.insert(seen.end(), found.seen.begin(), found.seen.end());
     places.insert(places.end(), found.places.begin(), found.places.end());

@@ -32,9 +32,13 @@ constexpr double kMinUse = 0.7, kMaxUse = 3, kLowShare = 0.25, kUnseenShare = 0.
 
 ParticleSettings pilot_settings(const LightSettings& settings, const LightSurvey& survey) {
   const std::size_t paths = survey.aimed ? kRoulettePaths : kPilotPaths;
-  return {
-      settings.seed,     Stage::pilot,  settings.brief_survey ? paths / 2 : paths, survey.parts.deepest, 0,
-      &survey.aim.guide, settings.lobes};
+  return {settings.seed,
+          Stage::pilot,
+          settings.brief_survey ? paths / 2 : paths,
+          survey.parts.deepest,
+          0,
+          &survey.aim.guide,
+          settings.lobes.unwidened()};
 }
 
 struct Pilot {
@@ -215,9 +219,12 @@ LightSurvey survey_lights(const world::World& world, const world::EmitterChoice&
   survey.need = direct_need(world, choice);
   survey.aimed = survey.parts.indirect && settings.receivers != nullptr;
   Pilot pilot;
+  ParticleSettings pilot_paths;
   if (survey.parts.indirect) {
     if (survey.aimed) survey.aim = learn_aim(world, choice, settings, survey.parts.deepest);
-    pilot = run_pilot(world, choice, pilot_settings(settings, survey),
+    pilot_paths = pilot_settings(settings, survey);
+    pilot_paths.paths = paths_worth_tracing(world, choice, pilot_paths);
+    pilot = run_pilot(world, choice, pilot_paths,
                       {!survey.aimed, survey.aimed ? &survey.aim.importance : nullptr});
     // Nothing that the emitters reach scatters: all lights may go to them.
     if (pilot.lights_per_path == 0 && survey.parts.direct) survey.parts.indirect = false;
@@ -230,11 +237,11 @@ LightSurvey survey_lights(const world::World& world, const world::EmitterChoice&
   if (!range) return survey;
   survey.aim.importance.set_range(*range);
   if (settings.on_gather_samples) return survey;
-  survey.level = plan_roulette(std::move(uses), pilot_settings(settings, survey).paths, 1).level;
+  survey.level = plan_roulette(std::move(uses), pilot_paths.paths, 1).level;
   if (!(survey.level > 0)) return survey;
   // Paths in parts leave more lights than the uses tell: counted.
   const LightRoulette roulette(survey.aim.importance, survey.level);
-  ParticleSettings ps = pilot_settings(settings, survey);
+  ParticleSettings ps = pilot_paths;
   ps.roulette = &roulette, ps.first_id = 1ull << 50;
   survey.lights_per_path = run_pilot(world, choice, ps, {}).lights_per_path;
   return survey;

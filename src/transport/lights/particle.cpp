@@ -13,6 +13,8 @@ namespace {
 using scatter::Closure;
 using scatter::LobeKind;
 
+constexpr double kUsualVertices = 16;  // of a path
+constexpr std::size_t kTrialPaths = 256;
 // From this depth on a particle survives with the probability below at most: a closed white box absorbs
 // nothing.
 constexpr int kDeep = 32;
@@ -101,6 +103,7 @@ void ParticleTracer::step(Branch branch, Visit& visit) const {
   const auto hit = world_.intersect(branch.ray);
   if (!hit) return;
   if (branch.medium >= 0) branch.flux *= world_.left_by_glass(branch.medium, hit->hit.t);
+  if (visit.tally) ++visit.tally->vertices;
   if (visit.tally && visit.first) visit.tally->first_flux += mean(branch.flux);
   visit.first = false;
   const Vec3f incoming = -branch.ray.direction;
@@ -175,6 +178,19 @@ bool ParticleTracer::scatter_on(const world::SurfaceHit& hit, const Closure& clo
   branch.medium = world_.medium_beyond(hit, next->wi, branch.medium);
   branch.ray = {world::World::offset_origin(hit.point.position, hit.point.ng, next->wi), next->wi};
   return true;
+}
+
+std::size_t paths_worth_tracing(const world::World& world, const world::EmitterChoice& choice,
+                                const ParticleSettings& settings) {
+  const std::size_t paths = even(settings.paths), trial = std::min(paths, kTrialPaths);
+  if (trial == 0) return 0;
+  const ParticleTracer tracer(world, choice, settings);
+  LightBatch batch;
+  PathTally tally;
+  for (std::size_t k = 0; k < trial; ++k) tracer.trace(k * paths / trial, batch, &tally);
+  const double length = static_cast<double>(tally.vertices) / static_cast<double>(trial);
+  if (length <= kUsualVertices) return paths;
+  return even(static_cast<std::size_t>(std::ceil(static_cast<double>(paths) * kUsualVertices / length)));
 }
 
 }  // namespace lumirank::transport

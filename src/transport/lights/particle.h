@@ -29,6 +29,7 @@ struct ParticleSettings {
 struct PathTally {
   double first_flux = 0;      // that arrived at first hits
   double scattered_flux = 0;  // that all lights together send on
+  std::size_t vertices = 0;   // mirrors and glass among them
 };
 
 class ParticleTracer {
@@ -68,5 +69,10 @@ class ParticleTracer {
   ParticleSettings settings_;
   EmissionGuide uniform_;
 };
+
+// Of settings.paths, an even number that tells as much for the time: where surfaces lose next to nothing a
+// path goes on and on, and of longer ones than usual fewer are enough. By a trial of a few.
+std::size_t paths_worth_tracing(const world::World& world, const world::EmitterChoice& choice,
+                                const ParticleSettings& settings);
 
 }  // namespace lumirank::transport
