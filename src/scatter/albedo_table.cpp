@@ -67,11 +67,34 @@ ReflectionMoments reflection_moments(NormalDistribution distribution, float alph
   return out;
 }
 
+namespace {
+float alpha_of(const Lobe& lobe) {
+  return lobe.alpha_u == lobe.alpha_v ? lobe.alpha_u : std::sqrt(lobe.alpha_u * lobe.alpha_v);
+}
+// Whose Schlick weight is the mean one.
+float mean_cosine(const ReflectionMoments& moments) {
+  return 1 - std::pow(std::clamp(moments.schlick / moments.white, 0.0f, 1.0f), 0.2f);
+}
+}  // namespace
+
 Rgb microfacet_reflect_albedo(LobeView view, float cos_o) {
-  const ReflectionMoments k = reflection_moments(view.lobe.distribution, view.lobe.alpha_u, cos_o);
+  const ReflectionMoments k = reflection_moments(view.lobe.distribution, alpha_of(view.lobe), cos_o);
   if (!(k.white > 0)) return Rgb(0);
-  const float cosine = 1 - std::pow(std::clamp(k.schlick / k.white, 0.0f, 1.0f), 0.2f);
-  return view.lobe.color * lobe_fresnel(view, cosine) * k.white;
+  return view.lobe.color * lobe_fresnel(view, mean_cosine(k)) * k.white;
+}
+
+bool table_tells_roughly(const Lobe& lobe) {
+  constexpr float kRoughest = 0.35f, kMostBrushed = 8;
+  return std::max(lobe.alpha_u, lobe.alpha_v) <= kRoughest &&
+         std::max(lobe.alpha_u, lobe.alpha_v) <= kMostBrushed * std::min(lobe.alpha_u, lobe.alpha_v);
+}
+
+Rgb rough_transmit_albedo(LobeView view, float eta, float cos_o) {
+  const ReflectionMoments k = reflection_moments(view.lobe.distribution, alpha_of(view.lobe), cos_o);
+  if (!(k.white > 0)) return Rgb(0);
+  // What leaves a denser side is turned away from the normal and masked as what is reflected; else less.
+  const float unmasked = eta < 1 ? k.white : std::sqrt(k.white);
+  return view.lobe.color * ((1 - fresnel_dielectric(mean_cosine(k), eta)) * unmasked);
 }
 
 }  // namespace lumirank::scatter

@@ -17,9 +17,13 @@ struct ReflectionMoments {
 // Bilinear in √alpha (held within [0, 1]) and in the cosine of wo. Thread-safe; built at first use.
 ReflectionMoments reflection_moments(NormalDistribution distribution, float alpha, float cos_o);
 
-// Albedo of a microfacet_reflect lobe with alpha_u = alpha_v: the white one times the Fresnel factor at the
-// cosine whose Schlick weight is the mean one. Exact for Schlick's curve, and near it for all that look
-// alike.
+// Albedo of a microfacet_reflect lobe, as if both alphas were their geometric mean: the white one times the
+// Fresnel factor at the cosine whose Schlick weight is the mean one. Exact for Schlick's curve, and near it
+// for all that look alike.
 Rgb microfacet_reflect_albedo(LobeView view, float cos_o);
+// Whether that, and the following, are within 0.12 for any microfacet lobe of these alphas.
+bool table_tells_roughly(const Lobe& lobe);
+// Of microfacet_transmit and thin_transmit lobes: what is not reflected at that cosine.
+Rgb rough_transmit_albedo(LobeView view, float eta, float cos_o);
 
 }  // namespace lumirank::scatter

@@ -26,8 +26,9 @@ inline LobeView view_from(const Lobe& lobe, bool outside) {
 Rgb lobe_value(LobeView view, Vec3f wo, Vec3f wi);
 float lobe_pdf(LobeView view, Vec3f wo, Vec3f wi);
 bool lobe_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi);
-// Albedo at cosine wo.z: exact for diffuse and plastic's base, from a table for isotropic microfacets, else
-// by a fixed rule of 55 draws, or of 13.
+// Albedo at cosine wo.z: exact for diffuse and plastic's base, from a table for isotropic microfacets that
+// reflect, else by a fixed rule of 55 draws; where it is wanted roughly from the table for all microfacets,
+// else by 13 draws.
 Rgb lobe_albedo(LobeView view, Vec3f wo);
 // Cheap estimate of the albedo's mean over channels, to choose among lobes; positive for every lobe not
 // black.

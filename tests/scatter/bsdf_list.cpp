@@ -328,6 +328,8 @@ std::vector<BsdfCase> build() {
     return Rgb(0.2f + 0.3f * static_cast<float>(x), 0.5f, 0.4f * static_cast<float>(y));
   }));
   list.push_back(textured);
+  list.push_back(single("conductor_ggx_brushed_less", conductor(kGgx, 0.05f, 0.33f)));
+  list.push_back(glass("dielectric_ggx_0.33", dielectric(kGgx, 1.5f, 0.33f, 0.33f)));
   return list;
 }
 

@@ -116,12 +116,23 @@ bool microfacet_transmit_sample(LobeView view, Vec3f wo, Vec2f u, Vec3f& wi) {
   return wi.z < 0;
 }
 
+bool roughly_in_table(LobeView view) { return view.roughly && table_tells_roughly(view.lobe); }
+
 // Total internal reflection is no matter of Schlick's curve: the table is for the outside.
 Rgb reflect_albedo(LobeView view, Vec3f wo) {
   const Lobe& lobe = view.lobe;
   const bool in_table = lobe.alpha_u == lobe.alpha_v && lobe.alpha_u <= 1 &&
                         (lobe.fresnel != FresnelKind::dielectric || view.eta > 1);
-  return in_table ? microfacet_reflect_albedo(view, wo.z) : quadrature_albedo(view, wo);
+  return in_table || roughly_in_table(view) ? microfacet_reflect_albedo(view, wo.z)
+                                            : quadrature_albedo(view, wo);
+}
+
+Rgb transmit_albedo(LobeView view, Vec3f wo) {
+  return roughly_in_table(view) ? rough_transmit_albedo(view, view.eta, wo.z) : quadrature_albedo(view, wo);
+}
+Rgb thin_albedo(LobeView view, Vec3f wo) {
+  return roughly_in_table(view) ? rough_transmit_albedo(view, view.lobe.eta, wo.z)
+                                : quadrature_albedo(view, wo);
 }
 
 float reflect_importance(LobeView view, float cos_o) {
@@ -215,6 +226,7 @@ constinit const LobeFamily microfacet_reflect_family{.value = microfacet_reflect
 constinit const LobeFamily microfacet_transmit_family{.value = microfacet_transmit_value,
                                                       .pdf = microfacet_transmit_pdf,
                                                       .sample = microfacet_transmit_sample,
+                                                      .albedo = transmit_albedo,
                                                       .importance = transmit_importance,
                                                       .factor_of_wo = transmit_factor,
                                                       .bound = transmit_bound,
@@ -224,6 +236,7 @@ constinit const LobeFamily microfacet_transmit_family{.value = microfacet_transm
 constinit const LobeFamily thin_transmit_family{.value = thin_transmit_value,
                                                 .pdf = thin_transmit_pdf,
                                                 .sample = thin_transmit_sample,
+                                                .albedo = thin_albedo,
                                                 .importance = thin_importance,
                                                 .factor_of_wo = reflect_factor,
                                                 .bound = transmit_bound,
