@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "pathtrace/few_ways.h"
 
 namespace lumirank::pathtrace {
@@ -124,6 +126,24 @@ TEST(VertexMerging, ALimitOfDepthCountsBothParts) {
     expect_same(means(scene, Paths::all, 0, kPicturesOfEach), means(scene, Paths::all, 1, kPicturesOfEach),
                 0.2);
   }
+}
+
+TEST(VertexMerging, AnyNumberOfThreadsGivesTheSameBits) {
+  SceneMaker scene = bulb_and_mirror();
+  const world::World world = scene.build();
+  const world::View view = world::make_view(scene.desc, {});
+  const auto picture = [&](int threads) {
+    image::Image image;
+    with_threads(threads, [&] {
+      ReferenceOptions options;
+      options.light_paths = 2;
+      PathFilm film(world, view, options);
+      EXPECT_TRUE(film.add(3, {}));
+      image = film.result().image;
+    });
+    return image;
+  };
+  EXPECT_EQ(picture(1).pixels, picture(3).pixels);
 }
 
 }  // namespace
