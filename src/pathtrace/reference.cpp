@@ -303,7 +303,7 @@ bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(doubl
       points.resize((m.pixels + kPixelsOfPart - 1) / kPixelsOfPart);
       trace(s, s + 1, &points);
     }
-    m.add_light_paths(s, MergePoints(points), sinks);
+    m.add_light_paths(s, MergePoints(std::move(points)), sinks);
   }
   if (sinks.cancelled()) {
     // The pass was left half done: its samples are unevenly spread and cannot be used.

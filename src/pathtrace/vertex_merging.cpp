@@ -41,12 +41,13 @@ bool MergePoints::on_disc(const MergePoint& point, const scatter::SurfacePoint& 
          kPi * square(dot(point.hit.point.ng, apart)) <= square(kApart) * point.area;
 }
 
-MergePoints::MergePoints(std::span<const std::vector<MergePoint>> of_parts) {
+MergePoints::MergePoints(std::vector<std::vector<MergePoint>> of_parts) {
   std::size_t number = 0;
   for (const auto& part : of_parts) number += part.size();
   if (number == 0) return;
   points_.reserve(number);
-  for (const auto& part : of_parts) points_.insert(points_.end(), part.begin(), part.end());
+  // Of a large film behind glass they are hundreds of megabytes, which must not be there twice.
+  for (auto& part : of_parts) points_.insert(points_.end(), part.begin(), part.end()), part = {};
   // Each is entered in all cells that its sphere reaches, so that who looks for it looks in one.
   const std::size_t parts = (points_.size() + kPointsAtOnce - 1) / kPointsAtOnce;
   std::vector<std::vector<Entry>> entries(parts);
@@ -81,8 +82,10 @@ MergePoints::MergePoints(std::span<const std::vector<MergePoint>> of_parts) {
   for (std::size_t b = 0; b < buckets; ++b) begins_[b + 1] += begins_[b];
   entries_.resize(count);
   std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
-  for (const auto& part : entries)
+  for (auto& part : entries) {
     for (const Entry& entry : part) entries_[next[entry.key & (buckets - 1)]++] = entry;
+    part = {};
+  }
 }
 
 void MergePoints::around(const scatter::SurfacePoint& at, std::vector<const MergePoint*>& found) const {

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "base/rgb.h"
@@ -30,7 +29,7 @@ struct MergePoint {
 class MergePoints {
  public:
   MergePoints() = default;
-  explicit MergePoints(std::span<const std::vector<MergePoint>> parts);
+  explicit MergePoints(std::vector<std::vector<MergePoint>> parts);
 
   bool empty() const { return points_.empty(); }
 

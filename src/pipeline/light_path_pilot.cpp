@@ -203,7 +203,7 @@ class Pilot {
         ++count[block(x, y)];
       }
     });
-    merge_points_ = pathtrace::MergePoints(points);
+    merge_points_ = pathtrace::MergePoints(std::move(points));
     light_ = trace_light(all);
     const auto brighter = [&](Vec2i at, Rgb value) {
       brightness_[block(at.x, at.y)] += static_cast<double>(luminance(value)) * pixels() / kLightPaths;
