@@ -109,7 +109,8 @@ void ParticleTracer::step(Branch branch, Visit& visit) const {
   const Vec3f incoming = -branch.ray.direction;
   const Closure closure = world_.materials().closure(hit->material, hit->point, incoming);
   // Paths are those of the whole closure either way: only what a light shines itself is another.
-  const Closure shining = settings_.lobes.of(closure, incoming);
+  // Widened are the lobes of lights that are kept: for anisotropic ones that takes longer than all else here.
+  const Closure shining = settings_.lobes.unwidened().of(closure, incoming);
   int copies = 1;
   if (shining.has_non_delta() && closure.sides_agree(incoming)) {
     LightRecord light = surface_light(hit->point.position, shining, incoming);
@@ -146,7 +147,8 @@ int ParticleTracer::leave(LightRecord& light, const Closure& shining, Visit& vis
     if (visit.pending.size() < kMaxPending && light.depth < kDeep) copies = settings_.roulette->parts(use);
   }
   if (!is_finite(light.power)) return copies;
-  if (!shining.is_lambertian()) light.closure = visit.batch.closures.add(shining, light.normal);
+  if (!shining.is_lambertian())
+    light.closure = visit.batch.closures.add(settings_.lobes.of(shining, light.incoming), light.normal);
   visit.batch.lights.push_back(light);
   return copies;
 }

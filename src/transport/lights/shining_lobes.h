@@ -13,8 +13,8 @@ struct ShiningLobes {
   // number of lights that anybody has fills a caustic with those.
   float least_roughness = 0;
 
-  // The same for surveys, which ask where lights are and how strong, not how they shine: how wide an
-  // anisotropic lobe is made takes longer than its path.
+  // The same where it is asked where lights are and how strong, not how they shine: how wide an anisotropic
+  // lobe is made takes longer than its path.
   ShiningLobes unwidened() const { return {diffuse_only, 0}; }
   // Light arrives from `incoming`.
   scatter::Closure of(const scatter::Closure& whole, Vec3f incoming) const {
