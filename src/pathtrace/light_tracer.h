@@ -2,8 +2,10 @@
 // and Willems 1993). They find at once what eye paths meet by chance: light that leaves its emitter through
 // glass, by a mirror, from under a shade. Both carry, together, all paths whose vertex next to the eye is
 // seen directly and is not specular; but direct light from emitters that light sampling finds from there,
-// which it does best. Within a medium that scatters, each flight shows one place of it, made to collide there
-// (media/forced_collision.h), besides where the path itself collides and turns.
+// which it does best. Behind mirrors and glass light paths are merged with eye paths (vertex_merging.h),
+// where the density of the eye's coming is one over the area within which they are. Within a medium that
+// scatters, each flight shows one place of it, made to collide there (media/forced_collision.h), besides
+// where the path itself collides and turns.
 //
 // A path counts in every way in which it is found, by weights that sum to one: the balance heuristic (Veach
 // 1997, section 9.2), with densities as if what scatters between the vertex next to the emitter and the one

@@ -21,7 +21,7 @@ struct ReferenceResult {
   bool interrupted = false;
 };
 
-// One light path counts in about so many pixels.
+// So many eye paths are near to a light path, of which one is merged with it.
 inline constexpr double kMergedPixels = 2;
 
 struct ReferenceOptions {

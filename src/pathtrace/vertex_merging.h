@@ -31,8 +31,6 @@ class MergePoints {
   MergePoints() = default;
   explicit MergePoints(std::vector<std::vector<MergePoint>> parts);
 
-  bool empty() const { return points_.empty(); }
-
   // Those on whose disc `at` lies; `found` is emptied first.
   void around(const scatter::SurfacePoint& at, std::vector<const MergePoint*>& found) const;
 

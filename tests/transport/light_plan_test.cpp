@@ -79,6 +79,20 @@ SceneMaker lit_furnace(float reflectance) {
   return scene;
 }
 
+// In a box of reflectance 0.99 a path has (1 - 0.99³³)/0.01 + 0.99³²·0.9/0.1 ≈ 35 vertices, roulette being
+// harder from the 33rd on; with 0.5 it has two.
+TEST(PathsWorthTracing, AreFewerWherePathsAreLong) {
+  const auto worth = [](float reflectance, int deepest) {
+    const auto world = lit_furnace(reflectance).build();
+    return paths_worth_tracing(world, world::EmitterChoice(world), {1, Stage::pilot, 4096, deepest});
+  };
+  EXPECT_EQ(worth(0.5f, -1), 4096);
+  EXPECT_EQ(worth(0.99f, 8), 4096);
+  const std::size_t of_long = worth(0.99f, -1);
+  EXPECT_NEAR(static_cast<double>(of_long), 4096 * 16 / 35.0, 4096 * 16 / 35.0 * 0.25);
+  EXPECT_EQ(of_long % 2, 0);
+}
+
 // Of a box of reflectance ρ the flux that arrives after k segments is P·ρ^(k-1), whatever the roulette thinks
 // of its walls: here use differs 400 times between them, so that most lights are left out on some and paths
 // go on in many parts from others. Every light that is kept is of at least the level's use.
