@@ -62,7 +62,7 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, const MergePoints
     ++rays;
     if (flight.medium >= 0 && !world_.media().empty()) {
       const float distance = hit ? hit->hit.t : kInfinity;
-      rays += show_along(flight, distance, found.splats) ? 1 : 0;
+      rays += show_along(flight, distance, found) ? 1 : 0;
       const Way way = fly(flight, distance);
       if (way == Way::ended) break;
       if (way == Way::scattered) {
@@ -78,7 +78,7 @@ int LightTracer::trace(SampleStream random, std::uint64_t key, const MergePoints
     if (flight.first()) flight.traveled += hit->hit.t;
     const bool wanted = settings_.paths != Paths::rest || flight.after_specular;
     if (!flight.first() && wanted && closure.has_non_delta()) {
-      rays += show(flight, *hit, found.splats) ? 1 : 0;
+      rays += show(flight, *hit, found) ? 1 : 0;
       merge(flight, *hit, points, found);
     }
     const Vec2f u = flight.random.next_2d();
@@ -205,7 +205,7 @@ bool LightTracer::leave_first(const EmissionSampler::Start& start, const emitter
 }
 
 // Whether a ray went to the eye.
-bool LightTracer::show(Flight& flight, const world::SurfaceHit& hit, std::vector<Splat>& splats) const {
+bool LightTracer::show(Flight& flight, const world::SurfaceHit& hit, Found& found) const {
   const auto seen = camera_.project(hit.point.position, flight.random.next_2d());
   if (!seen || !window_.holds(seen->film)) return false;
   const Vec3f wo = seen->to_eye, wi = -flight.ray.direction;
@@ -221,6 +221,7 @@ bool LightTracer::show(Flight& flight, const world::SurfaceHit& hit, std::vector
   const float ratio =
       flight.density * light_path_ratio(light_paths_, seen->density, hit, closure, wo, wi, pdf);
   value *= ratio / (1 + ratio);
+  if (behind_glass(hit.point.position, *seen, found)) return true;
   value *= world_.media().empty()
                ? world::visible_fraction(world_, hit.point.position, hit.point.ng, wo, seen->distance,
                                          mix64(flight.key + static_cast<std::uint64_t>(flight.segments)))
@@ -229,8 +230,21 @@ bool LightTracer::show(Flight& flight, const world::SurfaceHit& hit, std::vector
                                        world_.medium_beyond(hit, wo, flight.medium)},
                                       [&flight] { return flight.random.next_float(); });
   if (is_black(value) || !is_finite(value)) return true;
-  splats.push_back({seen->film, value, flight.non_delta_vertices == 0, ratio});
+  found.splats.push_back({seen->film, value, flight.non_delta_vertices == 0, ratio});
   return true;
+}
+
+// Whether the eye sees the place by glass alone, for which eye paths are merged: panes that let light pass
+// straight do not show it to the eye (path_tracer.cpp).
+bool LightTracer::behind_glass(Vec3f place, const world::Camera::Seen& seen, Found& found) const {
+  if (world_.info().panes == 0) return false;
+  const float open = geometry::kShadowEpsilon;
+  world_.rays().crossings({place, seen.to_eye, open * seen.distance, (1 - open) * seen.distance},
+                          found.crossed);
+  return std::ranges::any_of(found.crossed, [&](const geometry::Hit& hit) {
+    const auto material = static_cast<int>(world_.rays().placements()[hit.instance].material);
+    return world_.materials().seen(material) != material;
+  });
 }
 
 // With one of the eye paths that it is near to, for all of them: where one light path adds to several pixels
@@ -258,7 +272,7 @@ void LightTracer::merge(Flight& flight, const world::SurfaceHit& hit, const Merg
 }
 
 // The same of a place on the way through a medium.
-bool LightTracer::show_along(Flight& flight, float distance, std::vector<Splat>& splats) const {
+bool LightTracer::show_along(Flight& flight, float distance, Found& found) const {
   const media::Medium& medium = world_.media()[static_cast<std::size_t>(flight.medium)];
   if (flight.first() || !medium.scatters()) return false;
   const auto random = [&flight] { return flight.random.next_float(); };
@@ -275,11 +289,12 @@ bool LightTracer::show_along(Flight& flight, float distance, std::vector<Splat>&
   if (is_black(value)) return false;
   const float ratio = flight.density * light_path_ratio(light_paths_, seen->density, mean(f));
   value *= ratio / (1 + ratio);
+  if (behind_glass(place, *seen, found)) return true;
   value *= media::transmittance(medium, origin, forward, forced.t, random);
   value *=
       world::pass_straight(world_, {place, Vec3f{}, seen->to_eye, seen->distance, flight.medium}, random);
   if (is_black(value) || !is_finite(value)) return true;
-  splats.push_back({seen->film, value, flight.non_delta_vertices == 0, ratio});
+  found.splats.push_back({seen->film, value, flight.non_delta_vertices == 0, ratio});
   return true;
 }
 

@@ -54,7 +54,8 @@ class LightTracer {
   struct Found {
     std::vector<Splat> splats;
     std::vector<Merged> merged;
-    std::vector<const MergePoint*> near;  // reused
+    std::vector<const MergePoint*> near;  // reused, like
+    std::vector<geometry::Hit> crossed;
   };
   // Returns how many rays that took. `points`: of one eye path from each pixel.
   int trace(SampleStream random, std::uint64_t key, const MergePoints& points, Found& found) const;
@@ -71,9 +72,10 @@ class LightTracer {
                    const scatter::BsdfSample& next, Flight& flight) const;
   bool may_turn(const Flight& flight) const;
   bool survives(Flight& flight) const;
-  bool show(Flight& flight, const world::SurfaceHit& hit, std::vector<Splat>& splats) const;
+  bool show(Flight& flight, const world::SurfaceHit& hit, Found& found) const;
   void merge(Flight& flight, const world::SurfaceHit& hit, const MergePoints& points, Found& found) const;
-  bool show_along(Flight& flight, float distance, std::vector<Splat>& splats) const;
+  bool show_along(Flight& flight, float distance, Found& found) const;
+  bool behind_glass(Vec3f place, const world::Camera::Seen& seen, Found& found) const;
 
   const world::World& world_;
   const world::Camera& camera_;

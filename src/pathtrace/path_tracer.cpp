@@ -104,12 +104,15 @@ void PathTracer::finish(Walk& walk) const {
     if (hit) lights_.fetch_rest(*walk.light);
     add_emission(walk, hit ? &*hit : nullptr);
     if (!hit) break;
+    const bool by_eye = walk.non_delta_vertices == 0;
+    // Panes that let light pass straight are glass to the eye, as for rows.
+    const int material = by_eye ? world_.materials().seen(hit->material) : hit->material;
     if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
       // No further segment may follow, but a straight pass is no segment.
-      if (world_.materials().passage(hit->material) == scatter::MaterialSet::Passage::opaque) break;
+      if (world_.materials().passage(material) == scatter::MaterialSet::Passage::opaque) break;
     }
-    Closure closure = world_.materials().closure(hit->material, hit->point, -walk.ray.direction);
-    if (walk.non_delta_vertices == 0) scatter::face_viewer(closure, -walk.ray.direction);  // as rows are
+    Closure closure = world_.materials().closure(material, hit->point, -walk.ray.direction);
+    if (by_eye) scatter::face_viewer(closure, -walk.ray.direction);  // as rows are
     if (!scatter(walk, *hit, closure)) break;
   }
 }

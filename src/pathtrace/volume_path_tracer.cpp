@@ -252,8 +252,10 @@ void VolumePathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) co
 bool VolumePathTracer::scatter_on_surface(Walk& walk, const world::SurfaceHit& hit) const {
   const bool may_continue = max_depth_ < 0 || walk.segments < max_depth_;
   const Vec3f wo = -walk.ray.direction;
-  Closure closure = world_.materials().closure(hit.material, hit.point, wo);
-  if (walk.non_delta_vertices == 0) scatter::face_viewer(closure, wo);  // as rows are
+  const bool by_eye = walk.non_delta_vertices == 0;
+  const scatter::MaterialSet& materials = world_.materials();
+  Closure closure = materials.closure(by_eye ? materials.seen(hit.material) : hit.material, hit.point, wo);
+  if (by_eye) scatter::face_viewer(closure, wo);  // as rows are
   const auto [u_light, u_lobe] = walk.random.next_fine();
   if (closure.has_non_delta() && may_continue) {
     const auto light =

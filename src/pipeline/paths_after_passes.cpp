@@ -14,9 +14,6 @@ namespace {
 // The trial takes this part of the passes' seconds.
 constexpr double kPartOfTrial = 0.4;
 constexpr int kMaxBeside = 1 << 16;
-// Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
-// takes two of these at least, which was a third of ten seconds among thousands of lamps.
-constexpr double kDearPath = 0.75;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;

@@ -19,6 +19,9 @@ namespace lumirank::pipeline {
 // They are tried after so many passes, if so many more would fit.
 inline constexpr int kPassesBeforePaths = 2;
 inline constexpr double kWorthATrial = 3;
+// Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
+// takes two of these at least, which was a third of ten seconds among thousands of lamps.
+inline constexpr double kDearPath = 0.75;
 
 class PathsAfterPasses {
  public:

@@ -15,6 +15,7 @@ namespace lumirank::test {
 class SceneMaker {
  public:
   scenedesc::SceneDesc desc;
+  bool straight_panes = false;  // as world::BuildOptions
 
   template <typename Kind>
   int bsdf(Kind kind) {
@@ -89,7 +90,9 @@ class SceneMaker {
   world::World build() {
     std::vector<scenedesc::Warning> warnings;
     if (desc.sensors.empty()) desc.sensors.emplace_back();
-    return world::World::build(desc, {}, warnings);
+    world::BuildOptions options;
+    options.straight_panes = straight_panes;
+    return world::World::build(desc, options, warnings);
   }
 };
 
