@@ -71,8 +71,7 @@ void PassPilot::run() {
                                  *task_.world, small, tracer_.recipe_of(kMaxPasses, small), sinks_) /
                              shrunk;
   features_expected_ = picture_.denoising().feature_seconds(one_feature, left());
-  paths_alone_ =
-      (too_few_fit(kUnsure) || paths_are_dear()) && small_paths_are_better(small, image, shrunk);
+  paths_alone_ = too_few_fit(kUnsure) && small_paths_are_better(small, image, shrunk);
   if (paths_alone_) return;
   const bool half = too_few_fit(1) && is_dear() && may_be_half(one_feature);
   choose_size(half ? 2 : 1);
@@ -159,11 +158,6 @@ bool PassPilot::too_few_fit(double times) const {
   return settings_.time > 0 && task_.may_be_paths && rest_.plan().piloted &&
          times * kPasses * expected_with_rest() > left();
 }
-// Then the whole film is not asked either (paths_after_passes.h), and a small one is.
-bool PassPilot::paths_are_dear() const {
-  return settings_.time > 0 && task_.may_be_paths && rest_.plan().piloted &&
-         rest_.seconds_of_whole_path(view_) > kDearPath * expected_with_rest();
-}
 // Passes are few, and each takes as long as many paths.
 bool PassPilot::is_dear() const {
   const double pass = expected_with_rest();
@@ -209,10 +203,10 @@ bool PassPilot::small_paths_are_better(const View& small, const image::Image& fi
     if (!paths.add(2, sinks_)) throw Cancelled();
   } while (paths.seconds() < shrunk * seconds && paths.paths() < kMaxTrialPaths);
   const NoisyPicture by_paths{paths.sent(), paths.sent_difference()};
-  if (missed_by_paths(by_passes, by_paths) > kMissed) return false;
-  const double rr=passes_over_paths(by_passes, seconds, by_paths, paths.seconds() / shrunk, paths.light_paths() > 0);
-  if(getenv("DBG")) fprintf(stderr,"small: ratio %.2f missed %.3f pass %.3f with rest %.3f path %.3f few %d paths %d\n",rr,missed_by_paths(by_passes, by_paths),expected_.total(),expected_with_rest(),rest_.seconds_of_whole_path(view_),too_few_fit(kUnsure),paths.paths());
-  return rr >
+  if (missed_light(by_passes, by_paths) > kMissedByPaths) return false;
+  return worse_for_missing(by_passes, by_paths) * passes_over_paths(by_passes, seconds, by_paths,
+                                                                    paths.seconds() / shrunk,
+                                                                    paths.light_paths() > 0) >
          kSmallPassesLookWorse;
 }
 

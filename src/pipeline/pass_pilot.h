@@ -52,7 +52,6 @@ class PassPilot {
   void interleave();
   bool may_interleave() const;
   bool too_few_fit(double times) const;
-  bool paths_are_dear() const;
   bool is_dear() const;
   bool may_be_half(double one_feature);
   bool small_paths_are_better(const View& small, const image::Image& first, double shrunk);

@@ -29,6 +29,9 @@ namespace {
 constexpr int kDefaultPasses = 16;
 // Paths of the rest for each pass without a budget.
 constexpr double kRestUntimed = 2;
+// Of the passes that fit, those after which paths are tried.
+constexpr double kPartBeforePaths = 0.1;
+constexpr int kMaxBeforePaths = 8;
 // Paths go alone where the rest is more of the light than this.
 constexpr double kRestForPaths = 0.2;
 // What of all that is done for a pixel draws of lights are, before it is known.
@@ -70,7 +73,8 @@ class PassRun {
       set_size();
       if (!pass(done_)) break;
       ++done_;
-      if (done_ == kPassesBeforePaths * tracer_.parts() && !compare_with_paths()) break;
+      if (done_ == kPassesBeforePaths * tracer_.parts()) choose_when_to_compare();
+      if (done_ == before_paths_ * tracer_.parts() && !compare_with_paths()) break;
     }
     if (rounds() == 0) throw Cancelled();
     return result();
@@ -221,6 +225,15 @@ class PassRun {
     return paths == 0 || rest_->add_paths(view_, paths, sinks_);
   }
 
+  // Later where many passes fit: what they miss is told from noise by more of them alone.
+  void choose_when_to_compare() {
+    if (!timed() || !task_.may_be_paths) return;
+    const double fit = left() / (passes_seconds_ / rounds());
+    before_paths_ = std::clamp(static_cast<int>(kPartBeforePaths * fit), kPassesBeforePaths, kMaxBeforePaths);
+    if (const auto earlier = choices_.earlier("passes_before_paths", kMaxBeforePaths))
+      before_paths_ = static_cast<int>(*earlier);
+    choices_.record("passes_before_paths", before_paths_);
+  }
   // False if it was cancelled.
   bool compare_with_paths() {
     if (!timed() || !task_.may_be_paths) return true;
@@ -332,6 +345,7 @@ class PassRun {
   PassPlan plan_{false};
   double rest_due_ = 0;
   int wanted_ = 1, done_ = 0, next_eighths_ = PassPlan::kWhole;
+  int before_paths_ = kPassesBeforePaths;
   double passes_seconds_ = 0;
   bool as_asked_ = false;  // their number is given: no clock lowers it
   RenderResult result_;

@@ -14,6 +14,10 @@ namespace {
 // The trial takes this part of the passes' seconds.
 constexpr double kPartOfTrial = 0.4;
 constexpr int kMaxBeside = 1 << 16;
+// Passes of which a path for each pixel takes longer than this part are not compared with paths, unless all
+// passes take so much longer: to find out takes two paths at least, which was a third of ten seconds among
+// thousands of lamps.
+constexpr double kDearPath = 0.75, kDearOfLeft = 0.02;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
 constexpr double kPathsAtOnce = 0.5;
@@ -25,10 +29,13 @@ bool PathsAfterPasses::run(const View& view, bool is_smaller, const Passes& pass
   choices_.record("trial_paths", paths_ ? paths_->paths() : 0);
   if (!paths_) return true;
   const auto by_paths = choices_.earlier("by_paths", 1), more = choices_.earlier("more_paths", kMaxBeside);
-  passes_over_paths_ = pipeline::passes_over_paths(passes_.with_noise(rest_), passes.seconds,
-                                                   {paths_->sent(), paths_->sent_difference()},
-                                                   paths_->seconds(), paths_->light_paths() > 0);
-  const bool better = by_paths ? *by_paths == 1 : are_better();
+  const NoisyPicture of_passes = passes_.with_noise(rest_),
+                     of_paths{paths_->sent(), paths_->sent_difference()};
+  passes_over_paths_ = worse_for_missing(of_passes, of_paths) *
+                       pipeline::passes_over_paths(of_passes, passes.seconds, of_paths, paths_->seconds(),
+                                                   paths_->light_paths() > 0);
+  const bool better = by_paths ? *by_paths == 1
+                               : passes_over_paths_ > 1 && missed_light(of_passes, of_paths) < kMissedByPaths;
   choices_.record("by_paths", better ? 1 : 0);
   char ratio[32];
   std::snprintf(ratio, sizeof ratio, "%.2g", passes_over_paths_);
@@ -49,25 +56,20 @@ bool PathsAfterPasses::run(const View& view, bool is_smaller, const Passes& pass
 
 bool PathsAfterPasses::try_out(const View& view, const Passes& passes) {
   const auto earlier = choices_.earlier("trial_paths", kMaxBeside);
-  const double pass = passes.seconds / passes.rounds;
-  if (earlier ? *earlier == 0
-              : left_() < kWorthATrial * pass || rest_.seconds_of_whole_path(view) > kDearPath * pass)
+  const double pass = passes.seconds / passes.rounds,
+               dear = std::max(kDearPath * pass, kDearOfLeft * left_());
+  if (earlier ? *earlier == 0 : left_() < kWorthATrial * pass || rest_.seconds_of_whole_path(view) > dear)
     return true;
   paths_.emplace(world_, view, settings_, &choices_, sinks_);
   if (earlier) return paths_->add(static_cast<int>(*earlier), sinks_);
   if (!paths_->add(1, sinks_)) return false;
-  if (paths_->seconds() > kDearPath * pass) {
+  if (paths_->seconds() > dear) {
     paths_.reset();
     return true;
   }
   for (int more = 1; more == 1 || paths_->seconds() < kPartOfTrial * passes.seconds; more = 2)
     if (!paths_->add(more, sinks_)) return false;
   return true;
-}
-
-bool PathsAfterPasses::are_better() {
-  return passes_over_paths_ > 1 &&
-         missed_by_paths(passes_.with_noise(rest_), {paths_->sent(), paths_->sent_difference()}) < kMissed;
 }
 
 // Than film samples apart, which go on with them then.

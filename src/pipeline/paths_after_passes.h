@@ -16,12 +16,9 @@
 
 namespace lumirank::pipeline {
 
-// They are tried after so many passes, if so many more would fit.
+// They are tried after so many passes at least, if so many more would fit.
 inline constexpr int kPassesBeforePaths = 2;
 inline constexpr double kWorthATrial = 3;
-// Passes of which a path for each pixel takes longer than this part are not compared with paths: to find out
-// takes two of these at least, which was a third of ten seconds among thousands of lamps.
-inline constexpr double kDearPath = 0.75;
 
 class PathsAfterPasses {
  public:
@@ -54,7 +51,6 @@ class PathsAfterPasses {
 
  private:
   bool try_out(const View& view, const Passes& passes);
-  bool are_better();
   bool have_better_emission(bool is_smaller);
   bool go_on(std::optional<std::int64_t> earlier);
   bool add_features();

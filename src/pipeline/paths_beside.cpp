@@ -29,6 +29,9 @@ pathtrace::ReferenceOptions all_light(const world::World& world, const View& vie
 // Light is missed over so many pixels a side together, beyond so many deviations.
 constexpr int kMissedTogether = 8;
 constexpr double kSureOfMissed = 2;
+// A thousandth of the light missed is as bad as a quarter more noise (docs/decisions.md): it is all in few
+// places.
+constexpr double kNoiseOfMissed = 250;
 constexpr double kLateOfPath = 0.3, kLateOfBudget = 0.01;
 
 // Over what is usual around a pixel: a pixel's own noise is in its own value, and few paths that found
@@ -103,25 +106,24 @@ int paths_that_fit(double left, double each, double budget) {
   return static_cast<int>(std::clamp((left + late) / each, 0.0, 1.0 * (1 << 20)));
 }
 
-double missed_by_paths(const NoisyPicture& passes, const NoisyPicture& paths) {
-  const image::Image &more = passes.picture, &less = paths.picture;
+double missed_light(const NoisyPicture& shown, const NoisyPicture& missing) {
+  const image::Image &more = shown.picture, &less = missing.picture;
   double usual = 0;
   for (const Rgb& p : more.pixels) usual += brightness(p);
   usual *= kOfUsual / static_cast<double>(std::max<std::size_t>(1, more.pixels.size()));
   double missed = 0;
   for (int y = 0; y < more.height; y += kMissedTogether)
     for (int x = 0; x < more.width; x += kMissedTogether) {
-      double by_passes = 0, by_paths = 0, apart_of_passes = 0, apart_of_paths = 0;
+      double light = 0, other = 0, apart = 0, other_apart = 0;
       int pixels = 0;
       for (int v = y; v < std::min(y + kMissedTogether, more.height); ++v)
         for (int u = x; u < std::min(x + kMissedTogether, more.width); ++u, ++pixels) {
-          by_passes += brightness(more.at(u, v)), by_paths += brightness(less.at(u, v));
-          if (!passes.difference.pixels.empty()) apart_of_passes += brightness(passes.difference.at(u, v));
-          apart_of_paths += brightness(paths.difference.at(u, v));
+          light += brightness(more.at(u, v)), other += brightness(less.at(u, v));
+          if (!shown.difference.pixels.empty()) apart += brightness(shown.difference.at(u, v));
+          if (!missing.difference.pixels.empty()) other_apart += brightness(missing.difference.at(u, v));
         }
-      const double noise = std::hypot(apart_of_passes, apart_of_paths) / 2;
-      const double lacks = by_passes - by_paths - kSureOfMissed * noise;
-      if (lacks > 0) missed += pixels * lacks / (by_passes + pixels * usual);
+      const double lacks = light - other - kSureOfMissed * std::hypot(apart, other_apart) / 2;
+      if (lacks > 0) missed += pixels * lacks / (light + pixels * usual);
     }
   return missed / static_cast<double>(std::max<std::size_t>(1, more.pixels.size()));
 }
@@ -135,6 +137,10 @@ double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, c
   const double by_passes = relative_size(passes.difference, picture) * std::sqrt(seconds_of_passes);
   const double worse = light_paths ? kWorseThanWithLightPaths : kPassesLookWorse;
   return by_paths > 0 ? worse * by_passes / by_paths : 0;
+}
+
+double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths) {
+  return 1 + kNoiseOfMissed * std::max(0.0, missed_light(paths, passes) - missed_light(passes, paths));
 }
 
 double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths) {

@@ -49,12 +49,12 @@ struct NoisyPicture {
   image::Image picture, difference;
 };
 
-// The part of the picture's light that passes show and paths have not: over what is there and a tenth of what
-// is usual, in the mean over pixels, beyond the noise of both in small blocks. Not noise, but what no path
-// may find at all: what is lit by a lamp within glass, and seen through glass. `passes`: the difference may
-// be empty, where it is not known.
-double missed_by_paths(const NoisyPicture& passes, const NoisyPicture& paths);
-inline constexpr double kMissed = 0.03;  // above that it is none of the passes' noise
+// The part of the picture's light that one shows and another one misses: over what is there and a tenth of
+// what is usual, in the mean over pixels, beyond the noise of both in small blocks. Not noise, but what no
+// path may find at all (what is lit by a lamp within glass, and seen through glass), or what passes hold back
+// (clamped, within rough glass). Either difference may be empty, where it is not known.
+double missed_light(const NoisyPicture& shown, const NoisyPicture& missing);
+inline constexpr double kMissedByPaths = 0.03;  // above that it is none of the passes' noise
 
 // Noise of passes over that of paths for the same seconds, as eyes see it: over what is there and a tenth of
 // what is usual, in the mean over pixels. That of passes counts worse than it is: it is alike in neighbors,
@@ -63,8 +63,11 @@ inline constexpr double kMissed = 0.03;  // above that it is none of the passes'
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
                          double seconds_of_paths, bool light_paths);
 
+// What that counts more where passes miss light that paths show, beyond what paths miss.
+double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths);
+
 // What passes count in the mean with paths, in 0 … 1, where it has the least variance: both by 1/variance.
-// `ratio`: passes_over_paths().
+// `ratio`: passes_over_paths(), and what it counts more.
 double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths);
 
 // Noise of a picture with the emission that its own paths see over that with emission by film samples apart,

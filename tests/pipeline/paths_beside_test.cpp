@@ -83,19 +83,30 @@ TEST(PathsBeside, WithoutEmissionBothAreAlike) {
 }
 
 // A ball of glass that paths leave black, in a sixteenth of the picture.
-TEST(MissedByPaths, IsWhatPassesShowAndPathsDoNot) {
+TEST(MissedLight, IsWhatPassesShowAndPathsDoNot) {
   const NoisyPicture passes = even_noise(1, 0.2f);
   NoisyPicture paths = even_noise(1, 0.3f);
-  EXPECT_EQ(missed_by_paths(passes, paths), 0);
+  EXPECT_EQ(missed_light(passes, paths), 0);
   for (int y = 16; y < 32; ++y)
     for (int x = 8; x < 24; ++x) paths.picture.at(x, y) = Rgb(0), paths.difference.at(x, y) = Rgb(0);
-  EXPECT_NEAR(missed_by_paths(passes, paths), (1 - 0.2) / 1.1 / 16, 1e-6) << "beyond two deviations";
-  EXPECT_NEAR(missed_by_paths({passes.picture, {}}, paths), 1 / 1.1 / 16, 1e-6);
-  EXPECT_EQ(missed_by_paths(paths, passes), 0) << "what paths alone have found, as caustics";
+  EXPECT_NEAR(missed_light(passes, paths), (1 - 0.2) / 1.1 / 16, 1e-6) << "beyond two deviations";
+  EXPECT_NEAR(missed_light({passes.picture, {}}, paths), 1 / 1.1 / 16, 1e-6);
+  EXPECT_EQ(missed_light(paths, passes), 0) << "what paths alone have found, as caustics";
+}
+
+// Rough glass that passes leave dark, in 64 of 4,096 pixels: it counts more than their noise.
+TEST(MissedLight, MakesPassesWorse) {
+  NoisyPicture passes = even_noise(1, 0.02f);
+  const NoisyPicture paths = even_noise(1, 0.02f);
+  EXPECT_EQ(worse_for_missing(passes, paths), 1);
+  for (int y = 8; y < 16; ++y)
+    for (int x = 8; x < 16; ++x) passes.picture.at(x, y) = Rgb(0.4f);
+  EXPECT_GT(worse_for_missing(passes, paths), 2);
+  EXPECT_EQ(worse_for_missing(paths, passes), 1) << "what paths miss is told otherwise";
 }
 
 // What few paths have found is noise, however little the others have.
-TEST(MissedByPaths, NoiseIsNoLightThatIsMissed) {
+TEST(MissedLight, NoiseIsNoLightThatIsMissed) {
   const NoisyPicture passes = even_noise(1, 0.05f);
   NoisyPicture paths{image::Image(kSide, kSide, Rgb(0.2f)), image::Image(kSide, kSide)};
   for (int y = 0; y < kSide; y += 4)
@@ -103,7 +114,7 @@ TEST(MissedByPaths, NoiseIsNoLightThatIsMissed) {
       const float found = (x + y) % 8 ? 1.0f : 19;  // a fifth of the light in every second one is lacking
       paths.picture.at(x, y) = Rgb(found), paths.difference.at(x, y) = Rgb(2 * found);
     }
-  EXPECT_LT(missed_by_paths(passes, paths), 0.03);
+  EXPECT_LT(missed_light(passes, paths), 0.03);
 }
 
 TEST(PathsThatFit, MayEndALittleLate) {
