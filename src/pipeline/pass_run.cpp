@@ -228,10 +228,13 @@ class PassRun {
   // Later where many passes fit: what they miss is told from noise by more of them alone.
   void choose_when_to_compare() {
     if (!timed() || !task_.may_be_paths) return;
-    const double fit = left() / (passes_seconds_ / rounds());
-    before_paths_ = std::clamp(static_cast<int>(kPartBeforePaths * fit), kPassesBeforePaths, kMaxBeforePaths);
-    if (const auto earlier = choices_.earlier("passes_before_paths", kMaxBeforePaths))
+    if (const auto earlier = choices_.earlier("passes_before_paths", kMaxBeforePaths)) {
       before_paths_ = static_cast<int>(*earlier);
+    } else {
+      const double fit = left() / (passes_seconds_ / rounds());
+      before_paths_ =
+          std::clamp(static_cast<int>(kPartBeforePaths * fit), kPassesBeforePaths, kMaxBeforePaths);
+    }
     choices_.record("passes_before_paths", before_paths_);
   }
   // False if it was cancelled.

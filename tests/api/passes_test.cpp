@@ -59,7 +59,7 @@ TEST(Passes, ShowAWindowOfTheFilm) {
   EXPECT_NEAR(mean_value(render(box(), s).picture), usual, 0.1 * usual);
 }
 
-// Which of both goes on after two passes is the clock's choice; here it is written down by hand.
+// Which of both goes on, and after how many passes, is the clock's choice; here it is written down by hand.
 TEST(Passes, PathsThatGoOnAreThePicture) {
   const Scene scene = box();
   RenderSettings s;
@@ -71,13 +71,17 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
   truth.view = s.view;
   truth.seed = 5;
   const double expected = mean_value(reference(scene, truth, {.spp = 256}).picture);
-  using Case = std::pair<std::int64_t, std::int64_t>;
-  for (const auto& [own_emission, share_of_passes] : {Case{0, 0}, Case{1, 0}, Case{0, 400}, Case{1, 400}}) {
+  struct Case {
+    std::int64_t own_emission, share_of_passes, passes;
+  };
+  for (const auto& [own_emission, share_of_passes, passes] :
+       {Case{0, 0, 2}, Case{1, 0, 2}, Case{0, 400, 2}, Case{1, 400, 3}}) {
     SCOPED_TRACE(testing::Message() << own_emission << ", " << share_of_passes);
     s.choices = {{"film_divisor", {1}},
                  {"interleaved", {1}},
-                 {"eighths_of_pass", {8, 8}},
-                 {"passes", {2}},
+                 {"eighths_of_pass", std::vector<std::int64_t>(static_cast<std::size_t>(passes), 8)},
+                 {"passes", {passes}},
+                 {"passes_before_paths", {passes}},
                  {"trial_paths", {2}},
                  {"beside_half_light_paths", {0}},
                  {"beside_aim", {0}},
@@ -89,6 +93,7 @@ TEST(Passes, PathsThatGoOnAreThePicture) {
     EXPECT_EQ(report_of(result)["method"], "path-tracing");
     EXPECT_EQ(report_of(result)["paths"], 128);
     EXPECT_EQ(report_of(result)["choices"]["by_paths"][0], 1);
+    EXPECT_EQ(report_of(result)["passes"], passes);
     EXPECT_FLOAT_EQ(report_of(result)["share_of_passes"].get<float>(),
                     static_cast<float>(share_of_passes) / 1000);
     EXPECT_NEAR(mean_value(result.picture), expected, 0.03 * expected);
