@@ -30,8 +30,8 @@ pathtrace::ReferenceOptions all_light(const world::World& world, const View& vie
 constexpr int kMissedTogether = 8;
 constexpr double kSureOfMissed = 2;
 // A thousandth of the light missed is as bad as a quarter more noise (docs/decisions.md): it is all in few
-// places.
-constexpr double kNoiseOfMissed = 250;
+// places. So much of it may be chance.
+constexpr double kNoiseOfMissed = 250, kMissedByChance = 0.001;
 constexpr double kLateOfPath = 0.3, kLateOfBudget = 0.01;
 
 // Over what is usual around a pixel: a pixel's own noise is in its own value, and few paths that found
@@ -140,7 +140,8 @@ double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, c
 }
 
 double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths) {
-  return 1 + kNoiseOfMissed * std::max(0.0, missed_light(paths, passes) - missed_light(passes, paths));
+  const double beyond = missed_light(paths, passes) - missed_light(passes, paths) - kMissedByChance;
+  return 1 + kNoiseOfMissed * std::max(0.0, beyond);
 }
 
 double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths) {
