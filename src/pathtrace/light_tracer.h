@@ -54,7 +54,8 @@ class LightTracer {
   struct Found {
     std::vector<Splat> splats;
     std::vector<Merged> merged;
-    std::vector<const MergePoint*> near;  // reused, like
+    // Reused.
+    std::vector<const MergePoint*> near;
     std::vector<geometry::Hit> crossed;
   };
   // Returns how many rays that took. `points`: of one eye path from each pixel.
