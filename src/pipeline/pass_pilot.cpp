@@ -204,9 +204,7 @@ bool PassPilot::small_paths_are_better(const View& small, const image::Image& fi
   } while (paths.seconds() < shrunk * seconds && paths.paths() < kMaxTrialPaths);
   const NoisyPicture by_paths{paths.sent(), paths.sent_difference()};
   if (missed_light(by_passes, by_paths) > kMissedByPaths) return false;
-  return worse_for_missing(by_passes, by_paths) * passes_over_paths(by_passes, seconds, by_paths,
-                                                                    paths.seconds() / shrunk,
-                                                                    paths.light_paths() > 0) >
+  return passes_over_paths(by_passes, seconds, by_paths, paths.seconds() / shrunk, paths.light_paths() > 0) >
          kSmallPassesLookWorse;
 }
 

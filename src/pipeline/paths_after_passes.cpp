@@ -14,9 +14,9 @@ namespace {
 // The trial takes this part of the passes' seconds.
 constexpr double kPartOfTrial = 0.4;
 constexpr int kMaxBeside = 1 << 16;
-// Passes of which a path for each pixel takes longer than this part are not compared with paths, unless all
-// passes take so much longer: to find out takes two paths at least, which was a third of ten seconds among
-// thousands of lamps.
+// Where a path for each pixel takes longer than this part of a pass, and of what is left of the time, passes
+// are not compared with paths: to find out takes two of these at least, which was a third of ten seconds
+// among thousands of lamps.
 constexpr double kDearPath = 0.75, kDearOfLeft = 0.02;
 constexpr int kPathsForError = 16;  // before a target for the error is believed
 // Seconds after which a run by paths can be interrupted, or its preview shown.
@@ -31,16 +31,15 @@ bool PathsAfterPasses::run(const View& view, bool is_smaller, const Passes& pass
   const auto by_paths = choices_.earlier("by_paths", 1), more = choices_.earlier("more_paths", kMaxBeside);
   const NoisyPicture of_passes = passes_.with_noise(rest_),
                      of_paths{paths_->sent(), paths_->sent_difference()};
-  passes_over_paths_ = worse_for_missing(of_passes, of_paths) *
-                       pipeline::passes_over_paths(of_passes, passes.seconds, of_paths, paths_->seconds(),
+  passes_over_paths_ = pipeline::passes_over_paths(of_passes, passes.seconds, of_paths, paths_->seconds(),
                                                    paths_->light_paths() > 0);
   const bool better = by_paths ? *by_paths == 1
                                : passes_over_paths_ > 1 && missed_light(of_passes, of_paths) < kMissedByPaths;
   choices_.record("by_paths", better ? 1 : 0);
   char ratio[32];
   std::snprintf(ratio, sizeof ratio, "%.2g", passes_over_paths_);
-  sinks_.say(std::string("noise of passes over that of paths in the same time: ") + ratio +
-             (better ? ", so paths go on" : ", so passes go on"));
+  sinks_.say(std::string("noise of passes, and light that they miss, over that of paths in the same time: ") +
+             ratio + (better ? ", so paths go on" : ", so passes go on"));
   const int before = paths_->paths();
   bool whole = true;
   if (better) {

@@ -47,7 +47,7 @@ class PathsAfterPasses {
 
   // Nothing if there was no time to try them.
   const std::optional<PathsBeside>& paths() const { return paths_; }
-  double passes_over_paths() const { return passes_over_paths_; }  // with worse_for_missing() in it
+  double passes_over_paths() const { return passes_over_paths_; }  // noise, see there
 
  private:
   bool try_out(const View& view, const Passes& passes);

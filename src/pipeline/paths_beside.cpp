@@ -61,6 +61,11 @@ double relative_size(const image::Image& difference, const image::Image& picture
   return sum / 2 / static_cast<double>(picture.pixels.size());
 }
 
+double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths) {
+  const double beyond = missed_light(paths, passes) - missed_light(passes, paths) - kMissedByChance;
+  return 1 + kNoiseOfMissed * std::max(0.0, beyond);
+}
+
 }  // namespace
 
 PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
@@ -136,12 +141,7 @@ double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, c
   const double by_paths = relative_size(paths.difference, picture) * std::sqrt(seconds_of_paths);
   const double by_passes = relative_size(passes.difference, picture) * std::sqrt(seconds_of_passes);
   const double worse = light_paths ? kWorseThanWithLightPaths : kPassesLookWorse;
-  return by_paths > 0 ? worse * by_passes / by_paths : 0;
-}
-
-double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths) {
-  const double beyond = missed_light(paths, passes) - missed_light(passes, paths) - kMissedByChance;
-  return 1 + kNoiseOfMissed * std::max(0.0, beyond);
+  return by_paths > 0 ? worse_for_missing(passes, paths) * worse * by_passes / by_paths : 0;
 }
 
 double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths) {

@@ -59,15 +59,13 @@ inline constexpr double kMissedByPaths = 0.03;  // above that it is none of the 
 // Noise of passes over that of paths for the same seconds, as eyes see it: over what is there and a tenth of
 // what is usual, in the mean over pixels. That of passes counts worse than it is: it is alike in neighbors,
 // which share lights, and a denoiser leaves more of it. Still worse beside light paths, without which the
-// paths' own noise would be rare and bright.
+// paths' own noise would be rare and bright. And worse where they miss light that paths show, beyond what
+// paths miss.
 double passes_over_paths(const NoisyPicture& passes, double seconds_of_passes, const NoisyPicture& paths,
                          double seconds_of_paths, bool light_paths);
 
-// What that counts more where passes miss light that paths show, beyond what paths miss.
-double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths);
-
 // What passes count in the mean with paths, in 0 … 1, where it has the least variance: both by 1/variance.
-// `ratio`: passes_over_paths(), and what it counts more.
+// `ratio`: passes_over_paths().
 double share_of_passes(double ratio, double seconds_of_passes, double seconds_of_paths);
 
 // Noise of a picture with the emission that its own paths see over that with emission by film samples apart,

@@ -45,6 +45,19 @@ inline void add_ball_lamp(SceneMaker& scene, Vec3f center, double radius, float 
   lamp.emitter = emitter;
 }
 
+inline scenedesc::MediumDesc fog(Rgb extinction, Rgb albedo, Rgb g) {
+  scenedesc::MediumDesc medium;
+  medium.extinction.value = extinction, medium.albedo.value = albedo;
+  medium.phase.push_back({scenedesc::PhaseLobeDesc::Kind::henyey_greenstein, g, 1});
+  return medium;
+}
+
+// Around the camera, and everything.
+inline void fill(SceneMaker& scene, const scenedesc::MediumDesc& medium) {
+  scene.desc.media.push_back(medium);
+  scene.desc.sensors[0].medium = 0;
+}
+
 struct PixelMeans {
   std::vector<test::RunningMean> of = std::vector<test::RunningMean>(kWidth * kHeight);
   double variance() const {

@@ -13,13 +13,6 @@ namespace {
 
 using test::SceneMaker;
 
-scenedesc::MediumDesc fog(Rgb extinction, Rgb albedo, Rgb g) {
-  scenedesc::MediumDesc medium;
-  medium.extinction.value = extinction, medium.albedo.value = albedo;
-  medium.phase.push_back({scenedesc::PhaseLobeDesc::Kind::henyey_greenstein, g, 1});
-  return medium;
-}
-
 // Of the room, in lumps.
 int add_smoke_grid(SceneMaker& scene, double half = 1) {
   auto grid = std::make_shared<scenedesc::GridData>();
@@ -31,11 +24,6 @@ int add_smoke_grid(SceneMaker& scene, double half = 1) {
   volume.kind = std::shared_ptr<const scenedesc::GridData>(grid);
   scene.desc.volumes.push_back(volume);
   return static_cast<int>(scene.desc.volumes.size()) - 1;
-}
-
-void fill(SceneMaker& scene, const scenedesc::MediumDesc& medium) {
-  scene.desc.media.push_back(medium);
-  scene.desc.sensors[0].medium = 0;
 }
 
 SceneMaker bulb_in_fog(Rgb extinction, Rgb g) {

@@ -6,20 +6,14 @@
 namespace lumirank::pathtrace {
 namespace {
 
+constexpr Rgb kHaze{0.8f, 0.6f, 0.4f};
+
 // Before the eye: a sheet that shows its edge, and light comes through its faces and its rim.
 void add_sheet(SceneMaker& scene) {
   scene.shape(scenedesc::CubeDesc{},
               Transform::translate(0.05, -0.3, -0.1) * Transform::rotate(0, 1, 0, 8) *
                   Transform::scale(0.03, 0.5, 0.5),
               scene.glass(1.5f));
-}
-
-void add_haze(SceneMaker& scene, float albedo) {
-  scenedesc::MediumDesc haze;
-  haze.extinction.value = {0.8f, 0.6f, 0.4f}, haze.albedo.value = Rgb(albedo);
-  haze.phase.push_back({scenedesc::PhaseLobeDesc::Kind::henyey_greenstein, Rgb(0.3f), 1});
-  scene.desc.media.push_back(haze);
-  scene.desc.sensors[0].medium = 0;
 }
 
 // The sheet before walls that shine, each in a color of its own.
@@ -46,7 +40,7 @@ image::Image picture(SceneMaker scene, bool straight_panes) {
 TEST(SeenGlass, OfAPaneIsWhatAnyGlassShows) {
   for (const bool hazy : {false, true}) {
     SceneMaker scene = sheet_in_shining_room();
-    if (hazy) add_haze(scene, 0);
+    if (hazy) fill(scene, fog(kHaze, Rgb(0), Rgb(0.3f)));
     const image::Image without = picture(scene, true);
     add_sheet(scene);
     const image::Image bent = picture(scene, false);
@@ -75,7 +69,7 @@ TEST(SeenGlass, OfPanesInHazeShowsTheSameLightWithLightPaths) {
   scene.shape(scenedesc::CubeDesc{}, Transform::translate(0.1, 0.1, -0.6) * Transform::scale(0.5, 0.5, 0.01),
               scene.glass(1.5f));
   scene.straight_panes = true;
-  add_haze(scene, 0.8f);
+  fill(scene, fog(kHaze, Rgb(0.8f), Rgb(0.3f)));
   expect_same(means(scene, Paths::all, 0, kPicturesOfEach), means(scene, Paths::all, 1, kPicturesOfEach));
 }
 

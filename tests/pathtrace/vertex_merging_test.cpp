@@ -130,11 +130,7 @@ TEST(VertexMerging, ALimitOfDepthCountsBothParts) {
 
 TEST(VertexMerging, WhatAMirrorShowsInThinFogIsTheSame) {
   SceneMaker scene = bulb_and_mirror();
-  scenedesc::MediumDesc fog;
-  fog.extinction.value = {0.2f, 0.15f, 0.1f}, fog.albedo.value = Rgb(0.8f);
-  fog.phase.push_back({scenedesc::PhaseLobeDesc::Kind::henyey_greenstein, Rgb(0.3f), 1});
-  scene.desc.media.push_back(fog);
-  scene.desc.sensors[0].medium = 0;
+  fill(scene, fog({0.2f, 0.15f, 0.1f}, Rgb(0.8f), Rgb(0.3f)));
   expect_same(means(scene, Paths::all, 0, kPicturesOfEach),
               means(scene, Paths::all, 1, kPicturesOfEach, false, 0.5), 0.1);
 }

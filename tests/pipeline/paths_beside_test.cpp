@@ -95,14 +95,15 @@ TEST(MissedLight, IsWhatPassesShowAndPathsDoNot) {
 }
 
 // Rough glass that passes leave dark, in 64 of 4,096 pixels: it counts more than their noise.
-TEST(MissedLight, MakesPassesWorse) {
+TEST(PathsBeside, PassesThatMissLightAreWorse) {
   NoisyPicture passes = even_noise(1, 0.02f);
   const NoisyPicture paths = even_noise(1, 0.02f);
-  EXPECT_EQ(worse_for_missing(passes, paths), 1);
+  const double even = passes_over_paths(passes, 1, paths, 1, false);
   for (int y = 8; y < 16; ++y)
     for (int x = 8; x < 16; ++x) passes.picture.at(x, y) = Rgb(0.4f);
-  EXPECT_GT(worse_for_missing(passes, paths), 2);
-  EXPECT_EQ(worse_for_missing(paths, passes), 1) << "what paths miss is told otherwise";
+  EXPECT_GT(passes_over_paths(passes, 1, paths, 1, false), 2 * even);
+  EXPECT_NEAR(passes_over_paths(paths, 1, passes, 1, false), even, 1e-6)
+      << "paths that miss are told otherwise";
 }
 
 // What few paths have found is noise, however little the others have.
