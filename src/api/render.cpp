@@ -46,7 +46,10 @@ void within_memory_and_threads(const RenderSettings& settings, const std::functi
   pipeline::within_memory(pipeline::kSmallerPicture, [&] { with_threads(settings.threads, work); });
 }
 
-void say_panes(const world::WorldInfo& info, const Sinks& sinks) {
+void say_glass(const world::WorldInfo& info, const Sinks& sinks) {
+  if (info.touching_faces > 0)
+    sinks.say("glass, water or fog ends in the plane of something else: " +
+              std::to_string(info.touching_faces) + " of its triangles are moved into that by a hair");
   if (info.panes + info.bending_glass == 0) return;
   sinks.say("smooth glass: light passes " + std::to_string(info.panes) +
             " shapes straight, as thin panes, and is bent by " + std::to_string(info.bending_glass) +
@@ -146,7 +149,7 @@ RenderResult api::render_in_shot(const Scene& scene, const RenderSettings& setti
                                                 .straight_panes = settings.traced.panes == Panes::straight});
     if (shot.refit) *shot.refit = task.world;
     task.build_seconds = task.timer.seconds();
-    say_panes(task.world->info(), sinks);
+    say_glass(task.world->info(), sinks);
     if (const std::string text = pipeline::empty_view(*task.world, task.view); !text.empty())
       sinks.warn(text);
     pipeline::require_memory(memory, pipeline::kSmallerPicture);  // the scene has taken its part

@@ -123,6 +123,7 @@ Report make_report(const Prepared& prepared, const TracedLight& traced, const Re
       traced.direct.empty() ? 0.0 : static_cast<double>(prepared.recipe.traced_below);
   numbers["panes.straight"] = static_cast<double>(prepared.world->info().panes);
   numbers["panes.bending"] = static_cast<double>(prepared.world->info().bending_glass);
+  numbers["meshes.touching_faces"] = static_cast<double>(prepared.world->info().touching_faces);
   numbers["meshes.left_out"] = static_cast<double>(prepared.world->info().meshes_left_out);
   report.memory = {peak_memory_bytes(), prepared.world->info().memory_bytes,
                    prepared.receivers().memory_bytes(), lights.memory_bytes(), scene_matrix.memory_bytes()};

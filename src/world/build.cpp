@@ -20,6 +20,7 @@
 #include "world/placer.h"
 #include "world/surface.h"
 #include "world/texture_builder.h"
+#include "world/touching_faces.h"
 
 namespace lumirank::world {
 
@@ -101,6 +102,7 @@ class World::Builder {
     step(0.5);
     set_materials();
     set_media();
+    sink_touching();
     step(0.6);
     for (std::size_t i = 0; i < geometry_.placed.size(); ++i) {
       set_placement(i);
@@ -184,6 +186,17 @@ class World::Builder {
     w_.media = media.build(w_.units);
     w_.info.media = w_.media.size();
     w_.info.memory_bytes += media.memory_bytes();
+  }
+
+  void sink_touching() {
+    std::vector<Inside> inside;
+    for (std::size_t i = 0; i < material_of_.size(); ++i) {
+      const bool divides = knows_media() && geometry_.placed[i].shape->media.divides;
+      inside.push_back(!materials_.transmits(material_of_[i]) ? Inside::none
+                       : divides                              ? Inside::medium
+                                                              : Inside::clear);
+    }
+    w_.info.touching_faces = sink_touching_faces(geometry_.meshes, geometry_.placements, inside);
   }
 
   // Asked once of all placements that differ in size and place alone.

@@ -21,10 +21,11 @@ class MaterialBuilder {
   // Index of the material for a BSDF; kNone stands for the default, diffuse with reflectance 0.5.
   int use(int bsdf, const SourceLocation& user, Carrier carrier = Carrier::surface);
   std::vector<scatter::Material> take() { return std::move(materials_); }
+  // Whether light passes it, whatever way. Also after take().
+  bool transmits(int material) const { return of(material).transmits; }
 
  private:
   int add(scatter::Material material);
-  bool transmits(int material) const { return of(material).transmits; }
   // What a material is, those nested in it included: noted when it is added, after them, because sides and
   // mixtures may share what they nest many times over.
   struct Traits {
