@@ -258,8 +258,9 @@ class TouchingFaces {
       return std::array<float, 3>{p.x, p.y, p.z};
     };
     std::map<std::array<float, 3>, Vec3f> ways;
-    // Twice, since what a later face asks may take from an earlier one's.
-    for (int round = 0; round < 2; ++round)
+    // Several times, since what a later face asks takes from an earlier one's at a sharp edge.
+    constexpr int kRounds = 16;
+    for (int round = 0; round < kRounds; ++round)
       for (const std::size_t f : faces)
         for (std::size_t c = 0; c < 3; ++c) {
           Vec3f& way =

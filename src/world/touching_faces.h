@@ -19,11 +19,12 @@ namespace lumirank::world {
 enum class Inside : std::uint8_t { none, clear, medium };
 
 // Moves vertices of `meshes`, along the normals and by no more than five of the steps by which rays leave
-// surfaces (World::offset_origin). `inside`: of each placement. Only meshes that enclose a volume have an
-// outside to which their faces may go: into what has no inside; and of two that touch the one with a medium,
-// or the smaller one, into the other. Two media side by side stay as they are. Returns how many triangles
-// were moved. Places are asked of each triangle of either kind, so a face that is touched by a small part of
-// a large one, and nowhere near the middle or a corner of either, may be overlooked.
+// surfaces (World::offset_origin), at sharp edges farther. `inside`: of each placement. Only meshes that
+// enclose a volume have an outside to which their faces may go: into what has no inside; and of two that
+// touch the one with a medium, or the smaller one, into the other. Two media side by side stay as they are.
+// Returns how many triangles were moved. Places are asked of each triangle of either kind, so a face that is
+// touched by a small part of a large one, and nowhere near the middle or a corner of either, may be
+// overlooked.
 std::size_t sink_touching_faces(std::vector<geometry::TriangleMesh>& meshes,
                                 std::span<const geometry::Placement> placements,
                                 std::span<const Inside> inside);

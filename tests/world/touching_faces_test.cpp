@@ -105,6 +105,21 @@ TEST(TouchingFaces, OfABasinGoBehindAllWalls) {
   EXPECT_NEAR(basin.corner(7).z, 1, 0.1f * kStep);
 }
 
+TEST(TouchingFaces, MeetBehindTheWallsAtSharpEdgesToo) {
+  // Sheared: of its edges some have angles of 34 degrees.
+  const auto sheared = [](geometry::TriangleMesh mesh) {
+    for (Vec3f& p : mesh.positions) p.x += 1.5f * p.z;
+    return mesh;
+  };
+  Pair filled(sheared(block()), {}, sheared(block()), {});
+  EXPECT_EQ(filled.sink(), 12u);
+  for (std::size_t k = 0; k < 8; ++k) {
+    const Vec3f p = filled.corner(k);
+    EXPECT_GT(std::abs(p.z), 1 + 0.4f * kStep);
+    EXPECT_GT(std::abs(p.x - 1.5f * p.z), 1 + 0.4f * kStep);
+  }
+}
+
 // Whose middle and corners are far from anything on it.
 TEST(TouchingFaces, OfATableGoIntoWhatStandsOnIt) {
   Pair table(block(), Transform::scale(1, 1, 0.1), block(),
