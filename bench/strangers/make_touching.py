@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes (Mitsuba 3 XML) in which glass, water or fog ends in the very plane of something else, and the same a little apart or a little larger, which is what they should look like.
+"""Scenes (Mitsuba 3 XML) in which glass, water, fog or a lamp ends in the very plane of something else, and the same a little apart or a little larger, which is what they should look like.
 
     bench/strangers/make_touching.py OUT [--program PATH] [--paths 400]
 
@@ -11,6 +11,7 @@ A line for each: the mean of `lumirank reference` and that of its middle, of the
   water     a basin filled with water by a block of the basin's size
   glass     a glass vessel filled with water by a block of its inside's size; also with a third twin, whose water borders on glass by definition (ext_ior)
   wine      the same with colored water
+  ceiling, panel, screen  a lamp flush with the ceiling, one sunk into it, and one on a wall, and each a little before it
 """
 import argparse
 import pathlib
@@ -49,13 +50,24 @@ def on_floor(bsdf, gap):
         '<emitter type="constant"><rgb name="radiance" value="0.3, 0.3, 0.3"/></emitter>'])
 
 
-def room():
+def room(lamp=True):
     gray = twosided("0.6, 0.6, 0.6")
     return [shape("rectangle", '<rotate x="1" angle="-90"/><translate y="-1"/>', gray), shape("rectangle", '<rotate x="1" angle="90"/><translate y="1"/>', gray),
             shape("rectangle", '<translate z="-1"/>', gray), shape("rectangle", '<rotate y="1" angle="180"/><translate z="1"/>', gray),
             shape("rectangle", '<rotate y="1" angle="90"/><translate x="-1"/>', twosided("0.7, 0.2, 0.2")),
             shape("rectangle", '<rotate y="1" angle="-90"/><translate x="1"/>', twosided("0.2, 0.7, 0.2")),
-            shape("rectangle", '<scale value="0.3"/><rotate x="1" angle="90"/><translate y="0.98"/>', LAMP)]
+            *([shape("rectangle", '<scale value="0.3"/><rotate x="1" angle="90"/><translate y="0.98"/>', LAMP)] if lamp else [])]
+
+
+def lit_by(kind, transform):
+    lamp = '<emitter type="area"><rgb name="radiance" value="3, 3, 3"/></emitter>'
+    return scene("0, 0, 0.95", "0, 0.1, -1", [shape(kind, transform, lamp), *room(False)], 80)
+
+
+def flush(apart):
+    return {"ceiling": lit_by("rectangle", f'<scale value="0.6"/><rotate x="1" angle="90"/><translate y="{1 - apart}"/>'),
+            "panel": lit_by("cube", f'<scale x="0.6" y="0.05" z="0.6"/><translate y="{1.05 - apart}"/>'),
+            "screen": lit_by("rectangle", f'<scale value="0.6"/><translate z="{-1 + apart}"/>')}
 
 
 def fog(more):
@@ -97,7 +109,7 @@ def bordering():
 
 SCENES = {"block": [on_floor(GLASS, 0), on_floor(GLASS, 0.002)], "thin": [on_floor('<bsdf type="thindielectric"/>', 0), on_floor('<bsdf type="thindielectric"/>', 0.002)],
           "fog": [fog(0), fog(0.002)], "water": [basin(0), basin(0.002)], "glass": [filled(0, False), filled(0.001, False), bordering()],
-          "wine": [filled(0, True), filled(0.001, True)]}
+          "wine": [filled(0, True), filled(0.001, True)], **{name: [flush(0)[name], flush(0.002)[name]] for name in ("ceiling", "panel", "screen")}}
 
 
 def main():

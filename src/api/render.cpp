@@ -48,8 +48,8 @@ void within_memory_and_threads(const RenderSettings& settings, const std::functi
 
 void say_glass(const world::WorldInfo& info, const Sinks& sinks) {
   if (info.touching_faces > 0)
-    sinks.say("glass, water or fog ends in the plane of something else: " +
-              std::to_string(info.touching_faces) + " of its triangles are moved into that by a hair");
+    sinks.say("glass, water, fog or lamps end in the plane of something else: " +
+              std::to_string(info.touching_faces) + " of their triangles are moved by a hair");
   if (info.panes + info.bending_glass == 0) return;
   sinks.say("smooth glass: light passes " + std::to_string(info.panes) +
             " shapes straight, as thin panes, and is bent by " + std::to_string(info.bending_glass) +

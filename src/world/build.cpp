@@ -102,7 +102,7 @@ class World::Builder {
     step(0.5);
     set_materials();
     set_media();
-    sink_touching();
+    part_touching();
     step(0.6);
     for (std::size_t i = 0; i < geometry_.placed.size(); ++i) {
       set_placement(i);
@@ -188,7 +188,7 @@ class World::Builder {
     w_.info.memory_bytes += media.memory_bytes();
   }
 
-  void sink_touching() {
+  void part_touching() {
     std::vector<Inside> inside;
     for (std::size_t i = 0; i < material_of_.size(); ++i) {
       const bool divides = knows_media() && geometry_.placed[i].shape->media.divides;
@@ -196,7 +196,11 @@ class World::Builder {
                        : divides                              ? Inside::medium
                                                               : Inside::clear);
     }
-    w_.info.touching_faces = sink_touching_faces(geometry_.meshes, geometry_.placements, inside);
+    std::vector<bool> shines;
+    for (const Placed& placed : geometry_.placed)
+      shines.push_back(placed.shines && placed.shape->emitter->seen);
+    w_.info.touching_faces = lift_touching_lamps(geometry_.meshes, geometry_.placements, inside, shines) +
+                             sink_touching_faces(geometry_.meshes, geometry_.placements, inside);
   }
 
   // Asked once of all placements that differ in size and place alone.

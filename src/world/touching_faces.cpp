@@ -9,6 +9,7 @@
 
 #include "base/bounds.h"
 #include "base/parallel.h"
+#include "world/surface.h"
 #include "world/world.h"
 
 namespace lumirank::world {
@@ -96,6 +97,17 @@ std::vector<Face> closed_faces_of(const TriangleMesh& mesh, const Placement& pla
   return faces;
 }
 
+// Their normals look to where they shine. Meshes that shine stand in the world as they are.
+std::vector<Face> shining_faces_of(const TriangleMesh& mesh, const Placement& placed, std::uint32_t number) {
+  std::vector<Face> faces = faces_of(mesh, placed, number);
+  for (Face& face : faces) face.outward = outside_normal(mesh, face.triangle);
+  return faces;
+}
+
+// What a placement is: one of those that move, something opaque into whose planes or out of them they move,
+// or left out.
+enum class Part : std::uint8_t { glass, medium, lamp, opaque, none };
+
 TriangleMesh mesh_of(std::span<const Face> faces) {
   TriangleMesh mesh;
   mesh.positions.reserve(3 * faces.size());
@@ -110,24 +122,24 @@ TriangleMesh mesh_of(std::span<const Face> faces) {
 class TouchingFaces {
  public:
   TouchingFaces(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
-                std::span<const Inside> inside)
-      : meshes_(meshes), placements_(placements), inside_(inside), sizes_(placements.size(), 0.0f) {
+                const std::vector<Part>& parts)
+      : meshes_(meshes), placements_(placements), parts_(parts), sizes_(placements.size(), 0.0f) {
     for (std::uint32_t i = 0; i < placements.size(); ++i)
-      if (inside[i] != Inside::none) add_closed(i);
-    if (closed_.empty()) return;
+      if (parts[i] != Part::opaque && parts[i] != Part::none) add_moving(i);
+    if (moving_.empty()) return;
     for (std::uint32_t i = 0; i < placements.size(); ++i)
-      if (inside[i] == Inside::none) add_opaque(i);
+      if (parts[i] == Part::opaque) add_opaque(i);
   }
 
-  std::size_t sink() {
-    if (closed_.empty()) return 0;
-    moves_.assign(closed_.size(), 0);
-    if (!opaque_.empty()) ask_closed(), ask_opaque();
+  std::size_t move() {
+    if (moving_.empty()) return 0;
+    moves_.assign(moving_.size(), 0);
+    if (!opaque_.empty()) ask_moving(), ask_opaque();
     if (first_.size() > 1) ask_each_other();
     std::size_t moved = 0;
     std::map<std::uint32_t, std::vector<std::size_t>> by_placement;
-    for (std::size_t f = 0; f < closed_.size(); ++f)
-      if (moves_[f] > 0) by_placement[closed_[f].placement].push_back(f), ++moved;
+    for (std::size_t f = 0; f < moving_.size(); ++f)
+      if (moves_[f] > 0) by_placement[moving_[f].placement].push_back(f), ++moved;
     // What one placement of a mesh asks for is done for all.
     std::set<std::uint32_t> done;
     for (const auto& [placement, faces] : by_placement)
@@ -136,15 +148,16 @@ class TouchingFaces {
   }
 
  private:
-  void add_closed(std::uint32_t i) {
+  void add_moving(std::uint32_t i) {
     const TriangleMesh& mesh = meshes_[placements_[i].mesh];
-    if (asked_to_be_closed_ + mesh.triangle_count() > kMaxLookedAt) return;
-    asked_to_be_closed_ += mesh.triangle_count();
-    const std::vector<Face> faces = closed_faces_of(mesh, placements_[i], i);
+    if (may_move_ + mesh.triangle_count() > kMaxLookedAt) return;
+    may_move_ += mesh.triangle_count();
+    const std::vector<Face> faces = parts_[i] == Part::lamp ? shining_faces_of(mesh, placements_[i], i)
+                                                            : closed_faces_of(mesh, placements_[i], i);
     if (faces.empty()) return;
-    first_.push_back(closed_.size());
+    first_.push_back(moving_.size());
     sizes_[i] = around(faces).radius();
-    closed_.insert(closed_.end(), faces.begin(), faces.end());
+    moving_.insert(moving_.end(), faces.begin(), faces.end());
     if (faces.size() > kFewTriangles) return boxes_.push_back(around(faces));
     for (const Face& face : faces) boxes_.push_back(around({&face, 1}));
   }
@@ -175,12 +188,12 @@ class TouchingFaces {
     return ahead > -kBehind * step && ahead < kBefore * step ? ahead + sunk * step : 0.0f;
   }
 
-  void ask_closed() {
+  void ask_moving() {
     const geometry::RayScene rays({mesh_of(opaque_)}, {{}}, {});
-    parallel_for(closed_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(moving_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f)
-        for (const Vec3f place : places_on(closed_[f])) {
-          const Vec3f n = closed_[f].outward;
+        for (const Vec3f place : places_on(moving_[f])) {
+          const Vec3f n = moving_[f].outward;
           const float step = step_at(place, n);
           const auto hit = rays.intersect({place + n * (kBefore * step), -n, 0, (kBefore + kBehind) * step});
           if (hit && std::abs(dot(opaque_[hit->triangle].outward, n)) > kParallel)
@@ -190,7 +203,7 @@ class TouchingFaces {
   }
 
   void ask_opaque() {
-    const geometry::RayScene rays({mesh_of(closed_)}, {{}}, {});
+    const geometry::RayScene rays({mesh_of(moving_)}, {{}}, {});
     struct Touch {
       std::uint32_t face = 0;
       float way = 0;
@@ -204,7 +217,7 @@ class TouchingFaces {
           const float step = step_at(places[k], n), reach = kBefore * step;
           const auto hit = rays.intersect({places[k] + n * reach, -n, 0, 2 * reach});
           if (!hit) continue;
-          const float cosine = dot(closed_[hit->triangle].outward, n);
+          const float cosine = dot(moving_[hit->triangle].outward, n);
           if (std::abs(cosine) > kParallel)
             touches[f][k] = {hit->triangle, way(cosine > 0 ? hit->t - reach : reach - hit->t, step, kSunk)};
         }
@@ -216,8 +229,9 @@ class TouchingFaces {
 
   // Of two closed meshes that touch.
   bool goes_into(std::uint32_t one, std::uint32_t other) const {
-    if (inside_[one] == Inside::medium || inside_[other] == Inside::medium)
-      return inside_[one] != inside_[other] && inside_[one] == Inside::medium;
+    if (parts_[one] == Part::lamp || parts_[other] == Part::lamp) return false;
+    if (parts_[one] == Part::medium || parts_[other] == Part::medium)
+      return parts_[one] != parts_[other] && parts_[one] == Part::medium;
     return sizes_[one] < sizes_[other] || (sizes_[one] == sizes_[other] && one < other);
   }
 
@@ -226,24 +240,24 @@ class TouchingFaces {
     std::vector<TriangleMesh> meshes;
     std::vector<Placement> placements(first_.size());
     for (std::size_t k = 0; k < first_.size(); ++k) {
-      const std::size_t end = k + 1 < first_.size() ? first_[k + 1] : closed_.size();
-      meshes.push_back(mesh_of(std::span(closed_).subspan(first_[k], end - first_[k])));
+      const std::size_t end = k + 1 < first_.size() ? first_[k + 1] : moving_.size();
+      meshes.push_back(mesh_of(std::span(moving_).subspan(first_[k], end - first_[k])));
       placements[k].mesh = static_cast<std::uint32_t>(k);
       placements[k].blocking = geometry::Blocking::attenuating;
     }
     const geometry::RayScene rays(std::move(meshes), std::move(placements), {});
-    parallel_for(closed_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(moving_.size(), 64, [&](std::size_t begin, std::size_t end) {
       std::vector<geometry::Hit> hits;
       for (std::size_t f = begin; f < end; ++f)
-        for (const Vec3f place : places_on(closed_[f])) {
-          const Vec3f n = closed_[f].outward;
+        for (const Vec3f place : places_on(moving_[f])) {
+          const Vec3f n = moving_[f].outward;
           const float step = step_at(place, n);
           hits.clear();
           rays.crossings({place + n * (kBefore * step), -n, 0, (kBefore + kBehind) * step}, hits);
           for (const geometry::Hit& hit : hits) {
-            const Face& other = closed_[first_[hit.instance] + hit.triangle];
-            if (other.placement != closed_[f].placement && dot(other.outward, n) < -kParallel &&
-                goes_into(closed_[f].placement, other.placement))
+            const Face& other = moving_[first_[hit.instance] + hit.triangle];
+            if (other.placement != moving_[f].placement && dot(other.outward, n) < -kParallel &&
+                goes_into(moving_[f].placement, other.placement))
               moves_[f] = std::max(moves_[f], way(kBefore * step - hit.t, step, kSunkIntoGlass));
           }
         }
@@ -264,8 +278,8 @@ class TouchingFaces {
       for (const std::size_t f : faces)
         for (std::size_t c = 0; c < 3; ++c) {
           Vec3f& way =
-              ways.try_emplace(key(mesh.indices[3 * closed_[f].triangle + c]), Vec3f{0, 0, 0}).first->second;
-          const Vec3f n = closed_[f].outward;
+              ways.try_emplace(key(mesh.indices[3 * moving_[f].triangle + c]), Vec3f{0, 0, 0}).first->second;
+          const Vec3f n = moving_[f].outward;
           way += n * std::max(0.0f, moves_[f] - dot(way, n));
         }
     const auto inverse = placed.to_world.inverse();
@@ -277,20 +291,33 @@ class TouchingFaces {
 
   std::vector<TriangleMesh>& meshes_;
   std::span<const Placement> placements_;
-  std::span<const Inside> inside_;
-  std::vector<float> sizes_;  // of placements that are closed
-  std::vector<Face> closed_, opaque_;
+  const std::vector<Part>& parts_;
+  std::vector<float> sizes_;  // of placements that may move
+  std::vector<Face> moving_, opaque_;
   std::vector<Bounds3f> boxes_;
-  std::vector<float> moves_;                            // of the closed ones
-  std::size_t asked_to_be_closed_ = 0, looked_at_ = 0;  // triangles
-  std::vector<std::size_t> first_;                      // of the closed ones of each placement that has some
+  std::vector<float> moves_;                  // of the moving ones
+  std::size_t may_move_ = 0, looked_at_ = 0;  // triangles
+  std::vector<std::size_t> first_;            // of the moving ones of each placement that has some
 };
 
 }  // namespace
 
 std::size_t sink_touching_faces(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
                                 std::span<const Inside> inside) {
-  return TouchingFaces(meshes, placements, inside).sink();
+  std::vector<Part> parts;
+  for (const Inside of_one : inside)
+    parts.push_back(of_one == Inside::none    ? Part::opaque
+                    : of_one == Inside::clear ? Part::glass
+                                              : Part::medium);
+  return TouchingFaces(meshes, placements, parts).move();
+}
+
+std::size_t lift_touching_lamps(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
+                                std::span<const Inside> inside, const std::vector<bool>& shines) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    parts.push_back(inside[i] != Inside::none ? Part::none : shines[i] ? Part::lamp : Part::opaque);
+  return TouchingFaces(meshes, placements, parts).move();
 }
 
 }  // namespace lumirank::world

@@ -29,4 +29,10 @@ std::size_t sink_touching_faces(std::vector<geometry::TriangleMesh>& meshes,
                                 std::span<const geometry::Placement> placements,
                                 std::span<const Inside> inside);
 
+// Lamps that lie flush in a ceiling or on a wall: faces that shine are moved out of the plane of what is
+// opaque, to the side on which they shine, as far as glass is moved behind it.
+std::size_t lift_touching_lamps(std::vector<geometry::TriangleMesh>& meshes,
+                                std::span<const geometry::Placement> placements,
+                                std::span<const Inside> inside, const std::vector<bool>& shines);
+
 }  // namespace lumirank::world

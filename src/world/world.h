@@ -43,7 +43,7 @@ struct WorldInfo {
   std::size_t textures = 0, materials = 0, media = 0, emitters = 0;
   // With BuildOptions::straight_panes: shapes that light passes straight, and others of smooth glass.
   std::size_t panes = 0, bending_glass = 0;
-  // Triangles that were moved into what they touch (touching_faces.h).
+  // Triangles that were moved into what they touch, or out of it (touching_faces.h).
   std::size_t touching_faces = 0;
   // Meshes, textures and acceleration structure, without what is shared with BuildOptions::before.
   std::size_t memory_bytes = 0;

@@ -171,6 +171,37 @@ TEST(TouchingFaces, OfWaterGoIntoTheGlassAroundIt) {
   EXPECT_EQ(media.sink(), 0u);
 }
 
+TEST(TouchingFaces, OfLampsComeOutOfTheCeiling) {
+  // A sheet and the side of a box, both shining upwards, flush with what is around them.
+  for (const bool box : {false, true}) {
+    Pair lamp(box ? block() : sheet(), {}, sheet(),
+              Transform::translate(0, 0, box ? 1 : 0) * Transform::scale(4, 3, 1));
+    lamp.inside[0] = Inside::none;
+    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {false, false}), 0u);
+    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {true, false}), 2u);
+    EXPECT_GT(lamp.corner(box ? 7 : 2).z, (box ? 1 : 0) + 0.4f * kStep);
+    EXPECT_EQ(lamp.corner(0).z, box ? -1.0f : lamp.corner(2).z);
+    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {true, false}), 0u);
+    // Lamps beside lamps stay, and so do those that are no lamps.
+    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {true, true}), 0u);
+  }
+}
+
+TEST(TouchingFaces, OfLampsAreSeen) {
+  auto desc = empty_scene();
+  shine(desc, add_shape(desc, sd::RectangleDesc{}), {.value = Rgb(1)});
+  add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1));
+  const World world = build(desc);
+  EXPECT_EQ(world.info().touching_faces, 2u);
+  for (const float x : {-0.9f, -0.3f, 0.2f, 0.7f}) {
+    const auto lamp = world.intersect(ray({x, 0.1f, 2}, {0, 0, -1}));
+    const auto behind = world.intersect(ray({x, 0.1f, -2}, {0, 0, 1}));
+    ASSERT_TRUE(lamp && behind);
+    EXPECT_EQ(lamp->emitter, 0);
+    EXPECT_EQ(behind->emitter, -1);
+  }
+}
+
 // By the rays of a world: what stands behind glass is met though both lie in one plane.
 TEST(TouchingFaces, LeaveTheFloorInSight) {
   auto desc = empty_scene();
