@@ -5,21 +5,13 @@
 
 #include "geometry/tessellate.h"
 #include "world/light_sampler.h"
+#include "world/plain_meshes.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::world {
 namespace {
 
 using namespace test;
-
-geometry::TriangleMesh cube() {
-  geometry::TriangleMesh mesh;
-  for (int k = 0; k < 8; ++k)
-    mesh.positions.push_back({k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f});
-  mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-  return mesh;
-}
 
 // Both meshes, the second one moved.
 geometry::TriangleMesh both(geometry::TriangleMesh a, const geometry::TriangleMesh& b,
@@ -30,38 +22,31 @@ geometry::TriangleMesh both(geometry::TriangleMesh a, const geometry::TriangleMe
   return a;
 }
 
-geometry::TriangleMesh quad() {
-  geometry::TriangleMesh mesh;
-  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  mesh.indices = {0, 1, 2, 0, 2, 3};
-  return mesh;
-}
-
 TEST(Panes, AreThinPlatesHoweverTheyStand) {
   const Transform turned = Transform::rotate(1, 2, 3, 40) * Transform::translate(5, 6, 7);
-  EXPECT_TRUE(is_made_of_panes(cube(), turned * Transform::scale(1, 0.6, 0.005)));
-  EXPECT_TRUE(is_made_of_panes(cube(), turned * Transform::scale(0.02, 0.5, 3)));
-  EXPECT_FALSE(is_made_of_panes(cube(), turned * Transform::scale(1, 1, 0.4)));
-  EXPECT_FALSE(is_made_of_panes(cube(), turned));
-  EXPECT_FALSE(is_made_of_panes(cube(), Transform::scale(1, 0.01, 0.01)));  // a rod
+  EXPECT_TRUE(is_made_of_panes(block(), turned * Transform::scale(1, 0.6, 0.005)));
+  EXPECT_TRUE(is_made_of_panes(block(), turned * Transform::scale(0.02, 0.5, 3)));
+  EXPECT_FALSE(is_made_of_panes(block(), turned * Transform::scale(1, 1, 0.4)));
+  EXPECT_FALSE(is_made_of_panes(block(), turned));
+  EXPECT_FALSE(is_made_of_panes(block(), Transform::scale(1, 0.01, 0.01)));  // a rod
 }
 
 TEST(Panes, StandTogetherInOneMesh) {
   const Transform thin = Transform::scale(1, 1, 0.01);
-  geometry::TriangleMesh sheet = both({}, cube(), thin);
-  EXPECT_TRUE(is_made_of_panes(both(sheet, cube(), Transform::translate(3, 0, 1) * thin), {}));
+  geometry::TriangleMesh plate = both({}, block(), thin);
+  EXPECT_TRUE(is_made_of_panes(both(plate, block(), Transform::translate(3, 0, 1) * thin), {}));
   EXPECT_TRUE(
-      is_made_of_panes(both(sheet, cube(), Transform::translate(0, 0, 0.1) * thin), {}));  // glazed twice
-  EXPECT_FALSE(is_made_of_panes(both(sheet, cube(), Transform::translate(3, 0, 1)), {}));  // beside a block
+      is_made_of_panes(both(plate, block(), Transform::translate(0, 0, 0.1) * thin), {}));  // glazed twice
+  EXPECT_FALSE(is_made_of_panes(both(plate, block(), Transform::translate(3, 0, 1)), {}));  // beside a block
 }
 
 TEST(Panes, NeedTwoFacesThatLookApart) {
   const Transform behind = Transform::translate(0, 0, -0.02);
   const Transform away = behind * Transform::rotate(1, 0, 0, 180);
-  EXPECT_TRUE(is_made_of_panes(both(quad(), quad(), away), {}));
-  EXPECT_FALSE(is_made_of_panes(both(quad(), quad(), behind), {}));
-  EXPECT_FALSE(is_made_of_panes(quad(), {}));
-  EXPECT_FALSE(is_made_of_panes(both(quad(), quad(), away * Transform::scale(0.5, 0.5, 1)), {}));
+  EXPECT_TRUE(is_made_of_panes(both(sheet(), sheet(), away), {}));
+  EXPECT_FALSE(is_made_of_panes(both(sheet(), sheet(), behind), {}));
+  EXPECT_FALSE(is_made_of_panes(sheet(), {}));
+  EXPECT_FALSE(is_made_of_panes(both(sheet(), sheet(), away * Transform::scale(0.5, 0.5, 1)), {}));
   EXPECT_FALSE(is_made_of_panes({}, {}));
 }
 

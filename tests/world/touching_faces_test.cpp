@@ -5,28 +5,13 @@
 
 #include <vector>
 
+#include "world/plain_meshes.h"
 #include "world/scene_maker.h"
 
 namespace lumirank::world {
 namespace {
 
 using namespace test;
-
-// From -1 to 1.
-geometry::TriangleMesh block() {
-  geometry::TriangleMesh mesh;
-  for (int k = 0; k < 8; ++k)
-    mesh.positions.push_back({k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f});
-  mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-  return mesh;
-}
-geometry::TriangleMesh sheet() {
-  geometry::TriangleMesh mesh;
-  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  mesh.indices = {0, 1, 2, 0, 2, 3};
-  return mesh;
-}
 
 // A block of glass and something opaque, each at its place.
 struct Pair {
