@@ -189,18 +189,15 @@ class World::Builder {
   }
 
   void part_touching() {
-    std::vector<Inside> inside;
+    std::vector<Part> parts;
     for (std::size_t i = 0; i < material_of_.size(); ++i) {
-      const bool divides = knows_media() && geometry_.placed[i].shape->media.divides;
-      inside.push_back(!materials_.transmits(material_of_[i]) ? Inside::none
-                       : divides                              ? Inside::medium
-                                                              : Inside::clear);
+      const Placed& placed = geometry_.placed[i];
+      if (materials_.transmits(material_of_[i]))
+        parts.push_back(knows_media() && placed.shape->media.divides ? Part::medium : Part::clear);
+      else
+        parts.push_back(placed.shines && placed.shape->emitter->seen ? Part::lamp : Part::opaque);
     }
-    std::vector<bool> shines;
-    for (const Placed& placed : geometry_.placed)
-      shines.push_back(placed.shines && placed.shape->emitter->seen);
-    w_.info.touching_faces = lift_touching_lamps(geometry_.meshes, geometry_.placements, inside, shines) +
-                             sink_touching_faces(geometry_.meshes, geometry_.placements, inside);
+    w_.info.touching_faces = part_touching_faces(geometry_.meshes, geometry_.placements, parts);
   }
 
   // Asked once of all placements that differ in size and place alone.

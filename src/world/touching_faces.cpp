@@ -104,10 +104,6 @@ std::vector<Face> shining_faces_of(const TriangleMesh& mesh, const Placement& pl
   return faces;
 }
 
-// What a placement is: one of those that move, something opaque into whose planes or out of them they move,
-// or left out.
-enum class Part : std::uint8_t { glass, medium, lamp, opaque, none };
-
 TriangleMesh mesh_of(std::span<const Face> faces) {
   TriangleMesh mesh;
   mesh.positions.reserve(3 * faces.size());
@@ -122,20 +118,22 @@ TriangleMesh mesh_of(std::span<const Face> faces) {
 class TouchingFaces {
  public:
   TouchingFaces(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
-                const std::vector<Part>& parts)
+                std::span<const Part> parts, bool lamps)
       : meshes_(meshes), placements_(placements), parts_(parts), sizes_(placements.size(), 0.0f) {
+    const auto moves = [&](Part part) { return lamps ? part == Part::lamp : is_entered(part); };
+    const auto stays = [&](Part part) { return part == Part::opaque || (!lamps && part == Part::lamp); };
     for (std::uint32_t i = 0; i < placements.size(); ++i)
-      if (parts[i] != Part::opaque && parts[i] != Part::none) add_moving(i);
+      if (moves(parts[i])) add_moving(i);
     if (moving_.empty()) return;
     for (std::uint32_t i = 0; i < placements.size(); ++i)
-      if (parts[i] == Part::opaque) add_opaque(i);
+      if (stays(parts[i])) add_opaque(i);
   }
 
   std::size_t move() {
     if (moving_.empty()) return 0;
     moves_.assign(moving_.size(), 0);
     if (!opaque_.empty()) ask_moving(), ask_opaque();
-    if (first_.size() > 1) ask_each_other();
+    if (first_.size() > 1 && is_entered(parts_[moving_[0].placement])) ask_each_other();
     std::size_t moved = 0;
     std::map<std::uint32_t, std::vector<std::size_t>> by_placement;
     for (std::size_t f = 0; f < moving_.size(); ++f)
@@ -148,6 +146,8 @@ class TouchingFaces {
   }
 
  private:
+  static bool is_entered(Part part) { return part == Part::clear || part == Part::medium; }
+
   void add_moving(std::uint32_t i) {
     const TriangleMesh& mesh = meshes_[placements_[i].mesh];
     if (may_move_ + mesh.triangle_count() > kMaxLookedAt) return;
@@ -229,7 +229,6 @@ class TouchingFaces {
 
   // Of two closed meshes that touch.
   bool goes_into(std::uint32_t one, std::uint32_t other) const {
-    if (parts_[one] == Part::lamp || parts_[other] == Part::lamp) return false;
     if (parts_[one] == Part::medium || parts_[other] == Part::medium)
       return parts_[one] != parts_[other] && parts_[one] == Part::medium;
     return sizes_[one] < sizes_[other] || (sizes_[one] == sizes_[other] && one < other);
@@ -291,7 +290,7 @@ class TouchingFaces {
 
   std::vector<TriangleMesh>& meshes_;
   std::span<const Placement> placements_;
-  const std::vector<Part>& parts_;
+  std::span<const Part> parts_;
   std::vector<float> sizes_;  // of placements that may move
   std::vector<Face> moving_, opaque_;
   std::vector<Bounds3f> boxes_;
@@ -302,22 +301,11 @@ class TouchingFaces {
 
 }  // namespace
 
-std::size_t sink_touching_faces(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
-                                std::span<const Inside> inside) {
-  std::vector<Part> parts;
-  for (const Inside of_one : inside)
-    parts.push_back(of_one == Inside::none    ? Part::opaque
-                    : of_one == Inside::clear ? Part::glass
-                                              : Part::medium);
-  return TouchingFaces(meshes, placements, parts).move();
-}
-
-std::size_t lift_touching_lamps(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
-                                std::span<const Inside> inside, const std::vector<bool>& shines) {
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < inside.size(); ++i)
-    parts.push_back(inside[i] != Inside::none ? Part::none : shines[i] ? Part::lamp : Part::opaque);
-  return TouchingFaces(meshes, placements, parts).move();
+std::size_t part_touching_faces(std::vector<TriangleMesh>& meshes, std::span<const Placement> placements,
+                                std::span<const Part> parts) {
+  // Lamps first, since glass goes behind them.
+  const std::size_t lamps = TouchingFaces(meshes, placements, parts, true).move();
+  return lamps + TouchingFaces(meshes, placements, parts, false).move();
 }
 
 }  // namespace lumirank::world

@@ -15,24 +15,19 @@
 
 namespace lumirank::world {
 
-// What light meets at a mesh: nothing that it could enter; an inside; an inside with a medium of its own.
-enum class Inside : std::uint8_t { none, clear, medium };
+// What a placement is to light: something opaque, a lamp, or something that it can enter, without and with a
+// medium of its own.
+enum class Part : std::uint8_t { opaque, lamp, clear, medium };
 
 // Moves vertices of `meshes`, along the normals and by no more than five of the steps by which rays leave
-// surfaces (World::offset_origin), at sharp edges farther. `inside`: of each placement. Only meshes that
-// enclose a volume have an outside to which their faces may go: into what has no inside; and of two that
-// touch the one with a medium, or the smaller one, into the other. Two media side by side stay as they are.
-// Returns how many triangles were moved. Places are asked of each triangle of either kind, so a face that is
-// touched by a small part of a large one, and nowhere near the middle or a corner of either, may be
-// overlooked.
-std::size_t sink_touching_faces(std::vector<geometry::TriangleMesh>& meshes,
-                                std::span<const geometry::Placement> placements,
-                                std::span<const Inside> inside);
-
-// Lamps that lie flush in a ceiling or on a wall: faces that shine are moved out of the plane of what is
-// opaque, to the side on which they shine, as far as glass is moved behind it.
-std::size_t lift_touching_lamps(std::vector<geometry::TriangleMesh>& meshes,
-                                std::span<const geometry::Placement> placements,
-                                std::span<const Inside> inside, const std::vector<bool>& shines);
+// surfaces (World::offset_origin), at sharp edges farther. `parts`: of each placement. Lamps come out of the
+// planes of what is opaque, to the side on which they shine: one flush with a ceiling would be behind it in
+// every second place. What light can enter goes behind opaque faces and lamps; and of two such that touch the
+// one with a medium, or the smaller one, into the other. Two media side by side stay as they are, and so do
+// meshes that enclose no volume: they have no outside to which they could go. Returns how many triangles were
+// moved. Places are asked of each triangle of either kind, so a face that is touched by a small part of a
+// large one, and nowhere near the middle or a corner of either, may be overlooked.
+std::size_t part_touching_faces(std::vector<geometry::TriangleMesh>& meshes,
+                                std::span<const geometry::Placement> placements, std::span<const Part> parts);
 
 }  // namespace lumirank::world

@@ -17,7 +17,7 @@ using namespace test;
 struct Pair {
   std::vector<geometry::TriangleMesh> meshes;
   std::vector<geometry::Placement> placements;
-  std::vector<Inside> inside{Inside::clear, Inside::none};
+  std::vector<Part> parts{Part::clear, Part::opaque};
 
   Pair(geometry::TriangleMesh glass, const Transform& to_world, geometry::TriangleMesh other,
        const Transform& of_other)
@@ -25,7 +25,7 @@ struct Pair {
     placements[0].mesh = 0, placements[0].to_world = to_world;
     placements[1].mesh = 1, placements[1].to_world = of_other;
   }
-  std::size_t sink() { return sink_touching_faces(meshes, placements, inside); }
+  std::size_t part() { return part_touching_faces(meshes, placements, parts); }
   Vec3f corner(std::size_t k) const { return placements[0].to_world.point(meshes[0].positions[k]); }
 };
 
@@ -35,7 +35,7 @@ constexpr float kStep = 5e-5f;  // by which rays leave a surface, at a distance 
 TEST(TouchingFaces, GoBehindTheFloorThatTheyStandOn) {
   for (const float gap : {0.0f, 1.2f * kStep, -0.2f * kStep}) {
     Pair on_floor(block(), Transform::translate(0, 0, gap), sheet(), kFloor);
-    EXPECT_EQ(on_floor.sink(), 2u);
+    EXPECT_EQ(on_floor.part(), 2u);
     for (std::size_t k = 0; k < 8; ++k) {
       const Vec3f was = block().positions[k], is = on_floor.corner(k);
       EXPECT_EQ(is.x, was.x);
@@ -45,20 +45,20 @@ TEST(TouchingFaces, GoBehindTheFloorThatTheyStandOn) {
       else
         EXPECT_NEAR(is.z, 1 + gap, 1e-6f);
     }
-    EXPECT_EQ(on_floor.sink(), 0u);  // they are there
+    EXPECT_EQ(on_floor.part(), 0u);  // they are there
   }
 }
 
 TEST(TouchingFaces, OthersStay) {
   Pair above(block(), Transform::translate(0, 0, 3 * kStep), sheet(), kFloor);
-  EXPECT_EQ(above.sink(), 0u);
+  EXPECT_EQ(above.part(), 0u);
   Pair tilted(block(), {}, sheet(), kFloor * Transform::rotate(1, 0, 0, 20));
-  EXPECT_EQ(tilted.sink(), 0u);
+  EXPECT_EQ(tilted.part(), 0u);
   Pair beside(block(), Transform::translate(20, 0, 0), sheet(), kFloor);
-  EXPECT_EQ(beside.sink(), 0u);
+  EXPECT_EQ(beside.part(), 0u);
   Pair of_wood(block(), {}, sheet(), kFloor);
-  of_wood.inside[0] = Inside::none;
-  EXPECT_EQ(of_wood.sink(), 0u);
+  of_wood.parts[0] = Part::opaque;
+  EXPECT_EQ(of_wood.part(), 0u);
 }
 
 TEST(TouchingFaces, AreThoseOfClosedMeshesHoweverTheyAreWound) {
@@ -66,22 +66,22 @@ TEST(TouchingFaces, AreThoseOfClosedMeshesHoweverTheyAreWound) {
   for (std::size_t t = 0; t < turned.triangle_count(); ++t)
     std::swap(turned.indices[3 * t + 1], turned.indices[3 * t + 2]);
   Pair inside_out(turned, {}, sheet(), kFloor);
-  EXPECT_EQ(inside_out.sink(), 2u);
+  EXPECT_EQ(inside_out.part(), 2u);
   EXPECT_LT(inside_out.corner(0).z, -1);
   // A sheet has no side to which it could go, nor has one of two faces.
   Pair open(sheet(), kFloor, sheet(), kFloor);
-  EXPECT_EQ(open.sink(), 0u);
+  EXPECT_EQ(open.part(), 0u);
   geometry::TriangleMesh twice = sheet();
   twice.indices.insert(twice.indices.end(), {0, 2, 1, 0, 3, 2});
   Pair flat(twice, kFloor, sheet(), kFloor);
-  EXPECT_EQ(flat.sink(), 0u);
+  EXPECT_EQ(flat.part(), 0u);
 }
 
 TEST(TouchingFaces, OfABasinGoBehindAllWalls) {
   geometry::TriangleMesh walls = block();  // but for the side above
   walls.indices.erase(walls.indices.begin() + 6, walls.indices.begin() + 12);
   Pair basin(block(), {}, walls, {});
-  EXPECT_EQ(basin.sink(), 10u);
+  EXPECT_EQ(basin.part(), 10u);
   for (std::size_t k = 0; k < 8; ++k) {
     EXPECT_GT(std::abs(basin.corner(k).x), 1 + 0.4f * kStep);
     EXPECT_GT(std::abs(basin.corner(k).y), 1 + 0.4f * kStep);
@@ -97,7 +97,7 @@ TEST(TouchingFaces, MeetBehindTheWallsAtSharpEdgesToo) {
     return mesh;
   };
   Pair filled(sheared(block()), {}, sheared(block()), {});
-  EXPECT_EQ(filled.sink(), 12u);
+  EXPECT_EQ(filled.part(), 12u);
   for (std::size_t k = 0; k < 8; ++k) {
     const Vec3f p = filled.corner(k);
     EXPECT_GT(std::abs(p.z), 1 + 0.4f * kStep);
@@ -109,7 +109,7 @@ TEST(TouchingFaces, MeetBehindTheWallsAtSharpEdgesToo) {
 TEST(TouchingFaces, OfATableGoIntoWhatStandsOnIt) {
   Pair table(block(), Transform::scale(1, 1, 0.1), block(),
              Transform::translate(0.5, -0.35, 0.2) * Transform::scale(0.05, 0.05, 0.1));
-  EXPECT_GE(table.sink(), 1u);
+  EXPECT_GE(table.part(), 1u);
   EXPECT_GT(table.corner(4).z, 0.1f + 0.2f * kStep);
 }
 
@@ -117,7 +117,7 @@ TEST(TouchingFaces, AreFoundWhereMeshesAreTurnedAndScaled) {
   const Transform placed = Transform::translate(3, 2, 1) * Transform::rotate(1, 2, 3, 40);
   Pair turned(block(), placed * Transform::scale(2, 0.5, 0.25), sheet(),
               placed * Transform::translate(0, 0, -0.25) * Transform::scale(4, 4, 1));
-  EXPECT_EQ(turned.sink(), 2u);
+  EXPECT_EQ(turned.part(), 2u);
   const Vec3f down = placed.vector(Vec3f{0, 0, -1});
   for (std::size_t k = 0; k < 4; ++k)
     EXPECT_GT(dot(turned.corner(k) - placed.point({0, 0, -0.25f}), down), 0.3f * kStep);
@@ -133,27 +133,27 @@ geometry::TriangleMesh vessel() {
 }
 
 TEST(TouchingFaces, OfWaterGoIntoTheGlassAroundIt) {
-  for (const Inside water : {Inside::clear, Inside::medium}) {
+  for (const Part water : {Part::clear, Part::medium}) {
     Pair filled(vessel(), {}, block(), Transform::scale(0.5, 0.5, 0.5));
-    filled.inside[1] = water;
-    EXPECT_EQ(filled.sink(), 12u);
+    filled.parts[1] = water;
+    EXPECT_EQ(filled.part(), 12u);
     for (std::size_t k = 0; k < 16; ++k) EXPECT_EQ(filled.meshes[0].positions[k], vessel().positions[k]);
     for (std::size_t k = 0; k < 8; ++k) {
       const Vec3f p = filled.placements[1].to_world.point(filled.meshes[1].positions[k]);
       EXPECT_NEAR(std::abs(p.x), 0.5f + 1.5f * kStep, 0.05f * kStep);
       EXPECT_NEAR(std::abs(p.z), 0.5f + 1.5f * kStep, 0.05f * kStep);
     }
-    filled.inside[0] = Inside::medium;
-    EXPECT_EQ(filled.sink(), 0u);
+    filled.parts[0] = Part::medium;
+    EXPECT_EQ(filled.part(), 0u);
   }
   // Whichever comes first.
   Pair first(block(), Transform::scale(0.5, 0.5, 0.5), vessel(), {});
-  first.inside[1] = Inside::clear;
-  EXPECT_EQ(first.sink(), 12u);
+  first.parts[1] = Part::clear;
+  EXPECT_EQ(first.part(), 12u);
   EXPECT_EQ(first.meshes[1].positions[8].x, vessel().positions[8].x);
   Pair media(vessel(), {}, block(), Transform::scale(0.5, 0.5, 0.5));
-  media.inside = {Inside::medium, Inside::medium};
-  EXPECT_EQ(media.sink(), 0u);
+  media.parts = {Part::medium, Part::medium};
+  EXPECT_EQ(media.part(), 0u);
 }
 
 TEST(TouchingFaces, OfLampsComeOutOfTheCeiling) {
@@ -161,14 +161,15 @@ TEST(TouchingFaces, OfLampsComeOutOfTheCeiling) {
   for (const bool box : {false, true}) {
     Pair lamp(box ? block() : sheet(), {}, sheet(),
               Transform::translate(0, 0, box ? 1 : 0) * Transform::scale(4, 3, 1));
-    lamp.inside[0] = Inside::none;
-    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {false, false}), 0u);
-    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {true, false}), 2u);
+    lamp.parts[0] = Part::opaque;
+    EXPECT_EQ(lamp.part(), 0u);
+    lamp.parts = {Part::lamp, Part::lamp};
+    EXPECT_EQ(lamp.part(), 0u);
+    lamp.parts[1] = Part::opaque;
+    EXPECT_EQ(lamp.part(), 2u);
     EXPECT_GT(lamp.corner(box ? 7 : 2).z, (box ? 1 : 0) + 0.4f * kStep);
     EXPECT_EQ(lamp.corner(0).z, box ? -1.0f : lamp.corner(2).z);
-    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {true, false}), 0u);
-    // Lamps beside lamps stay, and so do those that are no lamps.
-    EXPECT_EQ(lift_touching_lamps(lamp.meshes, lamp.placements, lamp.inside, {true, true}), 0u);
+    EXPECT_EQ(lamp.part(), 0u);
   }
 }
 
