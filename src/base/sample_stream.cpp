@@ -12,6 +12,15 @@ std::uint32_t reversed(std::uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
+// Each half of a number by itself.
+std::uint64_t both_reversed(std::uint64_t x) {
+  x = __builtin_bswap64(x);
+  x = ((x & 0x0f0f0f0f0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0f0f0f0f0fu);
+  x = ((x & 0x3333333333333333u) << 2) | ((x >> 2) & 0x3333333333333333u);
+  x = ((x & 0x5555555555555555u) << 1) | ((x >> 1) & 0x5555555555555555u);
+  return x << 32 | x >> 32;
+}
+
 // A permutation of 32-bit numbers in which a bit depends on itself and lower bits only, hence Owen's
 // scrambling of a number whose first digit is its lowest bit. Sums, odd factors, and x ^ (x · even) all are
 // of that kind. The sum makes each result uniform over the keys.
@@ -37,13 +46,20 @@ std::uint32_t pascal(std::uint32_t i) {
 
 }  // namespace
 
+SampleStream::SampleStream(std::uint64_t seed, Stage stage, std::uint64_t pixel, std::uint64_t sample)
+    : key_(hash_ids(seed, stage, pixel, sample & 1)),
+      reversed_index_(reversed(static_cast<std::uint32_t>(sample >> 1))),
+      rng_(seed, stage, ~key_, sample) {}
+
 SampleStream::Bits SampleStream::next_pair() {
   const std::uint64_t key = mix64(key_ + pairs_++);
   // The order of the points is shuffled within all aligned blocks of 2^k, so that every pair of dimensions
   // stays even, and two pairs know nothing of each other.
-  const std::uint32_t i = reversed(scramble_from_lowest(reversed(index_), key));
-  return {reversed(scramble_from_lowest(i, mix64(key ^ 1))),
-          reversed(scramble_from_lowest(pascal(i), mix64(key ^ 2)))};
+  const std::uint32_t i = reversed(scramble_from_lowest(reversed_index_, key));
+  const std::uint64_t x = scramble_from_lowest(i, mix64(key ^ 1)),
+                      y = scramble_from_lowest(pascal(i), mix64(key ^ 2));
+  const std::uint64_t both = both_reversed(x << 32 | y);
+  return {static_cast<std::uint32_t>(both >> 32), static_cast<std::uint32_t>(both)};
 }
 
 }  // namespace lumirank

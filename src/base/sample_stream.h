@@ -14,10 +14,7 @@ class SampleStream {
  public:
   // Samples of even and of odd number belong to two independent sets, so that halves of the samples may be
   // compared. Any one sample alone is as random as from Rng: means are unbiased for every number of samples.
-  SampleStream(std::uint64_t seed, Stage stage, std::uint64_t pixel, std::uint64_t sample)
-      : key_(hash_ids(seed, stage, pixel, sample & 1)),
-        index_(static_cast<std::uint32_t>(sample >> 1)),
-        rng_(seed, stage, ~key_, sample) {}
+  SampleStream(std::uint64_t seed, Stage stage, std::uint64_t pixel, std::uint64_t sample);
 
   // The next pair of dimensions. What a path needs after its first vertices is drawn independently.
   Vec2f next_2d() {
@@ -49,7 +46,7 @@ class SampleStream {
   Bits next_pair();
 
   std::uint64_t key_;
-  std::uint32_t index_, pairs_ = 0;
+  std::uint32_t reversed_index_, pairs_ = 0;
   Rng rng_;
 };
 

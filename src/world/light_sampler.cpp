@@ -25,6 +25,16 @@ LightBound bound_of(const emitters::AreaEmitter::Triangle& t, float intensity) {
   return b;
 }
 
+// Seen from everywhere as its disc.
+LightBound bound_of(const emitters::RoundLamp& lamp, float intensity) {
+  LightBound b;
+  const Vec3f extent{lamp.radius, lamp.radius, lamp.radius};
+  b.bounds.extend(lamp.center - extent), b.bounds.extend(lamp.center + extent);
+  b.spread = kPi;
+  b.intensity = intensity / 4;
+  return b;
+}
+
 LightBound bound_of(const emitters::PointEmitter& e) {
   LightBound b;
   b.bounds.extend(e.position);
@@ -67,7 +77,7 @@ emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Ve
   return {position, dot(n, wo) < 0 ? -n : n, both_sides};
 }
 
-LightSampler::LightSampler(const World& world) : world_(world) {
+LightSampler::LightSampler(const World& world) : world_(world), round_(world.emitters().size()) {
   const auto& all = world.emitters();
   std::vector<LightBound> bounds;
   std::vector<float> far_weights;
@@ -79,7 +89,12 @@ LightSampler::LightSampler(const World& world) : world_(world) {
     const float power = mean(emitters::power(all[e], radius));
     if (const auto* area = std::get_if<emitters::AreaEmitter>(&all[e].kind)) {
       const double total = area->by_power.total();
-      for (std::size_t k = 0; k < area->triangles.size(); ++k) {
+      round_[e] = emitters::round_lamp(*area);
+      if (round_[e]) {
+        leaves_.push_back({id, kRound});
+        bounds.push_back(bound_of(*round_[e], static_cast<float>(total)));
+      }
+      for (std::size_t k = 0; !round_[e] && k < area->triangles.size(); ++k) {
         leaves_.push_back({id, static_cast<std::uint32_t>(k)});
         bounds.push_back(bound_of(area->triangles[k], static_cast<float>(area->by_power.pmf(k) * total)));
       }
@@ -114,20 +129,103 @@ float LightSampler::near_share(const emitters::LitPoint& at) const {
   return tree_.reaches(at) ? near_share_ : 0.0f;
 }
 
+LightSampler::OnLamp LightSampler::draw_by_power(const emitters::AreaEmitter& area, Vec2f u) {
+  const auto chosen = area.by_power.sample(u.x);
+  return {static_cast<std::uint32_t>(chosen.index), warp_triangle({chosen.remapped, u.y})};
+}
+
+const emitters::AreaEmitter* LightSampler::area_of(int emitter) const {
+  return std::get_if<emitters::AreaEmitter>(&world_.emitters()[static_cast<std::size_t>(emitter)].kind);
+}
+
+const emitters::AreaEmitter* LightSampler::area_hit(const SurfaceHit& hit) const {
+  const auto* area = hit.emitter < 0 ? nullptr : area_of(hit.emitter);
+  // Triangle t of an area emitter is triangle t of its mesh.
+  return area && hit.hit.triangle < area->triangles.size() ? area : nullptr;
+}
+
+std::uint32_t LightSampler::leaf_of(int emitter, std::uint32_t triangle) const {
+  const auto e = static_cast<std::size_t>(emitter);
+  return first_leaf_[e] + (round_[e] ? 0 : triangle);
+}
+
 LightSampler::Sample LightSampler::sample_leaf(std::uint32_t leaf, Vec3f at, Vec2f u) const {
   Sample s;
   const auto [emitter, triangle] = leaves_[leaf];
   s.emitter = emitter;
-  const auto& kind = world_.emitters()[static_cast<std::size_t>(emitter)].kind;
-  if (const auto* area = std::get_if<emitters::AreaEmitter>(&kind)) {
-    s.direct = emitters::sample_direct_triangle(area->triangles[triangle], at, u);
-    s.direct.triangle = triangle;
-    s.direct.delta = !area->seen;
-    if (s.direct.pdf > 0) s.direct.radiance = world_.emitted(emitter, triangle, s.direct.barycentric);
-  } else {
+  const auto* area = area_of(emitter);
+  if (!area)
     s.direct = world_.sample_direct(emitter, at, 0, u);
+  else if (triangle != kRound)
+    s.direct = light_from(emitter, *area, {triangle, warp_triangle(u)}, at);
+  else if (const auto cone = round_[static_cast<std::size_t>(emitter)]->cone(at))
+    s.direct = light_in(emitter, *cone, at, u);
+  else
+    s.direct = light_from(emitter, *area, draw_by_power(*area, u), at);
+  return s;
+}
+
+// What the direction first meets of the lamp, whatever stands before that, which is asked for afterwards. Not
+// by way of the triangle: there are too many for the cache.
+emitters::DirectSample LightSampler::light_in(int emitter, const emitters::RoundLamp::Cone& cone, Vec3f at,
+                                              Vec2f u) const {
+  constexpr int kMostSurfaces = 64;  // within the ball, but for the lamp; more than one is rare
+  emitters::DirectSample s;
+  s.direction = cone.sample(u);
+  const Vec2f span = round_[static_cast<std::size_t>(emitter)]->span(at, s.direction);
+  geometry::Ray ray{at, s.direction, span.x, span.y};
+  for (int k = 0; k < kMostSurfaces && ray.t_min <= ray.t_max; ++k) {
+    const auto hit = world_.rays().intersect(ray);
+    if (!hit) break;
+    if (world_.rays().placements()[hit->instance].emitter == static_cast<std::uint32_t>(emitter)) {
+      s.distance = hit->t, s.triangle = hit->triangle, s.barycentric = hit->barycentric;
+      s.pdf = cone.pdf();
+      s.radiance = world_.emitted(emitter, s.triangle, s.barycentric);
+      break;
+    }
+    ray.t_min = std::nextafter(hit->t, kInfinity);
   }
   return s;
+}
+
+emitters::DirectSample LightSampler::light_from(int emitter, const emitters::AreaEmitter& area,
+                                                const OnLamp& place, Vec3f at) const {
+  const auto& triangle = area.triangles[place.triangle];
+  const Vec3f position = triangle.p0 + triangle.e1 * place.barycentric.x + triangle.e2 * place.barycentric.y;
+  emitters::DirectSample s;
+  s.triangle = place.triangle, s.barycentric = place.barycentric;
+  s.normal = triangle.normal;
+  s.delta = !area.seen;
+  s.distance = length(position - at);
+  if (!(s.distance > 0)) return s;
+  s.direction = (position - at) / s.distance;
+  s.pdf = pdf_for(emitter, area, place.triangle, at, s.direction, s.distance);
+  if (s.pdf > 0) s.radiance = world_.emitted(emitter, place.triangle, place.barycentric);
+  return s;
+}
+
+float LightSampler::pdf_for(int emitter, const emitters::AreaEmitter& area, std::uint32_t triangle, Vec3f at,
+                            Vec3f direction, float distance) const {
+  const float pdf = emitters::pdf_direct_triangle(area.triangles[triangle], direction, distance);
+  const auto& round = round_[static_cast<std::size_t>(emitter)];
+  if (!round) return pdf;
+  const auto cone = round->cone(at);
+  if (!cone) return pdf * area.by_power.pmf(triangle);
+  return pdf > 0 ? cone->pdf() : 0.0f;
+}
+
+float LightSampler::pdf_for_another(int emitter, const emitters::AreaEmitter& area, std::uint32_t triangle,
+                                    Vec3f place, Vec3f drawn_for, Vec3f direction, float distance) const {
+  const auto& t = area.triangles[triangle];
+  const float pdf = emitters::pdf_direct_triangle(t, direction, distance);
+  const auto& round = round_[static_cast<std::size_t>(emitter)];
+  if (!round) return pdf;
+  const auto cone = round->cone(drawn_for);
+  if (!cone) return pdf * area.by_power.pmf(triangle);
+  // By way of the density per area, which is that of directions from where it was drawn for.
+  const Vec3f there = place - drawn_for;
+  const float distance2 = length_squared(there), cosine = -dot(there, t.normal) / std::sqrt(distance2);
+  return cosine > 0 ? pdf * t.area * cone->pdf() * cosine / distance2 : 0.0f;
 }
 
 LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u_light, Vec2f u) const {
@@ -149,50 +247,71 @@ LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u
 
 float LightSampler::pdf_hit(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction,
                             float distance) const {
-  const float pdf = pdf_place(at, hit, direction, distance);
-  return pdf > 0 ? pdf * near_share(at) : 0.0f;
+  const auto* area = area_hit(hit);
+  if (!area) return 0;
+  const float pdf = pdf_for(hit.emitter, *area, hit.hit.triangle, at.position, direction, distance);
+  return pdf > 0 ? pdf * near_share(at) * tree_.pmf(at, leaf_of(hit.emitter, hit.hit.triangle)) : 0.0f;
 }
 
 LightSampler::Place LightSampler::sample_place(const emitters::LitPoint& at, double u_light, Vec2f u) const {
   const auto pick = tree_.sample(at, u_light);
   if (!(pick.pmf > 0)) return {};
-  const Leaf leaf = leaves_[pick.light];
-  Place place{.position = {}, .choice = pick.pmf, .leaf = pick.light, .u = u};
+  const Leaf& leaf = leaves_[pick.light];
+  Place place{.position = {}, .choice = pick.pmf, .leaf = pick.light, .triangle = 0, .barycentric = {}};
+  if (const auto* area = area_of(leaf.emitter)) {
+    OnLamp on_lamp{leaf.triangle, warp_triangle(u)};
+    if (leaf.triangle == kRound) {
+      if (const auto cone = round_[static_cast<std::size_t>(leaf.emitter)]->cone(at.position)) {
+        const auto s = light_in(leaf.emitter, *cone, at.position, u);
+        if (!(s.pdf > 0)) return {};
+        on_lamp = {s.triangle, s.barycentric};
+      } else {
+        on_lamp = draw_by_power(*area, u);
+      }
+    }
+    place.triangle = on_lamp.triangle, place.barycentric = on_lamp.barycentric;
+    const auto& triangle = area->triangles[place.triangle];
+    place.position = triangle.p0 + triangle.e1 * place.barycentric.x + triangle.e2 * place.barycentric.y;
+    return place;
+  }
   std::visit(
       [&](const auto& emitter) {
-        if constexpr (requires { emitter.triangles; }) {
-          const auto& triangle = emitter.triangles[leaf.triangle];
-          const Vec2f b = warp_triangle(u);  // as sample_direct_triangle() does
-          place.position = triangle.p0 + triangle.e1 * b.x + triangle.e2 * b.y;
-        } else if constexpr (requires { emitter.position; }) {
-          place.position = emitter.position;
-        }
+        if constexpr (requires { emitter.position; }) place.position = emitter.position;
       },
       world_.emitters()[static_cast<std::size_t>(leaf.emitter)].kind);
   return place;
 }
 
 LightSampler::Sample LightSampler::from_place(const emitters::LitPoint& at, const Place& place) const {
-  Sample s = sample_leaf(place.leaf, at.position, place.u);
+  Sample s;
+  s.emitter = leaves_[place.leaf].emitter;
+  if (const auto* area = area_of(s.emitter))
+    s.direct = light_from(s.emitter, *area, {place.triangle, place.barycentric}, at.position);
+  else
+    s.direct = world_.sample_direct(s.emitter, at.position, 0, {});
   s.pdf = s.direct.pdf * near_share(at) * tree_.pmf(at, place.leaf);
   return s;
 }
 
 float LightSampler::pdf_place(const emitters::LitPoint& at, const Sample& found) const {
-  if (!std::isfinite(found.direct.distance)) return 0;
-  return found.direct.pdf *
-         tree_.pmf(at, first_leaf_[static_cast<std::size_t>(found.emitter)] + found.direct.triangle);
+  const emitters::DirectSample& d = found.direct;
+  if (!std::isfinite(d.distance)) return 0;
+  float pdf = d.pdf;
+  if (const auto* area = area_of(found.emitter)) {
+    const auto& t = area->triangles[d.triangle];
+    const Vec3f place = t.p0 + t.e1 * d.barycentric.x + t.e2 * d.barycentric.y;
+    pdf = pdf_for_another(found.emitter, *area, d.triangle, place, at.position, d.direction, d.distance);
+  }
+  return pdf * tree_.pmf(at, leaf_of(found.emitter, d.triangle));
 }
 
 float LightSampler::pdf_place(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction,
                               float distance) const {
-  if (hit.emitter < 0) return 0;
-  const auto e = static_cast<std::size_t>(hit.emitter);
-  const auto* area = std::get_if<emitters::AreaEmitter>(&world_.emitters()[e].kind);
-  // Triangle t of an area emitter is triangle t of its mesh.
-  if (!area || hit.hit.triangle >= area->triangles.size()) return 0;
-  const float pdf = emitters::pdf_direct_triangle(area->triangles[hit.hit.triangle], direction, distance);
-  return pdf > 0 ? pdf * tree_.pmf(at, first_leaf_[e] + hit.hit.triangle) : 0.0f;
+  const auto* area = area_hit(hit);
+  if (!area) return 0;
+  const float pdf = pdf_for_another(hit.emitter, *area, hit.hit.triangle, hit.point.position, at.position,
+                                    direction, distance);
+  return pdf > 0 ? pdf * tree_.pmf(at, leaf_of(hit.emitter, hit.hit.triangle)) : 0.0f;
 }
 
 float LightSampler::pdf_background(const emitters::LitPoint& at, Vec3f direction) const {

@@ -2,11 +2,14 @@
 // and the directly traced receivers; the matrix does not use it.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/distribution.h"
 #include "emitters/emitter.h"
 #include "emitters/light_tree.h"
+#include "emitters/round_lamp.h"
 #include "scatter/closure.h"
 #include "world/world.h"
 
@@ -16,8 +19,8 @@ namespace lumirank::world {
 // light matters, or both.
 emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Vec3f wo);
 
-// Triangles of area lights, points and spots are leaves of one light tree; what is infinitely far is chosen
-// by its irradiance. Neither group gets less than a quarter where both shine.
+// Triangles of area lights, round lamps, points and spots are leaves of one light tree; what is infinitely
+// far is chosen by its irradiance. Neither group gets less than a quarter where both shine.
 class LightSampler {
  public:
   explicit LightSampler(const World& world);
@@ -55,8 +58,8 @@ class LightSampler {
   struct Place {
     Vec3f position;
     float choice = 0;  // probability of its light; 0: nothing found
-    std::uint32_t leaf = 0;
-    Vec2f u;
+    std::uint32_t leaf = 0, triangle = 0;
+    Vec2f barycentric;
   };
   // The part of all samples that near lights are worth; 0 without any.
   float place_share() const { return tree_.empty() ? 0.0f : near_share_; }
@@ -70,16 +73,38 @@ class LightSampler {
   float pdf_place(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction, float distance) const;
 
  private:
+  struct Leaf {
+    int emitter;
+    std::uint32_t triangle;  // of area emitters; kRound: all of a round lamp's
+  };
+  static constexpr std::uint32_t kRound = 0xffffffffu;
+  struct OnLamp {  // a place on an area emitter
+    std::uint32_t triangle;
+    Vec2f barycentric;
+  };
+  const emitters::AreaEmitter* area_of(int emitter) const;  // nullptr: of another kind
+  const emitters::AreaEmitter* area_hit(const SurfaceHit& hit) const;
+  std::uint32_t leaf_of(int emitter, std::uint32_t triangle) const;
+  static OnLamp draw_by_power(const emitters::AreaEmitter& area, Vec2f u);
+  // Density per solid angle with which a place on an emitter, at `distance` along `direction` from a point,
+  // is drawn for that point once its leaf is; and the same of a place that was drawn for another point.
+  float pdf_for(int emitter, const emitters::AreaEmitter& area, std::uint32_t triangle, Vec3f at,
+                Vec3f direction, float distance) const;
+  float pdf_for_another(int emitter, const emitters::AreaEmitter& area, std::uint32_t triangle, Vec3f place,
+                        Vec3f drawn_for, Vec3f direction, float distance) const;
+  // What a round lamp sends to a point within a cone.
+  emitters::DirectSample light_in(int emitter, const emitters::RoundLamp::Cone& cone, Vec3f at,
+                                  Vec2f u) const;
+  // What a place on an emitter sends to a point, with the pdf of its being drawn for that point.
+  emitters::DirectSample light_from(int emitter, const emitters::AreaEmitter& area, const OnLamp& place,
+                                    Vec3f at) const;
   Sample sample_leaf(std::uint32_t leaf, Vec3f at, Vec2f u) const;
   float near_share(const emitters::LitPoint& at) const;
 
   const World& world_;
-  struct Leaf {
-    int emitter;
-    std::uint32_t triangle;  // of area emitters
-  };
   std::vector<Leaf> leaves_;
-  std::vector<std::uint32_t> first_leaf_;  // per emitter; its triangles follow each other
+  std::vector<std::uint32_t> first_leaf_;                  // per emitter; its triangles follow each other
+  std::vector<std::optional<emitters::RoundLamp>> round_;  // per emitter
   emitters::LightTree tree_;
   std::vector<int> far_;
   const emitters::EnvironmentEmitter* map_ = nullptr;  // of more than one texel
