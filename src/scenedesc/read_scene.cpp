@@ -52,7 +52,7 @@ SceneDesc read_scene(const std::string& filename, const ReadOptions& options) {
     if (std::error_code error; !std::filesystem::exists(filename, error))
       throw InputError("file not found: " + filename, "check the name");
     throw InputError(SourceLocation{filename, 0}, "no reader for files that end in \"" + extension + "\"",
-                     "Mitsuba (.xml), pbrt-v4 (.pbrt) and glTF (.gltf, .glb) scenes can be read");
+                     "Mitsuba (.xml), pbrt (.pbrt) and glTF (.gltf, .glb) scenes can be read");
   }
   if (!gltf && !options.clip.empty())
     throw InputError(SourceLocation{filename, 0},

@@ -145,7 +145,7 @@ const BadFile kBadPbrt[] = {
     {"p_wide_hole", 3, "\"innerradius\" of Shape \"disk\" is not between 0 and the radius"},
     {"p_window", 2, "\"screenwindow\" of Camera \"perspective\" is no window"},
     {"p_word_for_number", 3, "\"big\" is not a number"},
-    {"p_world_end", 3, "WorldEnd is not a directive of pbrt-v4"},
+    {"p_world_end", 3, "the material \"diffuse\" of pbrt-v3 is not known"},
     {"p_world_in_block", 2, "WorldBegin in a block of AttributeBegin"},
     {"p_world_twice", 3, "WorldBegin after WorldBegin"},
     {"p_wrong_type", 3, "\"radius\" of Shape \"sphere\" is declared as string, and a float is needed"},

@@ -4,6 +4,7 @@
 
 #include "scenedesc/data/named_spectra.h"
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/pbrt/version3.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -43,7 +44,9 @@ Rgb white_balance_of(float kelvin) {
 
 }  // namespace
 
-void Reader::read_camera(Params& p, const std::string& type) {
+void Reader::read_camera(Params& p, const std::string& given) {
+  std::string type = given;
+  if (version3_) upgrade_camera(p, type);
   if (type != "perspective" && type != "orthographic" && type != "realistic" && type != "spherical")
     throw InputError(p.where(), "the camera " + in_quotes(type) + " is not known",
                      "perspective, orthographic, realistic and spherical are");
@@ -95,7 +98,9 @@ void Reader::read_lens(Params& p) {
   }
 }
 
-void Reader::read_film(Params& p, const std::string& type) {
+void Reader::read_film(Params& p, const std::string& given) {
+  std::string type = given;
+  if (version3_) upgrade_film(p, type);
   if (type != "rgb" && type != "gbuffer" && type != "spectral")
     throw InputError(p.where(), "the film " + in_quotes(type) + " is not known",
                      "rgb, gbuffer and spectral are");
@@ -122,6 +127,7 @@ void Reader::read_film(Params& p, const std::string& type) {
     crop(p, film_, "cropwindow", bounds);
   }
   iso_ = p.positive("iso", 100);
+  film_scale_ = version3_ ? p.positive("scale", 1) : 1;
   const std::string sensor = p.text("sensor", "cie1931");
   if (sensor != "cie1931")
     warn(p.where_of("sensor"), "the colors of the sensor \"" + sensor + "\"", "the CIE 1931 observer");
@@ -141,6 +147,7 @@ void Reader::read_film(Params& p, const std::string& type) {
 }
 
 void Reader::read_filter(Params& p, const std::string& type) {
+  if (version3_) upgrade_filter(p, type);
   FilterDesc out;
   const auto radius = [&](float fallback) {
     const float x = p.positive("xradius", fallback), y = p.positive("yradius", fallback);
@@ -176,8 +183,9 @@ void Reader::read_filter(Params& p, const std::string& type) {
 }
 
 void Reader::read_sampler(Params& p, const std::string& type) {
-  constexpr std::string_view kSamplers[] = {"halton", "independent", "paddedsobol", "pmj02bn",
-                                            "sobol",  "stratified",  "zsobol"};
+  constexpr std::string_view kSamplers[] = {"halton",     "independent", "paddedsobol",   "pmj02bn",
+                                            "sobol",      "stratified",  "zsobol",        "02sequence",
+                                            "maxmindist", "random",      "lowdiscrepancy"};
   if (std::find(std::begin(kSamplers), std::end(kSamplers), type) == std::end(kSamplers))
     warn(p.where(), "the sampler " + in_quotes(type), "its number of samples");
   const int x = p.integer("xsamples", 4), y = p.integer("ysamples", 4);
@@ -205,10 +213,10 @@ void Reader::finish_camera() {
   if (!has_camera_) camera_.where = {&main_file_, 1};
   if (!has_integrator_) scene_.integrator = "volpath", scene_.max_depth = 6;  // pbrt's defaults
   if (film_.filter.radius == 0) {
-    film_.filter.kind = FilterKind::gaussian;
-    film_.filter.radius = 1.5f;
+    film_.filter.kind = version3_ ? FilterKind::box : FilterKind::gaussian;
+    film_.filter.radius = version3_ ? 0.5f : 1.5f;
   }
-  imaging_ratio_ = camera_.exposure_time * iso_ / 100;
+  imaging_ratio_ = version3_ ? film_scale_ : camera_.exposure_time * iso_ / 100;
   // Half the width of what the film sees, in what is 1 before the lens.
   std::optional<double> half_width;
   if (camera_.lens) {
@@ -230,9 +238,11 @@ void Reader::finish_camera() {
     // The film is at the camera's place.
     const double pupil = image + lens.rear_principal - lens.entrance_pupil;
     camera_.to_world = camera_.to_world * Transform::translate(0, 0, pupil * kMillimeter);
-    // The film gets the light of the solid angle of the exit pupil, as on the axis.
+    // But for pbrt-v3, which divides by it, the film gets the light of the solid angle of the exit pupil, as
+    // on the axis.
     const double behind = image + lens.rear_principal - lens.exit_pupil;
-    imaging_ratio_ *= static_cast<float>(M_PI * lens.exit_radius * lens.exit_radius / (behind * behind));
+    if (!version3_)
+      imaging_ratio_ *= static_cast<float>(M_PI * lens.exit_radius * lens.exit_radius / (behind * behind));
   }
   scene_.lumens_per_unit = 1 / imaging_ratio_;  // pbrt's lights are of 1 nit, 1 lux or 1 candela
 

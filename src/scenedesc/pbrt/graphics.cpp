@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/pbrt/version3.h"
 #include "scenedesc/schema/keyed_transform.h"
 #include "scenedesc/schema/warnings.h"
 
@@ -138,8 +139,11 @@ bool Reader::block_directive(Tokens& tokens, const Token& word) {
     coordinate_systems_["world"] = {};
     finish_camera();
   } else if (name == "WorldEnd") {
-    throw InputError(where, "WorldEnd is not a directive of pbrt-v4",
-                     "if this is a scene of pbrt-v3, let pbrt --upgrade convert it");
+    if (!version3_)
+      throw InputError(where, "WorldEnd is not a directive of pbrt-v4",
+                       "a scene of pbrt-v3 ends with it: remove what comes after it");
+    require_world(word, where, true);
+    ended_ = true;  // what may come after it is another scene
   } else {
     return false;
   }
@@ -157,6 +161,7 @@ bool Reader::state_directive(Tokens& tokens, const Token& word) {
     const std::string texture = take_text(tokens, word, "name"), type = take_text(tokens, word, "type");
     const std::string kind = take_text(tokens, word, "class");
     Params p = take_params(tokens, word, kind, "texture");
+    if (version3_) upgrade_texture(p, kind);
     read_texture(p, texture, type, kind);
     p.finish();
   } else if (name == "Material") {

@@ -55,6 +55,22 @@ MeshData part_of_cylinder(float radius, float z_min, float z_max, float phi_max)
   return mesh;
 }
 
+MeshData turned_about_z(const std::function<Vec3f(float)>& line, int rows, float phi_max) {
+  MeshData mesh;
+  append_grid(mesh, segments(phi_max), rows, [&](float u, float v) {
+    const float c = std::cos(u * phi_max), s = std::sin(u * phi_max);
+    const auto turned = [&](Vec3f p) { return Vec3f{p.x * c - p.y * s, p.x * s + p.y * c, p.z}; };
+    // Along the line by a difference that stays on it; across it, around z. At the axis, as beside it.
+    constexpr float kStep = 1e-3f;
+    const float low = std::max(0.0f, v - kStep), high = std::min(1.0f, v + kStep);
+    const Vec3f along = turned(line(high) - line(low));
+    const Vec3f beside = turned(line(v < 0.5f ? high : low));
+    const Vec3f n = cross(Vec3f{-beside.y, beside.x, 0}, along);
+    return GridPoint{turned(line(v)), length(n) > 0 ? normalize(n) : Vec3f{0, 0, 1}, {u, v}};
+  });
+  return mesh;
+}
+
 MeshData part_of_disk(float height, float radius, float inner_radius, float phi_max) {
   MeshData mesh;
   append_grid(mesh, segments(phi_max), inner_radius > 0 ? 1 : 8, [&](float u, float v) {

@@ -21,5 +21,7 @@ void append_grid(MeshData& mesh, int columns, int rows, const std::function<Grid
 MeshData part_of_sphere(float radius, float z_min, float z_max, float phi_max);  // v runs from z_min to z_max
 MeshData part_of_cylinder(float radius, float z_min, float z_max, float phi_max);
 MeshData part_of_disk(float height, float radius, float inner_radius, float phi_max);  // v = 0 at the rim
+// What a line of points, v from 0 to 1, passes over as it turns about z.
+MeshData turned_about_z(const std::function<Vec3f(float)>& line, int rows, float phi_max);
 
 }  // namespace lumirank::scenedesc::pbrt

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/pbrt/version3.h"
 #include "scenedesc/schema/warnings.h"
 
 namespace lumirank::scenedesc::pbrt {
@@ -10,6 +11,10 @@ namespace {
 
 // "scale", and what the film makes of radiance.
 Rgb scale_of(Params& p) {
+  if (p.reader().version3()) {  // a color
+    const auto given = constant_color(p, "scale", Intent::unbounded);
+    return p.reader().film_response() * given.value_or(Rgb(1));
+  }
   const float scale = p.number("scale", 1);
   if (!(scale >= 0)) p.fail("scale", "is negative", "give 0 or more");
   return p.reader().film_response() * scale;
@@ -87,6 +92,14 @@ DirectionalLightDesc distant(Params& p, const Transform& to_world) {
   return out;
 }
 
+// Maps of latitudes and longitudes have their pole at +y and longitude 0 at -z, those of pbrt-v3 at +z and
+// +x.
+Transform from_pole_y() {
+  Transform out;
+  out.m = {0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+  return out;
+}
+
 decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform& to_world) {
   const Rgb scale = scale_of(p);
   const float illuminance = p.number("illuminance", -1);
@@ -98,24 +111,27 @@ decltype(EmitterDesc::kind) infinite(Reader& reader, Params& p, const Transform&
     // A uniform sky of radiance L has the illuminance πL.
     return ConstantEnvironmentDesc{spectrum(p, "L") * (scale * (illuminance > 0 ? illuminance / kPi : 1))};
   }
-  if (p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
+  const bool old = reader.version3();
+  if (!old && p.has("L")) p.fail("L", "is given beside \"filename\"", "keep one of them");
   EnvironmentMapDesc out;
   const auto file =
       reader.file(p.text("filename", ""), p.where_of("filename"), "environment map", "a gray sky");
   out.filename = file.name;
-  out.scale = p.reader().imaging_ratio() * p.number("scale", 1);
-  out.tint = p.reader().white_balance();
+  out.scale = old ? 1 : reader.imaging_ratio() * p.number("scale", 1);
+  out.tint = old ? scale * spectrum(p, "L") : reader.white_balance();
   if (file.missing)
     return ConstantEnvironmentDesc{scale * (illuminance > 0 ? illuminance / kPi : kMissingSky)};
   if (illuminance > 0) out.illuminance = illuminance;
-  out.projection = EnvironmentProjection::equal_area;
-  out.to_world = to_world;
+  out.projection = old ? EnvironmentProjection::latitude_longitude : EnvironmentProjection::equal_area;
+  out.to_world = old ? to_world * from_pole_y() : to_world;
   return out;
 }
 
 }  // namespace
 
-void Reader::read_light(Params& p, const std::string& type) {
+void Reader::read_light(Params& p, const std::string& given) {
+  const std::string type = version3_ && given == "exinfinite" ? "infinite" : given;
+  if (version3_) upgrade_light(p, type);
   if (in_object_) {
     warn_once(p.where(), "light sources in objects", "");
     p.ignore_all();
@@ -145,7 +161,9 @@ void Reader::read_light(Params& p, const std::string& type) {
   scene_.emitters.push_back(std::move(out));
 }
 
-void Reader::read_area_light(Params& p, const std::string& type) {
+void Reader::read_area_light(Params& p, const std::string& given) {
+  std::string type = given;
+  if (version3_) upgrade_area_light(p, type);
   if (type != "diffuse")
     throw InputError(p.where(), "the area light " + in_quotes(type) + " is not known", "diffuse is");
   auto light = std::make_shared<AreaLight>();

@@ -3,15 +3,13 @@
 #include <cmath>
 
 #include "scenedesc/data/media.h"
+#include "scenedesc/pbrt/material_maker.h"
 #include "scenedesc/pbrt/media_parts.h"
-#include "scenedesc/pbrt/reader.h"
 #include "scenedesc/schema/hair.h"
 
 namespace lumirank::scenedesc::pbrt {
 
 namespace {
-
-using MaterialKind = decltype(BsdfDesc::kind);
 
 // Trowbridge-Reitz widths: α = √roughness unless "remaproughness" is false (TrowbridgeReitzDistribution of
 // pbrt-v4); below 10⁻³ pbrt takes the surface for smooth.
@@ -57,193 +55,177 @@ void ignore_layer(Reader& reader, Params& p) {
 
 }  // namespace
 
-class MaterialMaker {
- public:
-  MaterialMaker(Reader& reader, Params& p, const std::string& id)
-      : reader_(reader), p_(p), id_(id), remap_(p.flag("remaproughness", true)) {}
+int MaterialMaker::make(const std::string& type) {
+  if (type == "diffuse") return two_sided(DiffuseDesc{color("reflectance", 0.5f)});
+  if (type == "coateddiffuse") return coated_diffuse();
+  if (type == "conductor") return two_sided(conductor("", {}));
+  if (type == "coatedconductor") return coated_conductor();
+  if (type == "dielectric") return dielectric();
+  if (type == "thindielectric") return detailed(add(ThinDielectricDesc{dielectric_eta(p_, "eta", 1.5f)}));
+  if (type == "diffusetransmission") return diffuse_transmission();
+  if (type == "mix") return mix();
+  if (type == "interface" || type == "none" || type.empty()) return add(NullBsdfDesc{});
+  if (type == "hair") return hair();
+  if (type == "subsurface") return subsurface();
+  if (type == "measured") {
+    const auto found =
+        reader_.file(p_.required_text("filename"), p_.where_of("filename"), "BRDF file", "diffuse of 0.5");
+    MeasuredDesc measured;
+    measured.file.name = found.name, measured.file.missing = found.missing;
+    return two_sided(std::move(measured));
+  }
+  throw InputError(p_.where(), "the material " + in_quotes(type) + " is not known",
+                   "diffuse, coateddiffuse, conductor, coatedconductor, dielectric, thindielectric, "
+                   "diffusetransmission, mix, interface, hair, subsurface and measured are");
+}
 
-  int make(const std::string& type) {
-    if (type == "diffuse") return two_sided(DiffuseDesc{color("reflectance", 0.5f)});
-    if (type == "coateddiffuse") return coated_diffuse();
-    if (type == "conductor") return two_sided(conductor("", {}));
-    if (type == "coatedconductor") return coated_conductor();
-    if (type == "dielectric") return dielectric();
-    if (type == "thindielectric") return detailed(add(ThinDielectricDesc{dielectric_eta(p_, "eta", 1.5f)}));
-    if (type == "diffusetransmission") return diffuse_transmission();
-    if (type == "mix") return mix();
-    if (type == "interface" || type == "none" || type.empty()) return add(NullBsdfDesc{});
-    if (type == "hair") return hair();
-    if (type == "subsurface") return subsurface();
-    if (type == "measured") {
-      const auto found =
-          reader_.file(p_.required_text("filename"), p_.where_of("filename"), "BRDF file", "diffuse of 0.5");
-      MeasuredDesc measured;
-      measured.file.name = found.name, measured.file.missing = found.missing;
-      return two_sided(std::move(measured));
-    }
-    throw InputError(
-        p_.where(), "the material " + in_quotes(type) + " is not known",
-        "diffuse, coateddiffuse, conductor, coatedconductor, dielectric, thindielectric, "
-        "diffusetransmission, mix, interface, hair, subsurface and measured are; scenes of pbrt-v3 "
-        "are converted by pbrt --upgrade");
+// "normalmap" and "displacement" around it.
+int MaterialMaker::detailed(int bsdf) {
+  if (p_.has("normalmap")) {
+    BitmapTextureDesc map;
+    const auto file = reader_.file(p_.text("normalmap", ""), p_.where_of("normalmap"), "normal map",
+                                   "the surface without it");
+    map.filename = file.name, map.missing = file.missing;
+    map.raw = true;
+    bsdf = add(NormalMapDesc{reader_.add_texture("", p_.where_of("normalmap"), map), bsdf});
   }
+  p_.ignore({"normalmap"});
+  if (p_.has("displacement")) {
+    const FloatInput height = reader_.scalar(p_, "displacement", {0});
+    // pbrt's bump mapping: the surface's normal as if it were moved along itself.
+    if (height.texture != kNone) bsdf = add(BumpMapDesc{height.texture, 1, bsdf});
+  }
+  p_.ignore({"displacement"});
+  return bsdf;
+}
+int MaterialMaker::two_sided(MaterialKind kind) {
+  const int front = detailed(add(std::move(kind)));
+  return add(TwoSidedDesc{front, front});
+}
 
- private:
-  int add(MaterialKind kind) { return reader_.add_bsdf(id_, p_.where(), std::move(kind)); }
-  ColorInput color(const char* name, float fallback) {
-    return reader_.color(p_, name, {Rgb(fallback), kNone}, Intent::albedo);
+ConductorDesc MaterialMaker::conductor(const std::string& prefix, std::optional<float> outside) {
+  const bool coated = !prefix.empty();
+  const char* eta = coated ? "conductor.eta" : "eta";
+  const char* k = coated ? "conductor.k" : "k";
+  ConductorDesc out;
+  const Roughness r = roughness(reader_, p_, prefix, remap_);
+  out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
+  if (p_.has("reflectance")) {
+    if (p_.has(eta) || p_.has(k))
+      p_.fail("reflectance", "is given beside \"" + std::string(eta) + "\" or \"" + k + "\"",
+              "keep one of them");
+    reflecting(out);
+  } else {
+    const ConductorIndex index = conductor_index(p_, eta, k);
+    out.eta = index.eta, out.k = index.k;
   }
+  if (outside) out.eta = out.eta / *outside, out.k = out.k / *outside;
+  return out;
+}
+// The index of a metal of a given reflectance at normal incidence, with η = 1 (pbrt: k = 2√r / √(1 - r)).
+void MaterialMaker::reflecting(ConductorDesc& out) {
+  const ColorInput r = color("reflectance", 0.5f);
+  if (r.texture != kNone) {
+    reader_.warn(p_.where_of("reflectance"), "Fresnel reflection of a textured metal",
+                 "the same reflectance at all angles");
+    out.eta = Rgb(0), out.k = Rgb(1), out.specular_reflectance = r;
+    return;
+  }
+  out.eta = Rgb(1);
+  for (int i = 0; i < 3; ++i) {
+    const float value = std::clamp(r.value[i], 0.0f, 0.9999f);
+    out.k[i] = 2 * std::sqrt(value) / std::sqrt(1 - value);
+  }
+}
 
-  // "normalmap" and "displacement" around it.
-  int detailed(int bsdf) {
-    if (p_.has("normalmap")) {
-      BitmapTextureDesc map;
-      const auto file = reader_.file(p_.text("normalmap", ""), p_.where_of("normalmap"), "normal map",
-                                     "the surface without it");
-      map.filename = file.name, map.missing = file.missing;
-      map.raw = true;
-      bsdf = add(NormalMapDesc{reader_.add_texture("", p_.where_of("normalmap"), map), bsdf});
-    }
-    p_.ignore({"normalmap"});
-    if (p_.has("displacement")) {
-      const FloatInput height = reader_.scalar(p_, "displacement", {0});
-      // pbrt's bump mapping: the surface's normal as if it were moved along itself.
-      if (height.texture != kNone) bsdf = add(BumpMapDesc{height.texture, 1, bsdf});
-    }
-    p_.ignore({"displacement"});
-    return bsdf;
-  }
-  int two_sided(MaterialKind kind) {
-    const int front = detailed(add(std::move(kind)));
-    return add(TwoSidedDesc{front, front});
-  }
+// The layer over what is nested; pbrt walks at random between the two (LayeredBxDF).
+int MaterialMaker::coated(int nested, const char* eta, const std::string& prefix) {
+  CoatingDesc out;
+  out.nested = nested;
+  out.eta = dielectric_eta(p_, eta, 1.5f);
+  const Roughness r = roughness(reader_, p_, prefix, remap_);
+  out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
+  ignore_layer(reader_, p_);
+  return two_sided(out);
+}
+int MaterialMaker::coated_diffuse() {
+  return coated(add(DiffuseDesc{color("reflectance", 0.5f)}), "eta", "");
+}
+int MaterialMaker::coated_conductor() {
+  const float layer = dielectric_eta(p_, "interface.eta", 1.5f);
+  p_.ignore({"interface.thickness"});
+  return coated(add(conductor("conductor.", layer)), "interface.eta", "interface.");
+}
 
-  ConductorDesc conductor(const std::string& prefix, std::optional<float> outside) {
-    const bool coated = !prefix.empty();
-    const char* eta = coated ? "conductor.eta" : "eta";
-    const char* k = coated ? "conductor.k" : "k";
-    ConductorDesc out;
-    const Roughness r = roughness(reader_, p_, prefix, remap_);
-    out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
-    if (p_.has("reflectance")) {
-      if (p_.has(eta) || p_.has(k))
-        p_.fail("reflectance", "is given beside \"" + std::string(eta) + "\" or \"" + k + "\"",
-                "keep one of them");
-      reflecting(out);
-    } else {
-      const ConductorIndex index = conductor_index(p_, eta, k);
-      out.eta = index.eta, out.k = index.k;
-    }
-    if (outside) out.eta = out.eta / *outside, out.k = out.k / *outside;
-    return out;
-  }
-  // The index of a metal of a given reflectance at normal incidence, with η = 1 (pbrt: k = 2√r / √(1 - r)).
-  void reflecting(ConductorDesc& out) {
-    const ColorInput r = color("reflectance", 0.5f);
-    if (r.texture != kNone) {
-      reader_.warn(p_.where_of("reflectance"), "Fresnel reflection of a textured metal",
-                   "the same reflectance at all angles");
-      out.eta = Rgb(0), out.k = Rgb(1), out.specular_reflectance = r;
-      return;
-    }
-    out.eta = Rgb(1);
-    for (int i = 0; i < 3; ++i) {
-      const float value = std::clamp(r.value[i], 0.0f, 0.9999f);
-      out.k[i] = 2 * std::sqrt(value) / std::sqrt(1 - value);
-    }
-  }
+int MaterialMaker::dielectric() {
+  DielectricDesc out;
+  out.eta = dielectric_eta(p_, "eta", 1.5f);
+  const Roughness r = roughness(reader_, p_, "", remap_);
+  out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
+  return detailed(add(out));
+}
 
-  // The layer over what is nested; pbrt walks at random between the two (LayeredBxDF).
-  int coated(int nested, const char* eta, const std::string& prefix) {
-    CoatingDesc out;
-    out.nested = nested;
-    out.eta = dielectric_eta(p_, eta, 1.5f);
-    const Roughness r = roughness(reader_, p_, prefix, remap_);
-    out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
-    ignore_layer(reader_, p_);
-    return two_sided(out);
-  }
-  int coated_diffuse() { return coated(add(DiffuseDesc{color("reflectance", 0.5f)}), "eta", ""); }
-  int coated_conductor() {
-    const float layer = dielectric_eta(p_, "interface.eta", 1.5f);
-    p_.ignore({"interface.thickness"});
-    return coated(add(conductor("conductor.", layer)), "interface.eta", "interface.");
-  }
+int MaterialMaker::diffuse_transmission() {
+  const ColorInput reflectance = color("reflectance", 0.25f);
+  const ColorInput transmittance = color("transmittance", 0.25f);
+  const float scale = p_.number("scale", 1);
+  if (!(scale >= 0)) p_.fail("scale", "is negative", "give 0 or more");
+  const auto scaled = [&](const ColorInput& input) -> ColorInput {
+    if (input.texture == kNone) return {clamp_below(input.value * scale, 1), kNone};
+    if (scale == 1) return input;
+    return {Rgb(0), reader_.add_texture("", p_.where(), ScaleTextureDesc{input, Rgb(scale)})};
+  };
+  return detailed(add(DiffuseTransmitterDesc{scaled(reflectance), scaled(transmittance)}));
+}
 
-  int dielectric() {
-    DielectricDesc out;
-    out.eta = dielectric_eta(p_, "eta", 1.5f);
-    const Roughness r = roughness(reader_, p_, "", remap_);
-    out.distribution = Distribution::ggx, out.alpha_u = r.u, out.alpha_v = r.v;
-    return detailed(add(out));
+int MaterialMaker::mix() {
+  const auto names = p_.texts("materials");
+  if (names.size() != 2)
+    p_.fail("materials", "names " + std::to_string(names.size()) + " materials; 2 are needed");
+  const FloatInput amount = reader_.scalar(p_, "amount", {0.5f});
+  if (amount.texture == kNone && !(amount.value >= 0 && amount.value <= 1))
+    p_.fail("amount", "is not between 0 and 1");
+  return mix(names, amount);
+}
+
+int MaterialMaker::mix(const std::vector<std::string>& names, const FloatInput& amount) {
+  MixtureDesc out;
+  for (int k = 0; k < 2; ++k)
+    out.parts.push_back(
+        {amount, k == 0,
+         reader_.named_material(names[static_cast<std::size_t>(k)], p_.where_of("materials"))});
+  return add(out);
+}
+
+// The color that a thick body of the medium has. As in pbrt: a name comes before coefficients, these before
+// a color, and of nothing stated is whole milk.
+ColorInput MaterialMaker::color_of_depth() {
+  const std::string name = p_.text("name", "");
+  const auto known = named_medium(name.empty() ? "Wholemilk" : name);
+  if (!name.empty() && !known)
+    reader_.warn(p_.where_of("name"), "the medium " + in_quotes(name), "whole milk");
+  const bool textured = p_.is_texture("sigma_a") || p_.is_texture("sigma_s");
+  if (textured) reader_.warn(p_.where(), "subsurface scattering by textures", "whole milk");
+  NamedMedium medium = known.value_or(*named_medium("Wholemilk"));
+  if (name.empty() && !textured && p_.has("sigma_a") && p_.has("sigma_s")) {
+    medium.absorption = constant(p_, "sigma_a", Rgb(0), Intent::unbounded);
+    medium.scattering = constant(p_, "sigma_s", Rgb(0), Intent::unbounded);
+  } else if (name.empty() && p_.has("reflectance")) {
+    return color("reflectance", 0.5f);
   }
+  return {albedo_of_depth(medium.scattering, medium.absorption, std::min(0.999f, p_.number("g", 0))), kNone};
+}
 
-  int diffuse_transmission() {
-    const ColorInput reflectance = color("reflectance", 0.25f);
-    const ColorInput transmittance = color("transmittance", 0.25f);
-    const float scale = p_.number("scale", 1);
-    if (!(scale >= 0)) p_.fail("scale", "is negative", "give 0 or more");
-    const auto scaled = [&](const ColorInput& input) -> ColorInput {
-      if (input.texture == kNone) return {clamp_below(input.value * scale, 1), kNone};
-      if (scale == 1) return input;
-      return {Rgb(0), reader_.add_texture("", p_.where(), ScaleTextureDesc{input, Rgb(scale)})};
-    };
-    return detailed(add(DiffuseTransmitterDesc{scaled(reflectance), scaled(transmittance)}));
-  }
-
-  int mix() {
-    const auto names = p_.texts("materials");
-    if (names.size() != 2)
-      p_.fail("materials", "names " + std::to_string(names.size()) + " materials; 2 are needed");
-    const FloatInput amount = reader_.scalar(p_, "amount", {0.5f});
-    if (amount.texture == kNone && !(amount.value >= 0 && amount.value <= 1))
-      p_.fail("amount", "is not between 0 and 1");
-    MixtureDesc out;
-    for (int k = 0; k < 2; ++k)
-      out.parts.push_back(
-          {amount, k == 0,
-           reader_.named_material(names[static_cast<std::size_t>(k)], p_.where_of("materials"))});
-    return add(out);
-  }
-
-  // The color that a thick body of the medium has. As in pbrt: a name comes before coefficients, these before
-  // a color, and of nothing stated is whole milk.
-  ColorInput color_of_depth() {
-    const std::string name = p_.text("name", "");
-    const auto known = named_medium(name.empty() ? "Wholemilk" : name);
-    if (!name.empty() && !known)
-      reader_.warn(p_.where_of("name"), "the medium " + in_quotes(name), "whole milk");
-    const bool textured = p_.is_texture("sigma_a") || p_.is_texture("sigma_s");
-    if (textured) reader_.warn(p_.where(), "subsurface scattering by textures", "whole milk");
-    NamedMedium medium = known.value_or(*named_medium("Wholemilk"));
-    if (name.empty() && !textured && p_.has("sigma_a") && p_.has("sigma_s")) {
-      medium.absorption = constant(p_, "sigma_a", Rgb(0), Intent::unbounded);
-      medium.scattering = constant(p_, "sigma_s", Rgb(0), Intent::unbounded);
-    } else if (name.empty() && p_.has("reflectance")) {
-      return color("reflectance", 0.5f);
-    }
-    return {albedo_of_depth(medium.scattering, medium.absorption, std::min(0.999f, p_.number("g", 0))),
-            kNone};
-  }
-
-  int subsurface() {
-    reader_.warn(p_.where(), "subsurface scattering", "a rough plastic of the color of a thick body");
-    PlasticDesc out;
-    out.eta = p_.number("eta", 1.33f);
-    out.diffuse_reflectance = color_of_depth();
-    out.nonlinear = true, out.distribution = Distribution::ggx;
-    out.alpha = roughness(reader_, p_, "", remap_).u;
-    p_.ignore({"name", "sigma_a", "sigma_s", "reflectance", "mfp", "g", "scale"});
-    return two_sided(out);
-  }
-
-  int hair();
-
-  Reader& reader_;
-  Params& p_;
-  const std::string& id_;
-  const bool remap_;
-};
+int MaterialMaker::subsurface() {
+  reader_.warn(p_.where(), "subsurface scattering", "a rough plastic of the color of a thick body");
+  PlasticDesc out;
+  out.eta = p_.number("eta", 1.33f);
+  out.diffuse_reflectance = color_of_depth();
+  out.nonlinear = true, out.distribution = Distribution::ggx;
+  out.alpha = roughness(reader_, p_, "", remap_).u;
+  p_.ignore({"name", "sigma_a", "sigma_s", "reflectance", "mfp", "g", "scale"});
+  return two_sided(out);
+}
 
 // Chiang et al. 2016. What is painted is Kajiya-Kay of the same energy.
 int MaterialMaker::hair() {
@@ -290,7 +272,8 @@ int MaterialMaker::hair() {
 }
 
 int Reader::make_material(Params& p, const std::string& type, const std::string& id) {
-  return MaterialMaker(*this, p, id).make(type);
+  MaterialMaker maker(*this, p, id);
+  return version3_ ? maker.make_of_version3(type) : maker.make(type);
 }
 
 int Reader::named_material(const std::string& name, const Place& where) {
@@ -302,8 +285,13 @@ int Reader::named_material(const std::string& name, const Place& where) {
 void Reader::name_material(Params& p, const std::string& name) {
   const std::string type = p.required_text("type");
   const auto found = materials_.find(name);
-  if (found != materials_.end() && found->second.defined)
-    throw InputError(p.where(), "the material " + in_quotes(name) + " is defined twice", "rename one");
+  if (found != materials_.end() && found->second.defined) {
+    if (!version3_)
+      throw InputError(p.where(), "the material " + in_quotes(name) + " is defined twice", "rename one");
+    // In pbrt-v3 the name means the new one from there on.
+    found->second = {make_material(p, type, name), true, p.where()};
+    return;
+  }
   const int made = make_material(p, type, name);
   NamedMaterial& entry = materials_[name];
   if (entry.bsdf == kNone) {

@@ -6,6 +6,7 @@
 #include "scenedesc/pbrt/glow.h"
 #include "scenedesc/pbrt/media_parts.h"
 #include "scenedesc/pbrt/reader.h"
+#include "scenedesc/pbrt/version3.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -178,6 +179,7 @@ void phase_function(Params& p, MediumDesc& out) {
 }  // namespace
 
 int Reader::make_medium(Params& p, const std::string& name) {
+  if (version3_) upgrade_medium(p);
   const std::string type = p.required_text("type");
   MediumDesc out;
   out.id = name, out.where = p.where();

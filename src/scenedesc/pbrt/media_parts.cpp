@@ -14,8 +14,12 @@ struct Preset {
   std::optional<Rgb> mean_cosine;
 };
 
+// Jensen et al. 2001, table 2: what pbrt-v3 takes for a medium of which nothing is stated.
+const Preset kUnstated{Rgb(0.0011f, 0.0024f, 0.014f), Rgb(2.55f, 3.21f, 3.77f), std::nullopt};
+
 Preset preset(Reader& reader, Params& p) {
   const std::string name = p.text("preset", "");
+  if (name.empty() && p.reader().version3()) return kUnstated;
   if (name.empty()) return {};
   if (const auto known = named_medium(name)) {
     // As in pbrt, a preset comes before what is stated.
@@ -25,8 +29,7 @@ Preset preset(Reader& reader, Params& p) {
   const bool stated = p.has("sigma_a") && p.has("sigma_s");
   reader.warn(p.where_of("preset"), "the preset " + in_quotes(name) + " of media",
               stated ? "\"sigma_a\" and \"sigma_s\"" : "whole milk");
-  // Jensen et al. 2001, table 2: what pbrt-v3 takes for a medium of which nothing is stated.
-  return {Rgb(0.0011f, 0.0024f, 0.014f), Rgb(2.55f, 3.21f, 3.77f), std::nullopt};
+  return kUnstated;
 }
 
 }  // namespace

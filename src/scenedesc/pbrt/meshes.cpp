@@ -44,6 +44,18 @@ void check_count(Params& p, const char* name, const List& list, std::size_t vert
            "give one for each point of \"P\"");
 }
 
+std::vector<Vec2f> texture_coordinates(Params& p, const char* name) {
+  const Parameter* given = p.find(name);
+  // In pbrt-v3 a list of numbers as well.
+  if (!given || given->type != ParamType::number || !p.reader().version3()) return p.points2(name);
+  const auto& v = given->numbers;
+  if (v.size() % 2 != 0) p.fail(name, "has an odd count of numbers", "give two for each vertex");
+  std::vector<Vec2f> out(v.size() / 2);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = {static_cast<float>(v[2 * i]), static_cast<float>(v[2 * i + 1])};
+  return out;
+}
+
 // Positions, normals and uv of the list, one of each per vertex.
 MeshData vertices(Params& p) {
   MeshData out;
@@ -52,7 +64,7 @@ MeshData vertices(Params& p) {
   if (out.positions.empty())
     throw InputError(p.where_of("P"), p.title() + " has no points", "add \"point3 P\" [ … ]");
   out.normals = p.points3("N");
-  out.uvs = p.points2(p.has("st") ? "st" : "uv");
+  out.uvs = texture_coordinates(p, p.has("st") ? "st" : "uv");
   check_count(p, "N", out.normals, out.positions.size());
   check_count(p, "uv", out.uvs, out.positions.size());
   return out;

@@ -156,6 +156,26 @@ std::vector<std::string> Params::texts(const char* name) {
   return p ? p->texts : std::vector<std::string>{};
 }
 
+void Params::rename(std::string_view from, std::string_view to) {
+  for (Parameter& p : own_)
+    if (p.name == from) p.name = to;
+}
+
+void Params::add_number(const char* name, float value) {
+  own_.push_back({ParamType::number, "float", name, where_, {static_cast<double>(value)}, {}, {}});
+  used_.push_back(false);
+}
+
+void Params::add_text(const char* name, const std::string& value) {
+  own_.push_back({ParamType::text, "string", name, where_, {}, {value}, {}});
+  used_.push_back(false);
+}
+
+void Params::replace_text(const char* name, const std::string& value) {
+  for (Parameter& p : own_)
+    if (p.name == name && p.type == ParamType::text) p.texts = {value};
+}
+
 void Params::ignore(std::initializer_list<const char*> names) {
   for (const char* name : names) find(name);
 }

@@ -27,7 +27,8 @@ struct Parameter {
 
 // All declarations up to the next directive. Throws InputError for what is not a declaration, a value of
 // another type than declared and a wrong number of values.
-std::vector<Parameter> parse_parameters(Tokens& tokens);
+// `version3`: of pbrt-v3, which has "color" and "xyz", and quotes flags.
+std::vector<Parameter> parse_parameters(Tokens& tokens, bool version3);
 
 // The number that a whole word is, finite; an InputError at `where` else.
 double parse_number(std::string_view word, const SourceLocation& where);
@@ -62,6 +63,12 @@ class Params {
   std::vector<Vec3d> places3(const char* name);  // not rounded
   std::vector<Vec2f> points2(const char* name);
   std::vector<std::string> texts(const char* name);
+
+  // For what has another name in another version: the parameter's own, not those by Attribute.
+  void rename(std::string_view from, std::string_view to);
+  void add_number(const char* name, float value);
+  void add_text(const char* name, const std::string& value);
+  void replace_text(const char* name, const std::string& value);
 
   void ignore(std::initializer_list<const char*> names);  // known, and of no consequence here
   void ignore_all();

@@ -1,4 +1,5 @@
 // From words to typed parameters.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -22,9 +23,14 @@ constexpr TypeInfo kTypes[] = {{"float", ParamType::number, 1},      {"integer",
                                {"vector2", ParamType::point2, 2},    {"normal3", ParamType::point3, 3},
                                {"point", ParamType::point3, 3},      {"vector", ParamType::point3, 3}};
 
-const TypeInfo& type_of(std::string_view name, const SourceLocation& where) {
+// Only pbrt-v3 has these names of types.
+constexpr TypeInfo kOldTypes[] = {{"color", ParamType::rgb, 3}, {"xyz", ParamType::rgb, 3}};
+
+const TypeInfo& type_of(std::string_view name, const SourceLocation& where, bool version3) {
   for (const TypeInfo& type : kTypes)
     if (type.name == name) return type;
+  for (const TypeInfo& type : kOldTypes)
+    if (version3 && type.name == name) return type;
   const bool old = name == "color" || name == "xyz";
   throw InputError(where, "the parameter type " + in_quotes(name) + " is not known",
                    old ? "pbrt-v4 calls it \"rgb\""
@@ -32,10 +38,20 @@ const TypeInfo& type_of(std::string_view name, const SourceLocation& where) {
                          "spectrum, blackbody and texture are");
 }
 
+// From CIE XYZ to linear Rec. 709, color by color.
+void to_rgb(std::vector<double>& numbers) {
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
+    const double x = numbers[i], y = numbers[i + 1], z = numbers[i + 2];
+    numbers[i] = std::max(0.0, 3.240479 * x - 1.537150 * y - 0.498535 * z);
+    numbers[i + 1] = std::max(0.0, -0.969256 * x + 1.875991 * y + 0.041556 * z);
+    numbers[i + 2] = std::max(0.0, 0.055648 * x - 0.204043 * y + 1.057311 * z);
+  }
+}
+
 class ValueReader {
  public:
-  ValueReader(Tokens& tokens, Parameter& out, const TypeInfo& type)
-      : tokens_(tokens), out_(out), type_(type) {}
+  ValueReader(Tokens& tokens, Parameter& out, const TypeInfo& type, bool version3)
+      : tokens_(tokens), out_(out), type_(type), version3_(version3) {}
 
   void read() {
     if (tokens_.peek().kind != Token::Kind::open) {
@@ -77,7 +93,8 @@ class ValueReader {
         out_.texts.emplace_back(token.value);
         return;
       case ParamType::flag:
-        if (token.kind != Token::Kind::word || (token.value != "true" && token.value != "false"))
+        if ((token.kind != Token::Kind::word && !(version3_ && token.kind == Token::Kind::text)) ||
+            (token.value != "true" && token.value != "false"))
           wrong(token, "true or false");
         out_.flags.push_back(token.value == "true");
         return;
@@ -114,6 +131,7 @@ class ValueReader {
   Tokens& tokens_;
   Parameter& out_;
   const TypeInfo& type_;
+  const bool version3_;
 };
 
 }  // namespace
@@ -135,7 +153,7 @@ double parse_number(std::string_view word, const SourceLocation& where) {
   return value;
 }
 
-std::vector<Parameter> parse_parameters(Tokens& tokens) {
+std::vector<Parameter> parse_parameters(Tokens& tokens, bool version3) {
   std::vector<Parameter> out;
   while (tokens.peek().kind == Token::Kind::text) {
     const Token declaration = tokens.take();
@@ -151,13 +169,14 @@ std::vector<Parameter> parse_parameters(Tokens& tokens) {
         text.find_first_not_of(kSpace, name_end) != std::string_view::npos)
       throw InputError(where, in_quotes(text) + " is not the declaration of a parameter",
                        "write a type and a name, as in \"float radius\"");
-    const TypeInfo& type = type_of(text.substr(type_at, type_end - type_at), where);
+    const TypeInfo& type = type_of(text.substr(type_at, type_end - type_at), where, version3);
     Parameter& parameter = out.emplace_back();
     parameter.type = type.type;
     parameter.type_name = type.name;
     parameter.name = text.substr(name_at, name_end - name_at);
     parameter.where = where;
-    ValueReader(tokens, parameter, type).read();
+    ValueReader(tokens, parameter, type, version3).read();
+    if (type.name == "xyz") to_rgb(parameter.numbers);
   }
   return out;
 }

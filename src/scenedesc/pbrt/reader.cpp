@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "scenedesc/pbrt/read_pbrt.h"
+#include "scenedesc/pbrt/version3.h"
 #include "scenedesc/schema/expansion.h"
 #include "scenedesc/schema/files.h"
 
@@ -74,7 +75,8 @@ std::string Reader::take_text(Tokens& tokens, const Token& word, const char* wha
 Params Reader::take_params(Tokens& tokens, const Token& word, const std::string& type, const char* defaults) {
   const auto found = defaults ? state_.defaults.find(defaults) : state_.defaults.end();
   return {*this, std::string(word.value) + (type.empty() ? "" : " " + in_quotes(type)), tokens.place(word),
-          parse_parameters(tokens), found == state_.defaults.end() ? nullptr : found->second.get()};
+          parse_parameters(tokens, version3_),
+          found == state_.defaults.end() ? nullptr : found->second.get()};
 }
 
 std::vector<double> Reader::take_numbers(Tokens& tokens, const Token& word, std::size_t count) {
@@ -156,7 +158,7 @@ void Reader::inherit(Tokens& tokens, const Token& word) {
   const auto all = slot.use_count() == 1 ? std::const_pointer_cast<List>(slot)
                    : slot                ? std::make_shared<List>(*slot)
                                          : std::make_shared<List>();
-  for (Parameter& p : parse_parameters(tokens)) {
+  for (Parameter& p : parse_parameters(tokens, version3_)) {
     std::erase_if(*all, [&](const Parameter& old) { return old.name == p.name; });
     all->push_back(std::move(p));
   }
@@ -220,13 +222,13 @@ void Reader::directive(Tokens& tokens, const Token& word) {
   if (transform_directive(tokens, word) || block_directive(tokens, word) || object_directive(tokens, word) ||
       state_directive(tokens, word) || option_directive(tokens, word))
     return;
-  throw InputError(tokens.place(word), in_quotes(word.value) + " is not a directive of pbrt-v4",
+  throw InputError(tokens.place(word), in_quotes(word.value) + " is not a directive of " + scene_.format,
                    "check its spelling");
 }
 
 void Reader::run(const File& file) {
   Tokens tokens(file);
-  while (tokens.peek().kind != Token::Kind::end) {
+  while (tokens.peek().kind != Token::Kind::end && !ended_) {
     const Token word = tokens.take();
     if (word.kind == Token::Kind::word) {
       directive(tokens, word);
@@ -267,6 +269,8 @@ void Reader::finish() {
 }
 
 SceneDesc Reader::read(std::string text) {
+  version3_ = is_version3(text);
+  if (version3_) scene_.format = "pbrt-v3";
   open_files_.push_back(resolve_path(main_file_, ""));
   run(sources_.emplace_back(File{main_file_, std::move(text)}));
   finish();

@@ -43,6 +43,7 @@ class Reader : public SceneReader {
   SceneDesc read(std::string text);
 
   GraphicsState& state() { return state_; }
+  bool version3() const { return version3_; }  // of pbrt-v3
   // Factor of pixel values to radiance: exposure time × ISO / 100.
   float imaging_ratio() const { return imaging_ratio_; }
   // That and what makes the light white for which the camera is balanced, which is done to lights here: pbrt
@@ -147,6 +148,7 @@ class Reader : public SceneReader {
   void resolve_media();
 
   const std::string main_file_;
+  bool version3_ = false, ended_ = false;  // ended: by WorldEnd
 
   GraphicsState state_;
   std::vector<Saved> saved_;
@@ -193,7 +195,7 @@ class Reader : public SceneReader {
   float film_diagonal_ = 35;  // mm
   int samples_ = 16;
   bool has_camera_ = false, has_integrator_ = false;
-  float iso_ = 100, imaging_ratio_ = 1;
+  float iso_ = 100, imaging_ratio_ = 1, film_scale_ = 1;  // the last: of pbrt-v3
   Rgb white_balance_{1};
 
   friend class ShapeBuilder;

@@ -3,6 +3,7 @@
 
 #include "scenedesc/pbrt/reader.h"
 #include "scenedesc/pbrt/shape_kinds.h"
+#include "scenedesc/pbrt/version3.h"
 
 namespace lumirank::scenedesc::pbrt {
 
@@ -42,6 +43,7 @@ int Reader::masked(Params& p, const FloatInput& alpha, int bsdf) {
 }
 
 void Reader::read_shape(Params& p, const std::string& type) {
+  if (version3_) upgrade_shape(p, type);
   ShapeDesc shape;
   shape.where = p.where();
   shape.to_world = to_world(p.where());
@@ -67,7 +69,10 @@ void Reader::read_shape(Params& p, const std::string& type) {
     warn_once(p.where(), "area lights in objects (pbrt leaves them out too)", "the shapes without light");
     light = nullptr;
   }
-  if (light && is_null(scene_, bsdf)) {
+  if (light && version3_ &&
+      is_null(scene_, bsdf))  // which shines there, and lets through what comes from behind
+    shape.bsdf = add_bsdf("", p.where(), DiffuseDesc{{Rgb(0), kNone}});
+  else if (light && is_null(scene_, bsdf)) {
     warn_once(p.where(), "area lights with the material \"interface\" (pbrt leaves them out too)",
               "no light");
     light = nullptr;

@@ -46,11 +46,27 @@ SampledSpectrum pairs(Params& p, const char* name, const std::vector<double>& nu
   return out;
 }
 
+// What the files of pbrt-v3's scenes have, "spds/Au.eta.spd", say.
+std::optional<SampledSpectrum> metal_of_file(const std::string& file) {
+  std::string name = file.substr(file.find_last_of('/') + 1);
+  if (!name.ends_with(".eta.spd") && !name.ends_with(".k.spd")) return std::nullopt;
+  name.erase(name.size() - 4);
+  const std::size_t dot = name.rfind('.');
+  return named_metal("metal-" + name.substr(0, dot) + "-" + name.substr(dot + 1));
+}
+
 // A spectrum parameter that is not the name of an illuminant or a glass.
 SampledSpectrum sampled(Params& p, const char* name, const Parameter& parameter) {
   if (parameter.texts.empty()) return pairs(p, name, parameter.numbers);
   if (const auto metal = named_metal(parameter.texts[0])) return *metal;
+  if (p.reader().version3() && p.reader().resolve(parameter.texts[0], p.where_of(name)).empty())
+    if (const auto metal = metal_of_file(parameter.texts[0])) return *metal;
   return spectrum_file(p, name, parameter.texts[0]);
+}
+
+// pbrt-v3 takes the nearest color that there is.
+Rgb in_range_of_version3(Rgb c, Intent intent) {
+  return intent == Intent::albedo ? clamp_below(not_negative(c), 1) : not_negative(c);
 }
 
 void check_range(Params& p, const char* name, Rgb c, Intent intent) {
@@ -113,15 +129,21 @@ std::optional<Rgb> constant_color(Params& p, const char* name, Intent intent) {
   if (parameter->type == ParamType::rgb) {
     const auto& v = parameter->numbers;
     if (v.size() != 3) p.fail(name, "has " + std::to_string(v.size()) + " numbers; 3 are needed");
-    const Rgb c{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+    Rgb c{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+    if (p.reader().version3()) c = in_range_of_version3(c, intent);
     check_range(p, name, c, intent);
     return from_space(c, p.reader().state().space, intent);
   }
   if (parameter->type == ParamType::blackbody) {
-    if (parameter->numbers.size() != 1 || !(parameter->numbers[0] > 0))
+    // In pbrt-v3 with a factor behind it.
+    const bool scaled = p.reader().version3() && parameter->numbers.size() == 2;
+    if ((parameter->numbers.size() != 1 && !scaled) || !(parameter->numbers[0] > 0))
       p.fail(name, "is not one temperature above 0", "give it in kelvin");
+    const float factor = scaled ? std::max(0.0f, static_cast<float>(parameter->numbers[1])) : 1.0f;
     if (intent != Intent::illuminant) p.fail(name, "is a blackbody, and not of a light", "give an rgb color");
-    return unit_luminance(p, name, not_negative(blackbody_to_rgb(static_cast<float>(parameter->numbers[0]))));
+    return unit_luminance(p, name,
+                          not_negative(blackbody_to_rgb(static_cast<float>(parameter->numbers[0])))) *
+           factor;
   }
   if (parameter->type != ParamType::spectrum)
     p.fail(name, "is declared as " + parameter->type_name + ", and a color is needed",
@@ -130,7 +152,10 @@ std::optional<Rgb> constant_color(Params& p, const char* name, Intent intent) {
     if (const auto known = named_illuminant(parameter->texts[0])) return not_negative(*known);
   const SampledSpectrum spectrum = sampled(p, name, *parameter);
   for (const float v : spectrum.values) check_range(p, name, Rgb(v), intent);
-  if (intent == Intent::illuminant) return unit_luminance(p, name, not_negative(emission_to_rgb(spectrum)));
+  if (intent == Intent::illuminant) {
+    const Rgb light = not_negative(emission_to_rgb(spectrum));
+    return p.reader().version3() ? light : unit_luminance(p, name, light);
+  }
   const Rgb c = not_negative(reflectance_to_rgb(spectrum));
   return intent == Intent::albedo ? clamp_below(c, 1) : c;
 }

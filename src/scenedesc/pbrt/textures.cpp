@@ -134,8 +134,9 @@ class TextureMaker {
       return mix(input("tex1", 0), input("tex2", 1), {Rgb(0.5f), kNone});
     }
     if (kind == "checkerboard") return checkerboard();
-    const bool known = kind == "bilerp" || kind == "dots" || kind == "fbm" || kind == "wrinkled" ||
-                       kind == "windy" || kind == "marble" || kind == "ptex";
+    const bool known = (reader_.version3() && kind == "uv") || kind == "bilerp" || kind == "dots" ||
+                       kind == "fbm" || kind == "wrinkled" || kind == "windy" || kind == "marble" ||
+                       kind == "ptex";
     if (!known)
       throw InputError(p_.where(), "the texture class " + in_quotes(kind) + " is not known",
                        "constant, imagemap, scale, mix, directionmix, checkerboard, bilerp, dots, fbm, "
@@ -220,11 +221,12 @@ class TextureMaker {
 
 void Reader::read_texture(Params& p, const std::string& name, const std::string& type,
                           const std::string& kind) {
-  const bool spectrum = type == "spectrum";
+  const bool spectrum = type == "spectrum" || (version3_ && type == "color");
   if (!spectrum && type != "float")
     throw InputError(p.where(), "the texture " + in_quotes(name) + " is of type " + in_quotes(type),
                      "float and spectrum are known");
-  if (spectrum ? color_textures_.count(name) > 0 : float_textures_.count(name) > 0)
+  // In pbrt-v3 the name means the new one from there on.
+  if (!version3_ && (spectrum ? color_textures_.count(name) > 0 : float_textures_.count(name) > 0))
     throw InputError(p.where(), "the " + type + " texture " + in_quotes(name) + " is defined twice",
                      "rename one");
   const ColorInput made = TextureMaker(*this, p, name, spectrum).make(kind);
