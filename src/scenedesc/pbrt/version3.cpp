@@ -14,7 +14,7 @@ bool is_version3(std::string_view text) {
   if (at == std::string_view::npos) return false;
   const std::size_t line = text.rfind('\n', at) + 1;  // 0 on the first one
   if (text.substr(line, at - line).find_first_of("#\"") != std::string_view::npos) return false;
-  return text.find_first_of("\"", at) == std::string_view::npos;
+  return text.find('"', at) == std::string_view::npos;
 }
 
 void upgrade_film(Params& p, std::string& type) {
