@@ -127,6 +127,22 @@ em::SpotEmitter make_spot(const sd::SpotLightDesc& d, const Units& units, const 
   return spot;
 }
 
+// Of the way from the cut-off to the beam.
+float risen(float share, sd::SpotLightDesc::Edge edge) {
+  using Edge = sd::SpotLightDesc::Edge;
+  switch (edge) {
+    case Edge::squared_cosine:
+      return share * share;
+    case Edge::fourth_power:
+      return square(share * share);
+    case Edge::smooth_cosine:
+      return share * share * (3 - 2 * share);
+    case Edge::angle:
+      break;
+  }
+  return share;
+}
+
 // A spot light whose edge is not linear in the angle, as a table of 256 steps over the edge: within 10⁻⁴ of
 // the axial intensity (the second derivative over the edge is at most some 30).
 em::ProfileEmitter with_edge(const em::SpotEmitter& spot, sd::SpotLightDesc::Edge edge) {
@@ -138,8 +154,7 @@ em::ProfileEmitter with_edge(const em::SpotEmitter& spot, sd::SpotLightDesc::Edg
     theta.push_back(k == kSteps ? spot.cutoff : spot.beam + t * (spot.cutoff - spot.beam));
     const float share = std::clamp(
         (std::cos(theta.back()) - spot.cos_cutoff) / (spot.cos_beam - spot.cos_cutoff), 0.0f, 1.0f);
-    values.push_back(edge == sd::SpotLightDesc::Edge::squared_cosine ? share * share
-                                                                     : share * share * (3 - 2 * share));
+    values.push_back(risen(share, edge));
   }
   std::vector<float> both;
   for (const float v : values) both.insert(both.end(), {v, v});

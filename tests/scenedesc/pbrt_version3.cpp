@@ -70,6 +70,7 @@ TEST(PbrtVersion3, LightsAreScaledByColorsAndKeepTheirLuminance) {
       old_light<ConstantEnvironmentDesc>("\"infinite\" \"string mapname\" [ \"\" ] \"color L\" [ 1 2 3 ]")
           .radiance,
       Rgb(1, 2, 3), 1e-6f);
+  EXPECT_EQ(old_light<SpotLightDesc>("\"spot\"").edge, SpotLightDesc::Edge::fourth_power);
   const SceneDesc lamp =
       old_world("AreaLightSource \"area\" \"color L\" [ 4 5 6 ] \"bool twosided\" \"false\"\n" + kSphere);
   expect_near(lamp.shapes.at(0).emitter->radiance.value, Rgb(4, 5, 6), 1e-6f);

@@ -33,7 +33,7 @@ TEST(SpotLight, EdgesOfTheFormats) {
   using Edge = sd::SpotLightDesc::Edge;
   auto desc = empty_scene();
   add_shape(desc, sd::CubeDesc{}, Transform::translate(9, 9, 9));
-  for (const Edge edge : {Edge::angle, Edge::smooth_cosine, Edge::squared_cosine})
+  for (const Edge edge : {Edge::angle, Edge::smooth_cosine, Edge::squared_cosine, Edge::fourth_power})
     for (const float beam : {0.0f, 20.0f, 50.0f}) {  // the last: no edge at all
       sd::SpotLightDesc spot;
       spot.intensity = Rgb(4), spot.cutoff_angle = 50, spot.beam_width = beam, spot.edge = edge;
@@ -41,13 +41,14 @@ TEST(SpotLight, EdgesOfTheFormats) {
     }
   const World w = build(desc);
   const double end = std::cos(50 * kPiD / 180);
-  for (int k = 0; k < 9; ++k) {
+  for (int k = 0; k < 12; ++k) {
     const double beam = k % 3 == 0 ? 0 : (k % 3 == 1 ? 20 : 50), start = std::cos(beam * kPiD / 180);
     for (int degrees = 1; degrees < 60; degrees += 2) {
       const double angle = degrees * kPiD / 180;
       const double part = degrees <= beam ? 1 : std::clamp((std::cos(angle) - end) / (start - end), 0.0, 1.0);
-      double share = k < 3 ? std::clamp((50 - degrees) / (50 - beam), 0.0, 1.0)
-                           : (k < 6 ? part * part * (3 - 2 * part) : part * part);
+      double share = k < 3   ? std::clamp((50 - degrees) / (50 - beam), 0.0, 1.0)
+                     : k < 6 ? part * part * (3 - 2 * part)
+                             : (k < 9 ? part * part : part * part * part * part);
       if (beam == 50) share = degrees < 50 ? 1 : 0;
       const Vec3f p{static_cast<float>(2 * std::sin(angle)), 0, static_cast<float>(2 * std::cos(angle))};
       EXPECT_NEAR(w.sample_direct(k, p, 0.5f, {0.5f, 0.5f}).radiance.g, share, 1e-4)  // 4 / 2²

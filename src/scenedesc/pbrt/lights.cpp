@@ -60,7 +60,7 @@ SpotLightDesc spot(Params& p, const Transform& to_world) {
   const float end = std::cos(cone * (kPi / 180)), start = std::cos((cone - delta) * (kPi / 180));
   out.intensity =
       spectrum(p, "I") * scale_of(p) * power_scale(p, 2 * kPi * ((1 - start) + (start - end) / 2));
-  out.edge = SpotLightDesc::Edge::smooth_cosine;
+  out.edge = p.reader().version3() ? SpotLightDesc::Edge::fourth_power : SpotLightDesc::Edge::smooth_cosine;
   return out;
 }
 

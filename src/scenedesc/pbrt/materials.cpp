@@ -79,7 +79,6 @@ int MaterialMaker::make(const std::string& type) {
                    "diffusetransmission, mix, interface, hair, subsurface and measured are");
 }
 
-// "normalmap" and "displacement" around it.
 int MaterialMaker::detailed(int bsdf) {
   if (p_.has("normalmap")) {
     BitmapTextureDesc map;
@@ -98,6 +97,7 @@ int MaterialMaker::detailed(int bsdf) {
   p_.ignore({"displacement"});
   return bsdf;
 }
+
 int MaterialMaker::two_sided(MaterialKind kind) {
   const int front = detailed(add(std::move(kind)));
   return add(TwoSidedDesc{front, front});
@@ -122,6 +122,7 @@ ConductorDesc MaterialMaker::conductor(const std::string& prefix, std::optional<
   if (outside) out.eta = out.eta / *outside, out.k = out.k / *outside;
   return out;
 }
+
 // The index of a metal of a given reflectance at normal incidence, with η = 1 (pbrt: k = 2√r / √(1 - r)).
 void MaterialMaker::reflecting(ConductorDesc& out) {
   const ColorInput r = color("reflectance", 0.5f);
@@ -148,9 +149,11 @@ int MaterialMaker::coated(int nested, const char* eta, const std::string& prefix
   ignore_layer(reader_, p_);
   return two_sided(out);
 }
+
 int MaterialMaker::coated_diffuse() {
   return coated(add(DiffuseDesc{color("reflectance", 0.5f)}), "eta", "");
 }
+
 int MaterialMaker::coated_conductor() {
   const float layer = dielectric_eta(p_, "interface.eta", 1.5f);
   p_.ignore({"interface.thickness"});

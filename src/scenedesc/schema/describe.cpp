@@ -172,7 +172,7 @@ std::string kind(const EmitterDesc& e) {
                    return "point at " + show(x.position) + ", intensity " + show(x.intensity);
                  },
                  [](const SpotLightDesc& x) {
-                   const char* edges[] = {"", ", smooth edge", ", squared edge"};
+                   const char* edges[] = {"", ", smooth edge", ", squared edge", ", quartic edge"};
                    return "spot" + std::string(edges[static_cast<int>(x.edge)]) + ", intensity " +
                           show(x.intensity) + ", cutoff " + num(x.cutoff_angle) + "°, beam " +
                           num(x.beam_width) + "°" + show(x.to_world);

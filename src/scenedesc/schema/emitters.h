@@ -23,9 +23,10 @@ struct SpotLightDesc {  // at the origin of to_world, along its +z
   float beam_width = 20 * 3.0f / 4.0f;  // degrees: full intensity within
   // Between the two, of the share s of the way from the cut-off (0) to the beam (1).
   enum class Edge {
-    angle,          // s of the angle (Mitsuba)
-    smooth_cosine,  // 3s² - 2s³, s of the angle's cosine (pbrt)
-    squared_cosine  // s², s of the angle's cosine (glTF)
+    angle,           // s of the angle (Mitsuba)
+    smooth_cosine,   // 3s² - 2s³, s of the angle's cosine (pbrt)
+    squared_cosine,  // s², s of the angle's cosine (glTF)
+    fourth_power     // s⁴, s of the angle's cosine (pbrt-v3)
   };
   Edge edge = Edge::angle;
 };
