@@ -199,6 +199,7 @@ bool PassPilot::small_paths_are_better(const View& small, const image::Image& fi
     rest.add_to(by_passes.picture), rest.add_difference_to(by_passes.difference);
   }
   PathsBeside paths(*task_.world, small, settings_, nullptr, sinks_);
+  light_paths_ = paths.light_path_pilot();
   do {
     if (!paths.add(2, sinks_)) throw Cancelled();
   } while (paths.seconds() < shrunk * seconds && paths.paths() < kMaxTrialPaths);

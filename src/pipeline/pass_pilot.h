@@ -35,6 +35,8 @@ class PassPilot {
   // Passes may have other numbers of lights, of which receivers draw as many fewer or more.
   bool resizes() const;
   bool paths_alone() const { return paths_alone_; }
+  // Beside those, if they were tried.
+  const std::optional<LightPathPilot>& light_paths() const { return light_paths_; }
   const View& view() const { return view_; }  // of the size that is rendered
   // Of a pass of all pixels, without the rest; what all takes with it, over that; what follows the first
   // pass; and the seconds of the budget by which that was foretold. 0: nothing was tried.
@@ -68,6 +70,7 @@ class PassPilot {
   PassSeconds expected_;
   double features_expected_ = 0;  // seconds of what is traced before the passes
   bool paths_alone_ = false;
+  std::optional<LightPathPilot> light_paths_;
   std::string shortage_;
 };
 

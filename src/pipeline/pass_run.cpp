@@ -100,6 +100,7 @@ class PassRun {
   RenderResult by_paths_alone(const char* why) {
     task_.why = why;
     task_.denoiser_pixel_seconds = passes_->denoising().pixel_seconds();
+    if (pilot_) task_.light_paths = pilot_->light_paths();
     RenderSettings settings = asked_;
     // What no clock decided is decided again where the report is repeated.
     if (!timed()) settings.method.name = "auto";

@@ -40,8 +40,9 @@ class PathRun {
         denoising_(asked, task_.view, choices_, sinks, task_.denoiser_pixel_seconds),
         view_(denoising_.filtered(task_.view)),
         options_(reference_options(asked.view.only, asked.seed, ReferencePaths::all)) {
-    const LightPathPilot light =
-        pilot_light_paths(*task_.world, view_, asked.seed, options_.paths, asked.time, sinks);
+    const LightPathPilot light = task_.light_paths ? *task_.light_paths
+                                                   : pilot_light_paths(*task_.world, view_, asked.seed,
+                                                                       options_.paths, asked.time, sinks);
     options_.light_paths = light.light_paths, options_.aim_light_paths = light.aim;
     if (timed()) choose_light_paths(choices_, "all", options_.light_paths, options_.aim_light_paths);
   }
@@ -96,7 +97,7 @@ class PathRun {
     if (!trial.add(1, sinks_)) throw Cancelled();
     double path = timer.seconds() * pixels(view_) / pixels(small);  // for each pixel
     seconds_["pilot"] = timer.seconds();
-    const double worth = denoising_.wanted() ? paths_worth_a_pixel(view_) : kFewPaths;
+    const double worth = denoising_.wanted() ? paths_worth_a_pixel(view_, options_.light_paths) : kFewPaths;
     const double features = denoising_.seconds_of_feature(*task_.world, small, feature_recipe(), sinks_) *
                             pixels(view_) / pixels(small);
     // With what pilots took; so it is more than the budget wherever fewer fit.

@@ -14,13 +14,10 @@ constexpr double kOfUsual = 0.1;
 // From which noise on the denoised pictures of fifteen scenes are worse by passes (docs/decisions.md).
 constexpr double kPassesLookWorse = 1.7, kWorseThanWithLightPaths = 2;
 
-pathtrace::ReferenceOptions all_light(const world::World& world, const View& view,
-                                      const RenderSettings& settings, methods::TimedChoices* choices,
-                                      const Sinks& sinks) {
+pathtrace::ReferenceOptions all_light(const RenderSettings& settings, const LightPathPilot& light,
+                                      methods::TimedChoices* choices) {
   pathtrace::ReferenceOptions options =
       reference_options(settings.view.only, hash_ids(settings.seed, Stage::pilot), ReferencePaths::all);
-  const LightPathPilot light =
-      pilot_light_paths(world, view, settings.seed, options.paths, settings.time, sinks);
   options.light_paths = light.light_paths, options.aim_light_paths = light.aim;
   if (choices) choose_light_paths(*choices, "beside", options.light_paths, options.aim_light_paths);
   return options;
@@ -70,7 +67,9 @@ double worse_for_missing(const NoisyPicture& passes, const NoisyPicture& paths) 
 
 PathsBeside::PathsBeside(const world::World& world, const View& view, const RenderSettings& settings,
                          methods::TimedChoices* choices, const Sinks& sinks)
-    : options_(all_light(world, view, settings, choices, sinks)), film_(world, view, options_) {}
+    : pilot_(pilot_light_paths(world, view, settings.seed, pathtrace::Paths::all, settings.time, sinks)),
+      options_(all_light(settings, pilot_, choices)),
+      film_(world, view, options_) {}
 
 bool PathsBeside::add(int paths, const Sinks& sinks) {
   const Timer timer;

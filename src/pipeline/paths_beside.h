@@ -6,6 +6,7 @@
 #include "image/image.h"
 #include "methods/common/timed_choices.h"
 #include "pathtrace/reference.h"
+#include "pipeline/light_path_pilot.h"
 #include "pipeline/recipe.h"
 #include "world/world.h"
 
@@ -20,6 +21,7 @@ class PathsBeside {
   // So many more for each pixel. False if it was cancelled: then none of them counts.
   bool add(int paths, const Sinks& sinks);
   int paths() const { return film_.paths(); }
+  const LightPathPilot& light_path_pilot() const { return pilot_; }
   double light_paths() const { return options_.light_paths; }  // beside each of them
   bool aims_light_paths() const { return options_.aim_light_paths; }
   double seconds() const { return seconds_; }
@@ -34,6 +36,7 @@ class PathsBeside {
   const pathtrace::PathFilm& film() const { return film_; }
 
  private:
+  LightPathPilot pilot_;
   pathtrace::ReferenceOptions options_;
   pathtrace::PathFilm film_;
   double seconds_ = 0;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/timer.h"
 #include "lumirank/lumirank.h"
 #include "methods/method.h"
+#include "pipeline/light_path_pilot.h"
 #include "pipeline/pixel_features.h"
 #include "pipeline/prepared.h"
 
@@ -28,6 +30,8 @@ struct RenderTask {
   double part_of_usual = 1;
   PictureFeatures* features = nullptr;  // told by passes and paths to who gives it
   double denoiser_pixel_seconds = 0;    // where it was tried out
+  // Beside paths that carry all light, where that was found out.
+  std::optional<LightPathPilot> light_paths = std::nullopt;
 };
 
 RenderResult run_render(RenderTask task, const RenderSettings& settings, const Sinks& sinks,

@@ -28,10 +28,10 @@ View smaller(const View& view, int divisor) {
   return less;
 }
 
-double paths_worth_a_pixel(const View& view) {
-  constexpr double kPixelsOfPath = 60000, kMin = 1, kMax = 8;
+double paths_worth_a_pixel(const View& view, double light_paths) {
+  constexpr double kPixelsOfPath = 60000, kMin = 1, kMax = 8, kWorthOfLightPath = 0.5;
   const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
-  return std::clamp(pixels / kPixelsOfPath, kMin, kMax);
+  return std::clamp(pixels / kPixelsOfPath / (1 + kWorthOfLightPath * light_paths), kMin, kMax);
 }
 
 Picture enlarged(const Picture& picture, int width, int height) {

@@ -17,8 +17,9 @@ View smaller(const View& view, int divisor);
 
 // A film of half the width and height, enlarged by features of all pixels, is the better picture where fewer
 // paths than this fit for each pixel: four times as many are left there, and the larger a picture is, the
-// less of it is as small as a pixel.
-double paths_worth_a_pixel(const View& view);
+// less of it is as small as a pixel. Fewer of those that have so many light paths beside them, which take as
+// long as several.
+double paths_worth_a_pixel(const View& view, double light_paths = 0);
 
 // The picture at another size, linearly interpolated between centers of pixels.
 Picture enlarged(const Picture& picture, int width, int height);

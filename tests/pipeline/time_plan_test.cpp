@@ -32,6 +32,15 @@ double planned_seconds(const TimePlan& p, const TimeCosts& c) {
          static_cast<double>(p.lights) * c.light + p.direct_seconds + p.rest_seconds + p.film_seconds;
 }
 
+TEST(SmallerFilm, PathsWithLightPathsBesideThemAreWorthMore) {
+  View view;
+  view.width = 640, view.height = 360;
+  EXPECT_NEAR(paths_worth_a_pixel(view), 3.84, 1e-9);
+  EXPECT_NEAR(paths_worth_a_pixel(view, 2), 1.92, 1e-9);
+  view.width = 320, view.height = 180;
+  EXPECT_EQ(paths_worth_a_pixel(view, 2), 1);
+}
+
 TEST(TimePlan, AHugeBudgetLowersNothing) {
   const TimePlan p = plan_time(budget_of(1e6), ordinary_costs());
   EXPECT_GE(p.spp, 4);
