@@ -5,13 +5,6 @@
 namespace lumirank {
 namespace {
 
-std::uint32_t reversed(std::uint32_t x) {
-  x = __builtin_bswap32(x);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
-}
-
 // Each half of a number by itself.
 std::uint64_t both_reversed(std::uint64_t x) {
   x = __builtin_bswap64(x);
@@ -20,6 +13,7 @@ std::uint64_t both_reversed(std::uint64_t x) {
   x = ((x & 0x5555555555555555u) << 1) | ((x >> 1) & 0x5555555555555555u);
   return x << 32 | x >> 32;
 }
+std::uint32_t reversed(std::uint32_t x) { return static_cast<std::uint32_t>(both_reversed(x)); }
 
 // A permutation of 32-bit numbers in which a bit depends on itself and lower bits only, hence Owen's
 // scrambling of a number whose first digit is its lowest bit. Sums, odd factors, and x ^ (x · even) all are

@@ -27,23 +27,9 @@ AreaPoint sample_area(const AreaEmitter& emitter, float u1, Vec2f u2) {
   const auto& t = emitter.triangles[chosen.index];
   point.triangle = static_cast<std::uint32_t>(chosen.index);
   point.barycentric = warp_triangle(u2);
-  point.position = t.p0 + t.e1 * point.barycentric.x + t.e2 * point.barycentric.y;
+  point.position = t.at(point.barycentric);
   point.pdf = t.area > 0 ? chosen.pmf / t.area : 0.0f;
   return point;
-}
-
-DirectSample sample_direct_triangle(const AreaEmitter::Triangle& triangle, Vec3f point, Vec2f u) {
-  DirectSample s;
-  s.barycentric = warp_triangle(u);
-  const Vec3f to_light = triangle.p0 + triangle.e1 * s.barycentric.x + triangle.e2 * s.barycentric.y - point;
-  const float distance2 = length_squared(to_light);
-  if (!(distance2 > 0)) return s;
-  s.distance = std::sqrt(distance2);
-  s.direction = to_light / s.distance;
-  s.normal = triangle.normal;
-  s.radiance = triangle.mean_radiance;
-  s.pdf = pdf_direct_triangle(triangle, s.direction, s.distance);
-  return s;
 }
 
 float pdf_direct_triangle(const AreaEmitter::Triangle& triangle, Vec3f direction, float distance) {

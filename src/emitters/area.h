@@ -20,9 +20,8 @@ struct AreaPoint {
 };
 AreaPoint sample_area(const AreaEmitter& emitter, float u1, Vec2f u2);
 
-// Direct illumination by one given triangle (its index is left 0), and the solid-angle density with which
-// sample_direct_triangle finds a point of it along `direction` at `distance`.
-DirectSample sample_direct_triangle(const AreaEmitter::Triangle& triangle, Vec3f point, Vec2f u);
+// Solid-angle density of a point that is drawn evenly on a triangle and found along `direction` at
+// `distance`; 0 from behind.
 float pdf_direct_triangle(const AreaEmitter::Triangle& triangle, Vec3f direction, float distance);
 
 }  // namespace lumirank::emitters

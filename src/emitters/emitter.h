@@ -26,6 +26,7 @@ struct AreaEmitter {
     float area = 0;
     Rgb mean_radiance;
     std::uint32_t mesh_triangle = 0;
+    Vec3f at(Vec2f barycentric) const { return p0 + e1 * barycentric.x + e2 * barycentric.y; }
   };
   std::uint32_t placement = 0;  // of the ray scene
   std::vector<Triangle> triangles;

@@ -23,6 +23,8 @@ constexpr float kFlat = 1e-3f;
 // Twenty thousand triangles, some hundredths of a second.
 constexpr std::size_t kMostComparisons = std::size_t{1} << 28;
 constexpr float kAlike = 1e-3f;  // relative, of radiance
+// Of all around: what may be open. More than rounding, less than what would be missed.
+constexpr double kOpen = 1e-4;
 // Of the distance: smaller balls are seen as points are.
 constexpr float kLeastSize = 1e-4f;
 
@@ -105,7 +107,7 @@ std::optional<RoundLamp> round_lamp(const AreaEmitter& emitter) {
   if (emitter.triangles.size() < kLeastTriangles || !emitter.seen || !alike(emitter)) return std::nullopt;
   const RoundLamp ball = ball_around(emitter);
   if (!(emitter.total_area >= kLeastFill * 4 * kPi * square(ball.radius))) return std::nullopt;
-  if (!(std::abs(times_around(emitter, ball.center) - 1) < 1e-3)) return std::nullopt;
+  if (!(std::abs(times_around(emitter, ball.center) - 1) < kOpen)) return std::nullopt;
   // What has its corners on the ball and goes around its center once is convex, but for how its triangles
   // meet.
   if (!on_ball(emitter, ball) && !convex(emitter, ball)) return std::nullopt;

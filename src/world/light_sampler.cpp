@@ -129,11 +129,6 @@ float LightSampler::near_share(const emitters::LitPoint& at) const {
   return tree_.reaches(at) ? near_share_ : 0.0f;
 }
 
-LightSampler::OnLamp LightSampler::draw_by_power(const emitters::AreaEmitter& area, Vec2f u) {
-  const auto chosen = area.by_power.sample(u.x);
-  return {static_cast<std::uint32_t>(chosen.index), warp_triangle({chosen.remapped, u.y})};
-}
-
 const emitters::AreaEmitter* LightSampler::area_of(int emitter) const {
   return std::get_if<emitters::AreaEmitter>(&world_.emitters()[static_cast<std::size_t>(emitter)].kind);
 }
@@ -154,14 +149,17 @@ LightSampler::Sample LightSampler::sample_leaf(std::uint32_t leaf, Vec3f at, Vec
   const auto [emitter, triangle] = leaves_[leaf];
   s.emitter = emitter;
   const auto* area = area_of(emitter);
-  if (!area)
+  if (!area) {
     s.direct = world_.sample_direct(emitter, at, 0, u);
-  else if (triangle != kRound)
+  } else if (triangle != kRound) {
     s.direct = light_from(emitter, *area, {triangle, warp_triangle(u)}, at);
-  else if (const auto cone = round_[static_cast<std::size_t>(emitter)]->cone(at))
+  } else if (const auto cone = round_[static_cast<std::size_t>(emitter)]->cone(at)) {
     s.direct = light_in(emitter, *cone, at, u);
-  else
-    s.direct = light_from(emitter, *area, draw_by_power(*area, u), at);
+  } else {
+    const auto drawn = area->by_power.sample(u.x);
+    s.direct = light_from(
+        emitter, *area, {static_cast<std::uint32_t>(drawn.index), warp_triangle({drawn.remapped, u.y})}, at);
+  }
   return s;
 }
 
@@ -191,7 +189,7 @@ emitters::DirectSample LightSampler::light_in(int emitter, const emitters::Round
 emitters::DirectSample LightSampler::light_from(int emitter, const emitters::AreaEmitter& area,
                                                 const OnLamp& place, Vec3f at) const {
   const auto& triangle = area.triangles[place.triangle];
-  const Vec3f position = triangle.p0 + triangle.e1 * place.barycentric.x + triangle.e2 * place.barycentric.y;
+  const Vec3f position = triangle.at(place.barycentric);
   emitters::DirectSample s;
   s.triangle = place.triangle, s.barycentric = place.barycentric;
   s.normal = triangle.normal;
@@ -259,19 +257,11 @@ LightSampler::Place LightSampler::sample_place(const emitters::LitPoint& at, dou
   const Leaf& leaf = leaves_[pick.light];
   Place place{.position = {}, .choice = pick.pmf, .leaf = pick.light, .triangle = 0, .barycentric = {}};
   if (const auto* area = area_of(leaf.emitter)) {
-    OnLamp on_lamp{leaf.triangle, warp_triangle(u)};
-    if (leaf.triangle == kRound) {
-      if (const auto cone = round_[static_cast<std::size_t>(leaf.emitter)]->cone(at.position)) {
-        const auto s = light_in(leaf.emitter, *cone, at.position, u);
-        if (!(s.pdf > 0)) return {};
-        on_lamp = {s.triangle, s.barycentric};
-      } else {
-        on_lamp = draw_by_power(*area, u);
-      }
-    }
-    place.triangle = on_lamp.triangle, place.barycentric = on_lamp.barycentric;
-    const auto& triangle = area->triangles[place.triangle];
-    place.position = triangle.p0 + triangle.e1 * place.barycentric.x + triangle.e2 * place.barycentric.y;
+    // Also where it shines away from that point: it is to shine on others.
+    const auto drawn = sample_leaf(pick.light, at.position, u).direct;
+    if (!(drawn.distance > 0)) return {};
+    place.triangle = drawn.triangle, place.barycentric = drawn.barycentric;
+    place.position = area->triangles[place.triangle].at(place.barycentric);
     return place;
   }
   std::visit(
@@ -298,8 +288,7 @@ float LightSampler::pdf_place(const emitters::LitPoint& at, const Sample& found)
   if (!std::isfinite(d.distance)) return 0;
   float pdf = d.pdf;
   if (const auto* area = area_of(found.emitter)) {
-    const auto& t = area->triangles[d.triangle];
-    const Vec3f place = t.p0 + t.e1 * d.barycentric.x + t.e2 * d.barycentric.y;
+    const Vec3f place = area->triangles[d.triangle].at(d.barycentric);
     pdf = pdf_for_another(found.emitter, *area, d.triangle, place, at.position, d.direction, d.distance);
   }
   return pdf * tree_.pmf(at, leaf_of(found.emitter, d.triangle));

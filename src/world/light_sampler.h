@@ -85,7 +85,6 @@ class LightSampler {
   const emitters::AreaEmitter* area_of(int emitter) const;  // nullptr: of another kind
   const emitters::AreaEmitter* area_hit(const SurfaceHit& hit) const;
   std::uint32_t leaf_of(int emitter, std::uint32_t triangle) const;
-  static OnLamp draw_by_power(const emitters::AreaEmitter& area, Vec2f u);
   // Density per solid angle with which a place on an emitter, at `distance` along `direction` from a point,
   // is drawn for that point once its leaf is; and the same of a place that was drawn for another point.
   float pdf_for(int emitter, const emitters::AreaEmitter& area, std::uint32_t triangle, Vec3f at,

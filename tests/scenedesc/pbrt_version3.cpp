@@ -126,6 +126,24 @@ TEST(PbrtVersion3, MaterialsThatTransmit) {
   EXPECT_TRUE(std::holds_alternative<NullBsdfDesc>(old_material("\"none\"").bsdfs.at(0).kind));
 }
 
+TEST(PbrtVersion3, WhatIsMattAndLetsLightThroughHasTheColorsOfBoth) {
+  const SceneDesc scene =
+      old_material("\"uber\" \"color Kd\" [ .2 .2 .1 ] \"color Ks\" [ 0 0 0 ] \"color Kt\" [ .4 .4 .4 ]");
+  const auto& mixture = inner<MixtureDesc>(scene);
+  ASSERT_EQ(mixture.parts.size(), 2u);
+  const float share = mixture.parts[0].weight.value;
+  EXPECT_FALSE(mixture.parts[0].complement);
+  EXPECT_TRUE(mixture.parts[1].complement);
+  EXPECT_EQ(mixture.parts[1].weight.value, share);
+  const auto& glass =
+      std::get<DielectricDesc>(scene.bsdfs.at(static_cast<std::size_t>(mixture.parts[0].bsdf)).kind);
+  expect_near(glass.specular_transmittance.value * share, Rgb(.4f), 1e-6f);
+  const auto& two =
+      std::get<TwoSidedDesc>(scene.bsdfs.at(static_cast<std::size_t>(mixture.parts[1].bsdf)).kind);
+  const auto& matt = std::get<DiffuseDesc>(scene.bsdfs.at(static_cast<std::size_t>(two.front)).kind);
+  expect_near(matt.reflectance.value * (1 - share), Rgb(.2f, .2f, .1f), 1e-6f);
+}
+
 TEST(PbrtVersion3, MixturesCountTheAmountOfTheFirst) {
   const SceneDesc scene = old_material(
       "\"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"rgb amount\" [ .2 .2 .2 ]",

@@ -50,6 +50,8 @@ class MaterialMaker {
   Widths widths(float fallback);
   int matte();
   int glossy(const ColorInput& diffuse, const ColorInput& specular, float eta, bool schlick);
+  // What has the color, counted by a share of the surface.
+  ColorInput over(const ColorInput& color, float share);
   int uber();
   int metal();
   int mirror();

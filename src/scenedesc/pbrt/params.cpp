@@ -161,6 +161,14 @@ void Params::rename(std::string_view from, std::string_view to) {
     if (p.name == from) p.name = to;
 }
 
+void Params::drop(std::string_view name) {
+  for (std::size_t i = own_.size(); i-- > 0;) {
+    if (own_[i].name != name) continue;
+    own_.erase(own_.begin() + static_cast<std::ptrdiff_t>(i));
+    used_.erase(used_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 void Params::add_number(const char* name, float value) {
   own_.push_back({ParamType::number, "float", name, where_, {static_cast<double>(value)}, {}, {}});
   used_.push_back(false);

@@ -66,6 +66,7 @@ class Params {
 
   // For what has another name in another version: the parameter's own, not those by Attribute.
   void rename(std::string_view from, std::string_view to);
+  void drop(std::string_view name);
   void add_number(const char* name, float value);
   void add_text(const char* name, const std::string& value);
   void replace_text(const char* name, const std::string& value);

@@ -40,11 +40,10 @@ void upgrade_camera(Params& p, std::string& type) {
 }
 
 void upgrade_light(Params& p, const std::string& type) {
-  p.ignore({"samples", "nsamples"});
-  if (type == "infinite" || type == "exinfinite" || type == "goniometric") p.rename("mapname", "filename");
+  if (type == "infinite" || type == "goniometric") p.rename("mapname", "filename");
   // Exporters write an empty name where there is no map.
-  if (p.text("filename", " ").empty()) p.rename("filename", "");
-  p.ignore({""});
+  if (p.text("filename", " ").empty()) p.drop("filename");
+  p.ignore({"samples", "nsamples"});
 }
 
 void upgrade_area_light(Params& p, std::string& type) {

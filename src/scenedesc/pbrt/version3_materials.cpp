@@ -11,6 +11,9 @@ namespace {
 
 bool is_dark(const ColorInput& c) { return c.texture == kNone && is_black(c.value); }
 
+// Half of all light, where a texture says.
+float brightness(const ColorInput& c) { return c.texture == kNone ? luminance(c.value) : 0.5f; }
+
 }  // namespace
 
 int MaterialMaker::make_of_version3(const std::string& type) {
@@ -88,26 +91,30 @@ int MaterialMaker::glossy(const ColorInput& diffuse, const ColorInput& specular,
   return two_sided(out);
 }
 
+ColorInput MaterialMaker::over(const ColorInput& color, float share) {
+  if (color.texture == kNone) return {clamp_below(color.value / share, 1), kNone};
+  return {Rgb(0), reader_.add_texture("", p_.where(), ScaleTextureDesc{color, Rgb(1 / share)})};
+}
+
 int MaterialMaker::uber() {
   const float eta = p_.positive(p_.has("index") ? "index" : "eta", 1.5f);
   const ColorInput diffuse = color("Kd", 0.25f), specular = color("Ks", 0.25f);
   const ColorInput mirrored = color("Kr", 0), refracted = color("Kt", 0);
   int made = kNone;
   if (!is_dark(refracted)) {
-    // What goes through does not meet what is matt, so both share the surface.
-    const float share = refracted.texture == kNone ? std::min(1.0f, luminance(refracted.value)) : 0.5f;
-    const bool clear = is_dark(diffuse) && is_dark(specular);
+    // What goes through does not meet what is matt, so both share the surface, as they share the light.
+    const float through = brightness(refracted), matt = brightness(diffuse);
+    const float share = through / std::max(through + matt, 1e-6f);
     DielectricDesc glass;
     glass.eta = eta;
-    glass.specular_reflectance = mirrored, glass.specular_transmittance = refracted;
-    made = add(glass);
-    if (clear) {
+    glass.specular_reflectance = over(mirrored, share), glass.specular_transmittance = over(refracted, share);
+    made = detailed(add(glass));
+    if (share < 1)
+      made = add(MixtureDesc{
+          {{{share}, false, made},
+           {{share}, true, glossy(over(diffuse, 1 - share), over(specular, 1 - share), eta, false)}}});
+    else
       widths(0.1f);
-      made = detailed(made);
-    } else {
-      made =
-          add(MixtureDesc{{{{share}, false, made}, {{share}, true, glossy(diffuse, specular, eta, false)}}});
-    }
   } else if (is_dark(mirrored)) {
     made = glossy(diffuse, specular, eta, false);
   } else {
