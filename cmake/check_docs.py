@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Fails if a page of docs/ names a file or a member (`Class::member`) that the sources do not have.
+"""Fails if a page of docs/ names a file or a member (`Class::member`) that the sources do not have, or if its table of contents
+gives another number of entries than a part has.
 
-Not read are the two pages that record what was, decisions and measurements, and the list of former names.
+Not read for names are the two pages that record what was, decisions and measurements, and the list of former names.
 """
 import pathlib
 import re
@@ -16,6 +17,13 @@ MEMBER = re.compile(r"^(?:(?:\w+)::)*(\w+)::(\w+)\b")
 SHOWN_ONLY = {"uniform_sampling"}  # docs/adding-a-method.md makes it
 
 
+def wrong_contents(text):
+    """The parts of a page whose number of entries, in brackets in its contents, is not theirs."""
+    parts = {part.split("\n")[0]: part.count("\n### ") for part in text.split("\n## ")[1:]}
+    said = re.findall(r"^- \[(.+?)\]\(#.+?\) \((\d+)\)$", text, re.M)
+    return [f"{name} has {parts.get(name, 0)} entries, not {number}" for name, number in said if parts.get(name) != int(number)]
+
+
 def main():
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True)
     files = [f for f in listed.stdout.splitlines() if (ROOT / f).exists()]
@@ -23,6 +31,7 @@ def main():
     words = [set(re.findall(r"\w+", text)) for text in sources]
     errors = []
     for page in sorted((ROOT / "docs").glob("*.md")):
+        errors += [f"docs/{page.name}: {wrong}" for wrong in wrong_contents(page.read_text())]
         if page.name in HISTORY:
             continue
         for code in CODE.findall(page.read_text().split("## Former names")[0]):

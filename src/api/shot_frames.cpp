@@ -85,6 +85,7 @@ void write_averaged(const Shot& shot, FrameAlone& alone, const std::deque<pipeli
   RenderResult& result = *alone.result;
   with_threads(shot.settings.render.threads, [&] {
     Picture picture = pipeline::to_picture(pipeline::filtered_in_time(frames, own));
+    pipeline::refilter(picture, frames[own].lacking_filter);
     result.picture.planes[0] = std::move(picture.planes[0]);
   });
   result.report.numbers["shot.averaged"] = static_cast<double>(frames.size());

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "film/filter.h"
+#include "film/refilter.h"
 #include "film/tiled_splat.h"
 #include "pipeline/sound_pixels.h"
 #include "pipeline/traced_indirect.h"
@@ -178,6 +179,12 @@ image::Image image_of(const Picture& picture) {
   for (std::size_t p = 0; p < image.pixels.size(); ++p)
     image.pixels[p] = {rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2]};
   return image;
+}
+
+void refilter(Picture& picture, const std::optional<film::Filter>& filter) {
+  if (!filter) return;
+  Picture wider = to_picture(film::refiltered(image_of(picture), *filter));
+  picture.planes[0] = std::move(wider.planes[0]);
 }
 
 }  // namespace lumirank::pipeline

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "film/filter.h"
 #include "image/image.h"
 #include "lumirank/lumirank.h"
 #include "pipeline/prepared.h"
@@ -54,5 +56,7 @@ image::Image develop(const View& view, const transport::Receivers& rows, std::sp
 Picture to_picture(const image::Image& image);
 // The colors of a picture.
 image::Image image_of(const Picture& picture);
+// Where the picture that is shown has the box in the place of a filter (film/refilter.h).
+void refilter(Picture& picture, const std::optional<film::Filter>& filter);
 
 }  // namespace lumirank::pipeline

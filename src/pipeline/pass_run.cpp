@@ -257,8 +257,10 @@ class PassRun {
     if (timed()) choices_.record("passes", done_);
     result_.picture = sized_for(picture_->complete(picture_->with_all_noise()), task_.view);
     if (task_.features && passes_->denoising().traced())
-      *task_.features = {passes_->denoising().features(), noise_for_a_shot()};
+      *task_.features = {passes_->denoising().features(), noise_for_a_shot(),
+                         passes_->denoising().lacking_filter()};
     if (!result_.interrupted) denoise();
+    if (!task_.features) refilter(result_.picture, passes_->denoising().lacking_filter());
     report();
     return std::move(result_);
   }

@@ -60,6 +60,7 @@ class PathRun {
     if (paths() == 0) throw Cancelled();
     result_.interrupted = !whole;
     picture();
+    if (!task_.features) refilter(result_.picture, denoising_.lacking_filter());
     report();
     return std::move(result_);
   }
@@ -182,7 +183,8 @@ class PathRun {
                                                                                : film_->halves_difference();
     if (task_.features && denoising_.traced())
       *task_.features = {denoising_.features(),
-                         apart ? denoising_.with_emission_as_noise(difference) : difference};
+                         apart ? denoising_.with_emission_as_noise(difference) : difference,
+                         denoising_.lacking_filter()};
     if (const auto denoised = denoising_.denoised(traced, {difference, film_->sent_deviation(), apart})) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       image::Image whole = denoising_.enlarged(denoised->picture);

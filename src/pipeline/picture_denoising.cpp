@@ -42,7 +42,10 @@ image::Image without_fireflies(const pathtrace::PathFilm& film, bool with_emissi
 
 PictureDenoising::PictureDenoising(const RenderSettings& settings, const View& view,
                                    methods::TimedChoices& choices, const Sinks& sinks, double pixel_seconds)
-    : settings_(settings), choices_(choices), pixel_seconds_(pixel_seconds) {
+    : settings_(settings),
+      choices_(choices),
+      asked_filter_(world::make_filter(view.sensor.film.filter)),
+      pixel_seconds_(pixel_seconds) {
   if (settings.denoise == Denoise::off) return;
   const denoise::Found& found = denoise::Denoiser::find();
   denoiser_ = found.denoiser;
@@ -104,6 +107,11 @@ double PictureDenoising::feature_seconds(double one_sample, double left) const {
 View PictureDenoising::filtered(View view) const {
   if (denoiser_) view.sensor.film.filter = scenedesc::FilterDesc{.kind = scenedesc::FilterKind::box};
   return view;
+}
+
+std::optional<film::Filter> PictureDenoising::lacking_filter() const {
+  if (!denoiser_) return {};
+  return asked_filter_;
 }
 
 bool PictureDenoising::trace_first(const world::World& world, const View& view, const Recipe& recipe,

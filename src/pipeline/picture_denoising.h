@@ -10,6 +10,7 @@
 
 #include "denoise/denoiser.h"
 #include "denoise/shrinkage.h"
+#include "film/filter.h"
 #include "image/image.h"
 #include "lumirank/settings.h"
 #include "methods/common/timed_choices.h"
@@ -58,6 +59,8 @@ class PictureDenoising {
   // With the filter that denoised pictures have: a wider one makes the noise of neighbors alike, and a
   // denoiser takes it for shape then.
   View filtered(View view) const;
+  // What the asked view has, where pictures of filtered() views have the box in its place.
+  std::optional<film::Filter> lacking_filter() const;
 
   // Most features follow the first pass, when it is known what a pass takes; but what mirrors show of lamps
   // takes as many as there are passes. `view`: the whole one, also where the picture is smaller; `recipe`:
@@ -97,6 +100,7 @@ class PictureDenoising {
   methods::TimedChoices& choices_;
   std::shared_ptr<const denoise::Denoiser> denoiser_;
   std::string trouble_;
+  film::Filter asked_filter_;
   double pixel_seconds_ = 0, seconds_ = 0;  // of a pixel, of the whole film
   int divisor_ = 1;
   denoise::Features features_are_ = denoise::Features::clean;

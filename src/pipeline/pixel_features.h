@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/sinks.h"
+#include "film/filter.h"
 #include "image/image.h"
 #include "pipeline/recipe.h"
 #include "world/world.h"
@@ -26,6 +28,7 @@ struct PixelFeatures {
 struct PictureFeatures {
   PixelFeatures means;
   image::Image difference;  // twice the noise before a denoiser, of the picture's size or smaller
+  std::optional<film::Filter> lacking_filter;  // the picture has the box in its place
 };
 
 class PixelFeatureTracing {

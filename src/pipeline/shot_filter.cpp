@@ -235,7 +235,7 @@ std::vector<FilmSurface> film_surfaces(const world::World& world, const View& vi
 
 ShotFrame shot_frame(std::shared_ptr<const world::World> world, const View& view, image::Image picture,
                      const PictureFeatures& features) {
-  ShotFrame frame{view, std::move(world), std::move(picture), {}, {}, {}};
+  ShotFrame frame{view, std::move(world), std::move(picture), {}, {}, {}, features.lacking_filter};
   frame.surfaces = film_surfaces(*frame.world, view);
   if (of_size(features.means.albedo, frame.picture)) frame.albedo = features.means.albedo;
   frame.tolerance = tolerances(frame.picture, features);

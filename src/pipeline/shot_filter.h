@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "image/image.h"
@@ -46,6 +47,7 @@ struct ShotFrame {
   // By pixel: which part of its light it may differ from a pair and still be averaged with it. 0: it is left
   // as it is, as what shines by itself.
   std::vector<float> tolerance;
+  std::optional<film::Filter> lacking_filter;  // as of its PictureFeatures
 };
 ShotFrame shot_frame(std::shared_ptr<const world::World> world, const View& view, image::Image picture,
                      const PictureFeatures& features);
