@@ -38,7 +38,27 @@ std::uint32_t pascal(std::uint32_t i) {
   return i ^ (i >> 16);
 }
 
+// The transpose: bit r is the sum of the index's bits k with C(r, k) odd. Any rows of that triangle which
+// follow each other are as independent as the first ones, C(r, ·) being polynomials in r of each degree; so
+// whichever bits of a number it is added to are full already, the next ones are a permutation of the index's
+// lowest.
+std::uint32_t pascal_rows(std::uint32_t i) {
+  i ^= (i << 1) & 0xaaaaaaaau;
+  i ^= (i << 2) & 0xccccccccu;
+  i ^= (i << 4) & 0xf0f0f0f0u;
+  i ^= (i << 8) & 0xff00ff00u;
+  return i ^ (i << 16);
+}
+
 }  // namespace
+
+SampleStream SampleStream::over_film(std::uint64_t seed, Stage stage, std::uint64_t use, std::uint32_t place,
+                                     std::uint64_t sample) {
+  SampleStream stream(seed, stage, use, sample);
+  stream.over_film_ = true, stream.reversed_place_ = reversed(place);
+  stream.rng_ = Rng(seed, stage, hash_ids(use, stage, place), sample);
+  return stream;
+}
 
 SampleStream::SampleStream(std::uint64_t seed, Stage stage, std::uint64_t pixel, std::uint64_t sample)
     : key_(hash_ids(seed, stage, pixel, sample & 1)),
@@ -50,8 +70,14 @@ SampleStream::Bits SampleStream::next_pair() {
   // The order of the points is shuffled within all aligned blocks of 2^k, so that every pair of dimensions
   // stays even, and two pairs know nothing of each other.
   const std::uint32_t i = reversed(scramble_from_lowest(reversed_index_, key));
-  const std::uint64_t x = scramble_from_lowest(i, mix64(key ^ 1)),
-                      y = scramble_from_lowest(pascal(i), mix64(key ^ 2));
+  std::uint32_t dx = i, dy = pascal(i);
+  if (over_film_) {
+    // The order within aligned blocks is shuffled here, too.
+    const std::uint32_t z = reversed(scramble_from_lowest(reversed_place_, mix64(key ^ 3)));
+    dx ^= pascal_rows(z), dy ^= pascal_rows(pascal(z));
+  }
+  const std::uint64_t x = scramble_from_lowest(dx, mix64(key ^ 1)),
+                      y = scramble_from_lowest(dy, mix64(key ^ 2));
   const std::uint64_t both = both_reversed(x << 32 | y);
   return {static_cast<std::uint32_t>(both >> 32), static_cast<std::uint32_t>(both)};
 }

@@ -16,6 +16,15 @@ class SampleStream {
   // compared. Any one sample alone is as random as from Rng: means are unbiased for every number of samples.
   SampleStream(std::uint64_t seed, Stage stage, std::uint64_t pixel, std::uint64_t sample);
 
+  // Of one film: the same for each pixel alone, and samples of neighboring pixels are spread evenly as well,
+  // so that their errors tend to be opposite. Of the first 2^k samples of either half in any aligned block of
+  // 2^b × 2^b pixels, each of 2^(k+2b) intervals along either dimension of a pair has one. (The aim is that
+  // of A. G. M. Ahmed, P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
+  // Hierarchical Ordering of Pixels", 2020; here for any number of samples.) Only over seeds is such a stream
+  // uniform. `place`: the pixel's morton2; `use`: which of the streams of a pixel and sample.
+  static SampleStream over_film(std::uint64_t seed, Stage stage, std::uint64_t use, std::uint32_t place,
+                                std::uint64_t sample);
+
   // The next pair of dimensions. What a path needs after its first vertices is drawn independently.
   Vec2f next_2d() {
     if (pairs_ >= kPairs) return rng_.next_2d();
@@ -46,7 +55,8 @@ class SampleStream {
   Bits next_pair();
 
   std::uint64_t key_;
-  std::uint32_t reversed_index_, pairs_ = 0;
+  std::uint32_t reversed_index_, reversed_place_ = 0, pairs_ = 0;
+  bool over_film_ = false;
   Rng rng_;
 };
 

@@ -53,10 +53,10 @@ struct PathTracer::Walk {
 PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
     : world_(world), lights_(world.light_sampler()), settings_(settings) {}
 
-Radiance PathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+Radiance PathTracer::trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                            std::vector<MergePoint>* merge_points) const {
-  Walk walk{.random = SampleStream(settings_.seed, Stage::reference, pixel, sample),
-            .key = hash_ids(settings_.seed, Stage::opacity, pixel, sample),
+  Walk walk{.random = SampleStream::over_film(settings_.seed, Stage::reference, 0, place, sample),
+            .key = hash_ids(settings_.seed, Stage::opacity, place, sample),
             .ray = ray,
             .counts = settings_.paths != Paths::rest,
             .from_eye = beside_.has_value(),

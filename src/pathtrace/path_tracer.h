@@ -58,10 +58,11 @@ class PathTracer {
   // Light paths are traced beside, and what they find as well counts the less.
   void share_with_light_paths(const LightPathBalance& balance) { beside_ = balance; }
 
-  // Radiance arriving along `ray`, one random path keyed by (pixel, sample). Passing straight through null
+  // Radiance arriving along `ray`, one random path: sample `sample` of the pixel whose morton2 is `place`, as
+  // SampleStream::over_film spreads them. Passing straight through null
   // surfaces, cut-outs and thin glass is not a vertex and does not count for the depth. Places at which light
   // paths are to be merged with it are added to `merge_points`, if not nullptr, without their pixels.
-  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+  Radiance trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                  std::vector<MergePoint>* merge_points = nullptr) const;
 
   // A non-specular vertex, and the direction in which a path leaves it.

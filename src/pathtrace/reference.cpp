@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/error.h"
+#include "base/morton.h"
 #include "base/parallel.h"
 #include "base/sample_stream.h"
 #include "base/timer.h"
@@ -88,9 +89,9 @@ struct PathFilm::Impl {
     std::variant<PathTracer, VolumePathTracer> tracer;
     world::Camera camera;
 
-    Radiance trace(const geometry::Ray& ray, std::uint64_t pixel, std::uint64_t sample,
+    Radiance trace(const geometry::Ray& ray, std::uint32_t place, std::uint64_t sample,
                    std::vector<MergePoint>* points) const {
-      return std::visit([&](const auto& by) { return by.trace(ray, pixel, sample, points); }, tracer);
+      return std::visit([&](const auto& by) { return by.trace(ray, place, sample, points); }, tracer);
     }
   };
   world::View view;
@@ -156,18 +157,18 @@ struct PathFilm::Impl {
   void trace_pixel(std::size_t p, int begin, int end, std::vector<MergePoint>* points) {
     const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
     const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
-    const std::uint64_t id =
-        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.sensor.film.width) +
-        static_cast<std::uint64_t>(x);
+    const auto place =
+        static_cast<std::uint32_t>(morton2(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
     for (int s = begin; s < end; ++s) {
-      const Tracing& now = this->at(id, s);
-      SampleStream random(options.seed, Stage::reference, ~id, static_cast<std::uint64_t>(s));
+      const Tracing& now = this->at(place, s);
+      SampleStream random =
+          SampleStream::over_film(options.seed, Stage::reference, 1, place, static_cast<std::uint64_t>(s));
       const auto at = filter.sample(random.next_2d());
       const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
                        static_cast<float>(y) + 0.5f + at.offset.y};
       const std::size_t before = points ? points->size() : 0;
       const Radiance radiance =
-          now.trace(now.camera.ray(film, random.next_2d()), id, static_cast<std::uint64_t>(s), points);
+          now.trace(now.camera.ray(film, random.next_2d()), place, static_cast<std::uint64_t>(s), points);
       for (std::size_t k = before; points && k < points->size(); ++k)
         (*points)[k].pixel = static_cast<std::uint32_t>(p), (*points)[k].throughput *= at.weight;
       if (!is_finite(radiance.total()))

@@ -69,9 +69,9 @@ VolumePathTracer::VolumePathTracer(const world::World& world, std::uint64_t seed
       max_depth_(max_depth),
       eye_medium_(eye_medium) {}
 
-Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+Radiance VolumePathTracer::trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                                  std::vector<MergePoint>* merge_points) const {
-  Walk walk{.random = SampleStream(seed_, Stage::reference, pixel, sample),
+  Walk walk{.random = SampleStream::over_film(seed_, Stage::reference, 0, place, sample),
             .ray = ray,
             .hero = 0,
             .medium = eye_medium_,

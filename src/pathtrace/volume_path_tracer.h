@@ -30,7 +30,7 @@ class VolumePathTracer {
 
   // As PathTracer::trace; scattering in a medium is a non-specular vertex, and what a medium emits is
   // emission. Light paths are merged on surfaces alone.
-  Radiance trace(geometry::Ray ray, std::uint64_t pixel, std::uint64_t sample,
+  Radiance trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                  std::vector<MergePoint>* merge_points = nullptr) const;
 
  private:

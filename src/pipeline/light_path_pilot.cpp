@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/morton.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/timer.h"
@@ -159,17 +160,17 @@ class Pilot {
   EyePath trace_eye(const EyeTracer& tracer, int x, int y, int k,
                     std::vector<pathtrace::MergePoint>* points = nullptr) const {
     if (stops()) return {0, 0};
-    const auto p =
-        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
-    Rng random(seed_, Stage::reference, ~p, static_cast<std::uint64_t>(k));
+    const auto place =
+        static_cast<std::uint32_t>(morton2(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
+    Rng random(seed_, Stage::reference, ~static_cast<std::uint64_t>(place), static_cast<std::uint64_t>(k));
     const Vec2f jitter = random.next_2d();
     const Vec2f film{static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y};
     const geometry::Ray ray = camera_.ray(film, random.next_2d());
     const std::size_t before = points ? points->size() : 0;
     const auto radiance = std::visit(
-        [&](const auto& by) { return by.trace(ray, p, static_cast<std::uint64_t>(k), points); }, tracer);
+        [&](const auto& by) { return by.trace(ray, place, static_cast<std::uint64_t>(k), points); }, tracer);
     for (std::size_t j = before; points && j < points->size(); ++j)
-      (*points)[j].pixel = static_cast<std::uint32_t>(p);
+      (*points)[j].pixel = static_cast<std::uint32_t>(y * width_ + x);
     // Besides its segments a path has a ray to a light at each vertex.
     return {static_cast<double>(luminance(radiance.direct + radiance.indirect)),
             2 * static_cast<std::size_t>(radiance.segments)};

@@ -110,7 +110,7 @@ TEST(HairUnbiased, LightThatFurSendsToAWall) {
 TEST(HairUnbiased, LightThatFurGetsFromAWall) {
   expect_equal_means(
       test::point_camera("1.5,1.2,1.5", "0,0.15,0", 12, 14) + spot("-0.1,1.9,0", "-0.9,0.9,0", 27),
-      "indirect", 384);
+      "indirect", 640);
 }
 
 // Light that went through, which the tests above have not; a light on hair and a receiver on hair.

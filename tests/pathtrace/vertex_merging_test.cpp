@@ -131,8 +131,9 @@ TEST(VertexMerging, ALimitOfDepthCountsBothParts) {
 TEST(VertexMerging, WhatAMirrorShowsInThinFogIsTheSame) {
   SceneMaker scene = bulb_and_mirror();
   fill(scene, fog({0.2f, 0.15f, 0.1f}, Rgb(0.8f), Rgb(0.3f)));
-  expect_same(means(scene, Paths::all, 0, kPicturesOfEach),
-              means(scene, Paths::all, 1, kPicturesOfEach, false, 0.5), 0.1);
+  // Once in a while a path of fog finds the bulb as bright as all others together.
+  expect_same(means(scene, Paths::all, 0, 3 * kPicturesOfEach),
+              means(scene, Paths::all, 1, 3 * kPicturesOfEach, false, 0.5), 0.1);
 }
 
 TEST(VertexMerging, AnyNumberOfThreadsGivesTheSameBits) {
