@@ -27,7 +27,7 @@ std::vector<std::string> convert(const Scene& scene, const std::string& filename
   painter.mean = [&](const scenedesc::EmitterDesc& light) {
     const auto& profile = std::get<scenedesc::ProfileLightDesc>(light.kind);
     const auto made = world::make_profile_light(profile, light.where, desc.lumens_per_unit, notes);
-    return made.profile->integral() / (4 * kPi);
+    return mean(made.profile->total()) / (4 * kPi);
   };
   const scenedesc::WrittenScene written = scenedesc::write_mitsuba(desc, filename, painter);
   std::vector<std::string> names;

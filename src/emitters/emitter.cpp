@@ -44,9 +44,7 @@ struct Power {
   }
   Rgb operator()(const PointEmitter& e) const { return e.intensity * (4 * kPi); }
   Rgb operator()(const SpotEmitter& e) const { return e.intensity * static_cast<float>(spot_solid_angle(e)); }
-  Rgb operator()(const ProfileEmitter& e) const {
-    return e.scale * static_cast<float>(e.profile->integral());
-  }
+  Rgb operator()(const ProfileEmitter& e) const { return e.scale * e.profile->total(); }
   Rgb operator()(const DirectionalEmitter& e) const { return directional_value(e) * (kPi * square(radius)); }
   Rgb operator()(const EnvironmentEmitter& e) const { return total_radiance(e) * (kPi * square(radius)); }
 };
@@ -163,7 +161,7 @@ struct Emit {
     if (!(drawn.pdf > 0)) return out;
     out.direction = e.frame.to_world(drawn.local);
     out.normal = out.direction;
-    out.weight = e.scale * (e.profile->eval(drawn.local) / drawn.pdf);
+    out.weight = e.scale * e.profile->intensity(drawn.local) / drawn.pdf;
     return out;
   }
   Emission operator()(const DirectionalEmitter& e) const {

@@ -13,7 +13,7 @@
 #include "base/frame.h"
 #include "base/rgb.h"
 #include "base/vec.h"
-#include "emitters/profile.h"
+#include "emitters/intensity_profile.h"
 
 namespace lumirank::emitters {
 
@@ -46,12 +46,14 @@ struct SpotEmitter {
   float cutoff = 0, beam = 0;          // radians
   Rgb intensity_towards(Vec3f direction) const;
 };
-struct ProfileEmitter {  // a point whose intensity follows an angular table
+struct ProfileEmitter {  // a point whose intensity follows a table or a picture
   Vec3f position;
   Frame frame;  // the profile's axes in the world; may mirror
   Rgb scale;    // W/sr where the profile is 1
-  std::shared_ptr<const AngularProfile> profile;
-  Rgb intensity_towards(Vec3f direction) const { return scale * profile->eval(frame.to_local(direction)); }
+  std::shared_ptr<const IntensityProfile> profile;
+  Rgb intensity_towards(Vec3f direction) const {
+    return scale * profile->intensity(frame.to_local(direction));
+  }
 };
 struct DirectionalEmitter {
   Vec3f direction;           // in which the light travels

@@ -88,7 +88,7 @@ float AngularProfile::eval(Vec3f local) const {
   return std::max(0.0f, a + (b - a) * r.fraction);
 }
 
-AngularProfile::Sample AngularProfile::sample(Vec2f u) const {
+IntensityProfile::Sample AngularProfile::sample(Vec2f u) const {
   if (!(integral() > 0)) return {};
   const auto row = rows_.sample(u.x);
   const auto column = columns_[row.index].sample(u.y);

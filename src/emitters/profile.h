@@ -6,12 +6,13 @@
 
 #include "base/distribution.h"
 #include "base/vec.h"
+#include "emitters/intensity_profile.h"
 
 namespace lumirank::emitters {
 
 // Bilinear in the angles between the entries, 0 beyond the first and last polar angle. Local directions:
 // theta is measured from +z, phi from +x towards +y.
-class AngularProfile {
+class AngularProfile final : public IntensityProfile {
  public:
   // Radians, both ascending: theta within [0, π] with two or more entries, phi from exactly 0 to 2π (float)
   // with two or more, the last column equal to the first. values: theta.size() × phi.size(), phi fastest,
@@ -19,20 +20,17 @@ class AngularProfile {
   AngularProfile(std::vector<float> theta, std::vector<float> phi, std::vector<float> values);
 
   float eval(Vec3f local) const;  // of a unit vector
+  Rgb intensity(Vec3f local) const override { return Rgb(eval(local)); }
 
-  struct Sample {
-    Vec3f local;
-    float pdf = 0;  // in solid angle; 0: the profile is black
-  };
   // Follows the table: the cell by its integral, evenly over the solid angle of the cell.
-  Sample sample(Vec2f u) const;
-  float pdf(Vec3f local) const;
+  Sample sample(Vec2f u) const override;
+  float pdf(Vec3f local) const override;
 
   double integral() const { return rows_.total(); }  // ∫ eval dω, exact
-  float max_value() const { return max_value_; }
-  // All directions that are not dark lie between these polar angles.
-  float min_theta() const { return min_theta_; }
-  float max_theta() const { return max_theta_; }
+  Rgb total() const override { return Rgb(static_cast<float>(integral())); }
+  float max_value() const override { return max_value_; }
+  float min_theta() const override { return min_theta_; }
+  float max_theta() const override { return max_theta_; }
   std::size_t memory_bytes() const;
 
  private:

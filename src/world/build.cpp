@@ -140,6 +140,10 @@ class World::Builder {
   void place() {
     placed_ = place_shapes(desc_, store_, notes_);
     if (placed_.empty()) throw InputError(whole_scene(), "the scene has no geometry", "add a shape");
+    for (const auto& e : desc_.emitters) {
+      const auto* projection = std::get_if<scenedesc::ProjectionLightDesc>(&e.kind);
+      pictures_.push_back(projection ? textures_.color(projection->picture, e.where) : scatter::ColorInput{});
+    }
     for (const Placed& p : placed_) {
       textures_.needed_by(*p.shape);
       material_of(p);
@@ -277,7 +281,8 @@ class World::Builder {
   }
 
   void add_other_lights() {
-    w_.environment = add_lights(desc_, names_, w_.units, notes_, w_.emitters);
+    w_.environment =
+        add_lights(desc_, pictures_, w_.materials.textures, names_, w_.units, notes_, w_.emitters);
     w_.radiance.resize(w_.emitters.size());
     for (std::size_t k = 0; k < w_.emitters.size(); ++k) {
       const auto* sun = std::get_if<emitters::DirectionalEmitter>(&w_.emitters[k].kind);
@@ -342,6 +347,7 @@ class World::Builder {
   Notes notes_;
   MeshStore store_;
   TextureBuilder textures_;
+  std::vector<scatter::ColorInput> pictures_;  // that emitters throw
   MaterialBuilder materials_;
   EmitterNames names_;
   std::map<int, int> face_of_pane_;      // materials of panes: what stands for them

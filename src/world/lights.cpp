@@ -9,6 +9,7 @@
 #include "world/emission_mesh.h"
 #include "world/environment_builder.h"
 #include "world/profile_builder.h"
+#include "world/projection_builder.h"
 #include "world/surface.h"
 
 namespace lumirank::world {
@@ -167,7 +168,8 @@ em::ProfileEmitter with_edge(const em::SpotEmitter& spot, sd::SpotLightDesc::Edg
 
 }  // namespace
 
-int add_lights(const sd::SceneDesc& desc, EmitterNames& names, const Units& units, Notes& notes,
+int add_lights(const sd::SceneDesc& desc, const std::vector<scatter::ColorInput>& pictures,
+               const scatter::TextureSet& textures, EmitterNames& names, const Units& units, Notes& notes,
                std::vector<em::Emitter>& out) {
   EnvironmentBuilder environment(notes);
   const auto push = [&](auto kind, const sd::EmitterDesc& from) {
@@ -176,7 +178,8 @@ int add_lights(const sd::SceneDesc& desc, EmitterNames& names, const Units& unit
     names.name(emitter, from.id, from.where);
     out.push_back(std::move(emitter));
   };
-  for (const sd::EmitterDesc& e : desc.emitters) {
+  for (std::size_t k = 0; k < desc.emitters.size(); ++k) {
+    const sd::EmitterDesc& e = desc.emitters[k];
     if (const auto* point = std::get_if<sd::PointLightDesc>(&e.kind)) {
       const Rgb intensity = units.power_to_world(point->intensity);
       check_color(intensity, "the intensity", e.where);
@@ -196,6 +199,12 @@ int add_lights(const sd::SceneDesc& desc, EmitterNames& names, const Units& unit
       moved.intensity = units.power_to_world(profile->intensity);
       check_color(moved.intensity, "the intensity", e.where);
       push(make_profile_light(moved, e.where, desc.lumens_per_unit, notes), e);
+    } else if (const auto* projection = std::get_if<sd::ProjectionLightDesc>(&e.kind)) {
+      sd::ProjectionLightDesc moved = *projection;
+      moved.to_world = units.to_world(projection->to_world);
+      moved.intensity = units.power_to_world(projection->intensity);
+      check_color(moved.intensity, "the intensity", e.where);
+      push(make_projection_light(moved, e.where, pictures[k], textures), e);
     } else if (const auto* sun = std::get_if<sd::DirectionalLightDesc>(&e.kind)) {
       check_color(sun->irradiance, "the irradiance", e.where);
       push(em::DirectionalEmitter{checked_direction(sun->direction, e.where), sun->irradiance, 1}, e);

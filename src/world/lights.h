@@ -45,7 +45,10 @@ void check_light(float value, const char* what, const SourceLocation& where);
 
 // Point, spot, directional light and everything infinitely far; environments are summed into one emitter,
 // which comes last. Returns its index, or -1 if there is none.
-int add_lights(const scenedesc::SceneDesc& desc, EmitterNames& names, const Units& units, Notes& notes,
+//
+// `pictures`: of the emitters that throw one, by their number; of the finished set.
+int add_lights(const scenedesc::SceneDesc& desc, const std::vector<scatter::ColorInput>& pictures,
+               const scatter::TextureSet& textures, EmitterNames& names, const Units& units, Notes& notes,
                std::vector<emitters::Emitter>& out);
 
 }  // namespace lumirank::world

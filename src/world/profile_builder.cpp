@@ -17,18 +17,6 @@ namespace {
 // The table keeps the picture's details up to here.
 constexpr int kFinestTable = 1024;
 
-Frame axes_of(const Transform& to_world, const SourceLocation& where) {
-  const Vec3f x = to_world.vector({1, 0, 0}), y = to_world.vector({0, 1, 0}), z = to_world.vector({0, 0, 1});
-  const double volume = to_world.determinant3();
-  const double size = double{length(x)} * length(y) * length(z);
-  if (!to_world.is_finite() || !(size > 0) || !(std::abs(volume) > 1e-6 * size))
-    throw InputError(where, "to_world is singular or not finite",
-                     "use rotations, translations and mirrorings");
-  Frame frame = Frame::from_normal_tangent(normalize(z), normalize(x));
-  if (volume < 0) frame.t = -frame.t;
-  return frame;
-}
-
 // P. Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008: a direction's place in the
 // unit square. Its distance from the square's center along the diagonals tells the polar angle.
 Vec2f octahedral_place(double theta, double phi) {
@@ -109,6 +97,18 @@ em::AngularProfile from_picture(const sd::ProfileLightDesc& light, const SourceL
 }
 
 }  // namespace
+
+Frame axes_of(const Transform& to_world, const SourceLocation& where) {
+  const Vec3f x = to_world.vector({1, 0, 0}), y = to_world.vector({0, 1, 0}), z = to_world.vector({0, 0, 1});
+  const double volume = to_world.determinant3();
+  const double size = double{length(x)} * length(y) * length(z);
+  if (!to_world.is_finite() || !(size > 0) || !(std::abs(volume) > 1e-6 * size))
+    throw InputError(where, "to_world is singular or not finite",
+                     "use rotations, translations and mirrorings");
+  Frame frame = Frame::from_normal_tangent(normalize(z), normalize(x));
+  if (volume < 0) frame.t = -frame.t;
+  return frame;
+}
 
 em::AngularProfile profile_from_octahedral(int size, const std::vector<float>& picture) {
   const int rows = std::clamp(size, 16, kFinestTable), columns = 2 * rows;

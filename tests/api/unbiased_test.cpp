@@ -51,6 +51,29 @@ void expect_equal_means(const char* only) {
 TEST(Unbiased, BruteForceAgreesWithThePathTracerOnDirectLight) { expect_equal_means("direct"); }
 TEST(Unbiased, BruteForceAgreesWithThePathTracerOnIndirectLight) { expect_equal_means("indirect"); }
 
+// A picture that a point light throws has its colors by columns and by paths.
+TEST(Unbiased, AProjectedPictureIsTheSameByColumnsAndByPaths) {
+  const Scene scene = test::load_text(
+      test::point_camera("0,0.5,3", "0,0,0", 16, 40) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"-20\"/><scale "
+      "value=\"2\"/></transform></shape><emitter type=\"projector\"><texture type=\"checkerboard\" "
+      "name=\"irradiance\"><rgb name=\"color0\" value=\"1, 0.2, 0\"/><rgb name=\"color1\" value=\"0, 0.5, "
+      "3\"/></texture><transform name=\"to_world\"><lookat origin=\"0.5,1,2\" target=\"0,0,0\" "
+      "up=\"0,1,0\"/></transform></emitter>");
+  RenderSettings settings;
+  settings.denoise = Denoise::off;
+  settings.view.only = LightPart::direct;
+  settings.traced.direct = DirectLight::matrix;
+  settings.method.name = "brute-force";
+  settings.view.spp = 256;
+  const auto columns = mean_color(render(scene, settings).picture),
+             paths = mean_color(reference(scene, settings, {.spp = 256}).picture);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_GT(paths[c], 0.01);
+    EXPECT_NEAR(columns[c] / paths[c], 1, 0.01) << c;  // where samples lie in pixels
+  }
+}
+
 // A lamp over a shining floor: however the direct light is divided between columns and traced samples, the
 // sum is the same.
 TEST(Unbiased, DirectLightAtGlossyReceiversAgreesHoweverItIsDivided) {

@@ -200,7 +200,7 @@ TEST(ProfileEmitter, InverseSquareAlongItsDirections) {
   const DirectSample s = sample_direct({"", 0, p}, p.position + towards * 3.0f, 0.1f, {0.2f, 0.3f});
   EXPECT_TRUE(s.delta);
   EXPECT_EQ(s.pdf, 1);
-  EXPECT_NEAR(s.radiance.g, 2 * p.profile->eval(direction(0.7, 1)) / 9, 1e-4);
+  EXPECT_NEAR(s.radiance.g, 2 * p.profile->intensity(direction(0.7, 1)).g / 9, 1e-4);
   EXPECT_EQ(sample_direct({"", 0, p}, p.position, 0.1f, {0.2f, 0.3f}).pdf, 0);
 }
 

@@ -31,6 +31,58 @@ TEST(MitsubaParameters, DefinesWinOverDefaults) {
   EXPECT_EQ(radius(parse(text, "3.0.0", {{{"r", "5"}}, false})), 5);
 }
 
+TEST(MitsubaEmitters, PicturesOfProjectorsAndSpots) {
+  const std::string picture =
+      "<texture type=\"checkerboard\" name=\"NAME\"/><transform name=\"to_world\"><translate x=\"3\"/>"
+      "</transform></emitter>";
+  const auto with_picture = [&](const std::string& emitter, const char* name) {
+    std::string text = emitter + picture;
+    text.replace(text.find("NAME"), 4, name);
+    const SceneDesc scene = parse(kCamera + text);
+    EXPECT_TRUE(scene.warnings.empty());
+    return std::get<ProjectionLightDesc>(scene.emitters.at(0).kind);
+  };
+  const auto projector = with_picture(
+      "<emitter type=\"projector\"><float name=\"fov\" value=\"30\"/><string name=\"fov_axis\" "
+      "value=\"larger\"/><float name=\"scale\" value=\"4\"/>",
+      "irradiance");
+  EXPECT_EQ(projector.means, ProjectionLightDesc::Picture::irradiance);
+  EXPECT_EQ(projector.fov, 30);
+  EXPECT_EQ(projector.axis, FieldAxis::larger);
+  EXPECT_EQ(projector.intensity, Rgb(4));
+  EXPECT_EQ(projector.picture.texture, 0);
+  EXPECT_EQ(projector.to_world.origin().x, 3);
+  // Its +x is left and its +y up, where v is 0 at the top.
+  EXPECT_EQ(projector.to_uv, (UvTransform{{-0.5f, 0, 0.5f, 0, -0.5f, 0.5f}}));
+  const auto spot = with_picture(
+      "<emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"40\"/><rgb name=\"intensity\" "
+      "value=\"1, 2, 3\"/>",
+      "texture");
+  EXPECT_EQ(spot.means, ProjectionLightDesc::Picture::intensity);
+  EXPECT_EQ(spot.fov, 80);
+  EXPECT_TRUE(spot.square);
+  EXPECT_EQ(spot.cutoff_angle, 40);
+  EXPECT_EQ(spot.beam_width, 30);
+  EXPECT_EQ(spot.intensity, Rgb(1, 2, 3));
+  EXPECT_EQ(spot.to_uv, (UvTransform{{0.5f, 0, 0.5f, 0, 0.5f, 0.5f}}));
+  EXPECT_THROW(parse(kCamera + "<emitter type=\"projector\"><float name=\"fov\" value=\"180\"/></emitter>"),
+               InputError);
+  // A texture on a plane does not reach beyond a half-space.
+  const SceneDesc wide = parse(kCamera +
+                               "<emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"95\"/><texture "
+                               "type=\"checkerboard\" name=\"texture\"/></emitter>");
+  EXPECT_EQ(wide.warnings.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<SpotLightDesc>(wide.emitters.at(0).kind));
+}
+
+TEST(MitsubaEmitters, ADirectionalAreaIsDark) {
+  const SceneDesc scene =
+      parse(kCamera + "<shape type=\"rectangle\"><emitter type=\"directionalarea\"/></shape>");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].what.find("directionalarea"), std::string::npos);
+  EXPECT_FALSE(scene.shapes.at(0).emitter);
+}
+
 TEST(MitsubaParameters, AnUnusedDefineIsNamed) {
   const SceneDesc scene = parse(kCamera, "3.0.0", {{{"nobody", "5"}}, false});
   ASSERT_EQ(scene.warnings.size(), 1u);

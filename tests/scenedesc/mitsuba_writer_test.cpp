@@ -151,6 +151,15 @@ SceneDesc everything_it_has(const test::TemporaryFolder& folder) {
   };
   light(PointLightDesc{{1, 2, 3}, Rgb(4, 5, 6)}, "bulb");
   light(SpotLightDesc{Transform::rotate(1, 0, 0, 90), Rgb(2), 30, 10});
+  ProjectionLightDesc projector;
+  projector.intensity = Rgb(3), projector.picture.texture = bitmap, projector.fov = 50;
+  projector.means = ProjectionLightDesc::Picture::irradiance, projector.axis = FieldAxis::diagonal;
+  projector.to_uv = {{-0.5f, 0, 0.5f, 0, -0.5f, 0.5f}};
+  light(projector);
+  ProjectionLightDesc spot;
+  spot.to_world = Transform::translate(1, 2, 3), spot.intensity = Rgb(1, 2, 3), spot.picture.texture = bitmap;
+  spot.fov = 80, spot.square = true, spot.cutoff_angle = 40, spot.beam_width = 10;
+  light(spot);
   light(DirectionalLightDesc{{0, 0, -1}, Rgb(2)});
   light(ConstantEnvironmentDesc{Rgb(0.1f, 0.2f, 0.3f)});
   std::ofstream(folder / "sky.exr") << "";
@@ -230,6 +239,11 @@ TEST(MitsubaWriter, WhatMitsubaLacksIsNamedAndReplaced) {
   expect("edge of a spot", [](SceneDesc& scene) {
     SpotLightDesc light;
     light.edge = SpotLightDesc::Edge::smooth_cosine;
+    scene.emitters.emplace_back().kind = light;
+  });
+  expect("projection light", [](SceneDesc& scene) {
+    ProjectionLightDesc light;
+    light.picture.texture = 0;
     scene.emitters.emplace_back().kind = light;
   });
   expect("IES", [](SceneDesc& scene) {

@@ -147,7 +147,6 @@ TEST(PbrtWarnings, WhatThereIsNot) {
   for (const char* world :
        {"MakeNamedMedium \"fog\" \"string type\" \"cloud\" \"float frequency\" 1 MediumInterface \"fog\" "
         "\"\"\n",
-        "LightSource \"projection\" \"string filename\" \"x.png\"\n",
         "Material \"subsurface\" \"rgb mfp\" [ 1 1 1 ]\n",
         "Texture \"t\" \"float\" \"wrinkled\" \"float roughness\" 1\n",
         "Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ] \"integer indices\" [ 0 1 2 ] \"integer "

@@ -66,6 +66,22 @@ TEST(PbrtLight, PowerOfGoniometricLights) {
   EXPECT_FALSE(light<ProfileLightDesc>("\"goniometric\" \"string filename\" \"lamp.exr\"").power);
 }
 
+TEST(PbrtLight, Projections) {
+  std::ofstream(testing::TempDir() + "slide.exr") << "only its name matters here";
+  const auto slide = light<ProjectionLightDesc>(
+      "\"projection\" \"string filename\" \"slide.exr\" \"float scale\" 2 \"float fov\" 40 \"float power\" "
+      "9");
+  expect_near(slide.intensity, Rgb(2), 1e-6f);
+  EXPECT_EQ(slide.means, ProjectionLightDesc::Picture::intensity);
+  EXPECT_EQ(slide.fov, 40);
+  EXPECT_EQ(slide.axis, FieldAxis::smaller);
+  EXPECT_EQ(slide.power.value_or(0), 9);
+  EXPECT_EQ(slide.picture.texture, 0);
+  // Upright: v is 1 at the top.
+  EXPECT_EQ(slide.to_uv, (UvTransform{{0.5f, 0, 0.5f, 0, 0.5f, 0.5f}}));
+  EXPECT_EQ(light<ProjectionLightDesc>("\"projection\" \"string filename\" \"slide.exr\"").fov, 90);
+}
+
 TEST(PbrtLight, PlacesAndDirections) {
   const SceneDesc scene = pbrt_world(
       "Translate 0 0 1 Scale 2 2 2\nLightSource \"point\" \"point3 from\" [ 1 2 3 ]\n"

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "base/warp.h"
+#include "emitters/profile.h"
 #include "scenedesc/schema/scene_desc.h"
 #include "transport/cpu/scene_matrix.h"
 #include "transport/lights/virtual_lights.h"

@@ -97,7 +97,7 @@ Pair one_pair(const RandomEnds& ends, Index i, Index j) {
     pair.slack = 2e-6 * max_component(l.power[j]) * max_component(fx) * g;
     fy = Rgb(static_cast<float>(std::clamp((spot.cutoff - angle) / (spot.cutoff - spot.beam), 0.0, 1.0)));
     if (spot.profile) {
-      fy = Rgb(spot.profile->eval(spot.frame.to_local(-w)));
+      fy = spot.profile->intensity(spot.frame.to_local(-w));
       // The azimuth is good to 3e-7 over the sine; the table's slopes are 1 per radian and less.
       pair.slack *= 1 + 4 / std::max(1e-3, std::sin(angle));
       // At the edge of the table the intensity drops to 0.

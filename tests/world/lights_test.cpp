@@ -97,6 +97,72 @@ TEST(GoniometricLight, PowerScalesThePicture) {
   EXPECT_THROW(build(desc), InputError);
 }
 
+// A picture of 2 × 1 pixels, red and green, thrown by 90° along the longer side.
+sd::ProjectionLightDesc red_and_green(sd::SceneDesc& desc) {
+  const std::string path = testing::TempDir() + "lumirank_slide.pfm";
+  image::Image image(2, 1);
+  image.at(0, 0) = {1, 0, 0}, image.at(1, 0) = {0, 1, 0};
+  image::write_image(path, {image, {}});
+  sd::TextureDesc texture;
+  sd::BitmapTextureDesc bitmap;
+  bitmap.filename = path, bitmap.filter = sd::FilterMode::nearest;
+  bitmap.wrap_u = bitmap.wrap_v = sd::WrapMode::clamp;
+  texture.kind = bitmap;
+  desc.textures.push_back(texture);
+  sd::ProjectionLightDesc light;
+  light.picture.texture = static_cast<int>(desc.textures.size()) - 1;
+  light.fov = 90, light.intensity = Rgb(2);
+  return light;
+}
+
+TEST(ProjectionLight, ThrowsItsPictureOnSquarePixels) {
+  auto desc = empty_scene();
+  add_shape(desc, sd::CubeDesc{}, Transform::translate(0, 0, -9));
+  sd::ProjectionLightDesc light = red_and_green(desc);
+  desc.emitters.emplace_back().kind = light;
+  light.to_uv.m[0] = -0.5f;  // mirrored
+  light.means = sd::ProjectionLightDesc::Picture::irradiance;
+  desc.emitters.emplace_back().kind = light;
+  light.axis = sd::FieldAxis::y, light.square = true;
+  light.cutoff_angle = 40, light.beam_width = 20;
+  light.means = sd::ProjectionLightDesc::Picture::intensity;
+  desc.emitters.emplace_back().kind = light;
+  light.power = 100;
+  desc.emitters.emplace_back().kind = light;
+  const World w = build(desc);
+  const auto at = [&](int emitter, Vec3f p) {
+    return w.sample_direct(emitter, p, 0.5f, {0.5f, 0.5f}).radiance;
+  };
+  // Half as high as it is wide: 1 and ½ at distance 1.
+  const auto expect = [](Rgb found, Rgb expected) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-3f * max_component(expected));
+  };
+  const float far2 = 1 + 0.36f + 0.16f;
+  expect(at(0, {-0.6f, 0.4f, 1}), Rgb(2, 0, 0) / far2);
+  expect(at(0, {0.6f, 0.4f, 1}), Rgb(0, 2, 0) / far2);
+  expect(at(0, {1.2f, -0.8f, 2}), Rgb(0, 2, 0) / (4 * far2));
+  EXPECT_TRUE(is_black(at(0, {0, 0.51f, 1})));
+  EXPECT_TRUE(is_black(at(0, {0.6f, 0.4f, -1})));
+  // π times the picture on the plane: what faces the light there gets it without the cosine.
+  expect(at(1, {0.6f, 0.4f, 1}), Rgb(2 * kPi, 0, 0) * std::sqrt(far2));
+  expect(at(1, {-1.2f, 0.2f, 2}), Rgb(0, 2 * kPi, 0) / 4 * std::sqrt(1 + 0.36f + 0.01f));
+  // Half of the way from the cut-off to the beam; the frame is a square.
+  const float half_way = std::tan(30 * kPi / 180);
+  expect(at(2, {half_way, 0.02f, 1}), Rgb(1, 0, 0) / (1 + square(half_way)));
+  expect(at(2, {-0.02f, half_way, 1}), Rgb(0, 1, 0) / (1 + square(half_way)));
+  EXPECT_TRUE(is_black(at(2, {0.9f, 0, 1})));
+  EXPECT_NEAR(luminance(emitters::power(w.emitters()[3], 1)) / (2 * 100), 1, 1e-4f);
+}
+
+TEST(ProjectionLight, RefusesAFieldThatIsNone) {
+  auto desc = empty_scene();
+  add_shape(desc, sd::CubeDesc{}, Transform::translate(0, 0, -9));
+  sd::ProjectionLightDesc light = red_and_green(desc);
+  light.fov = 180;
+  desc.emitters.emplace_back().kind = light;
+  EXPECT_THROW(build(desc), InputError);
+}
+
 TEST(AreaLight, PowerUnderTransforms) {
   // A rectangle of 4 by ½ turned and mirrored: A = 2, Φ = π·A·L.
   auto desc = empty_scene();

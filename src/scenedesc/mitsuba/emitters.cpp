@@ -35,7 +35,7 @@ PointLightDesc point_light(Plugin& p) {
   return out;
 }
 
-SpotLightDesc spot_light(Reader& reader, Plugin& p) {
+SpotLightDesc spot_light(Plugin& p) {
   SpotLightDesc out;
   out.to_world = p.regular_transform();
   out.intensity = emission(p, "intensity");
@@ -46,10 +46,37 @@ SpotLightDesc spot_light(Reader& reader, Plugin& p) {
   if (out.beam_width > out.cutoff_angle)
     throw InputError(p.where_of("beam_width"),
                      "\"beam_width\" of " + p.title() + " is above its \"cutoff_angle\"");
-  if (p.has("texture")) {
-    reader.warn(p.where_of("texture"), "a texture of spot lights", "no texture");
+  return out;
+}
+
+// A spot light with a texture throws it: on the square around its cone.
+decltype(EmitterDesc::kind) with_texture(Reader& reader, Plugin& p, const SpotLightDesc& spot) {
+  constexpr float kWidest = 89;  // degrees
+  if (spot.cutoff_angle > kWidest) {
+    reader.warn(p.where_of("texture"), "a texture of a spot light wider than a half-space", "no texture");
     p.ignore({"texture"});
+    return spot;
   }
+  ProjectionLightDesc out;
+  out.to_world = spot.to_world, out.intensity = spot.intensity;
+  out.picture = p.color("texture", Rgb(1), Intent::emission);
+  out.fov = 2 * spot.cutoff_angle, out.square = true;
+  out.cutoff_angle = spot.cutoff_angle, out.beam_width = spot.beam_width;
+  return out;
+}
+
+ProjectionLightDesc projector(Plugin& p) {
+  ProjectionLightDesc out;
+  out.to_world = p.regular_transform();
+  out.picture = p.color("irradiance", Rgb(1), Intent::emission);
+  out.means = ProjectionLightDesc::Picture::irradiance;
+  out.intensity = Rgb(not_negative(p, "scale", 1));
+  out.fov = p.positive("fov", 45);
+  if (!(out.fov < 180))
+    throw InputError(p.where_of("fov"), "\"fov\" of " + p.title() + " is not between 0 and 180",
+                     "give it in degrees");
+  out.axis = field_axis(p, p.text("fov_axis").value_or("x"));
+  out.to_uv = {{-0.5f, 0, 0.5f, 0, -0.5f, 0.5f}};  // as its cameras: +x left, +y up
   return out;
 }
 
@@ -184,7 +211,10 @@ void Reader::build_emitter(const Element& element) {
   if (p.type() == "point") {
     out.kind = point_light(p);
   } else if (p.type() == "spot") {
-    out.kind = spot_light(*this, p);
+    const SpotLightDesc spot = spot_light(p);
+    out.kind = p.has("texture") ? with_texture(*this, p, spot) : spot;
+  } else if (p.type() == "projector") {
+    out.kind = projector(p);
   } else if (p.type() == "ies") {
     const auto light = ies_light(*this, p);
     if (!light) return p.finish();

@@ -83,4 +83,7 @@ class Plugin {
   std::set<std::string> asked_;
 };
 
+// What a "fov_axis" names.
+FieldAxis field_axis(const Plugin& p, const std::string& name);
+
 }  // namespace lumirank::scenedesc::mitsuba

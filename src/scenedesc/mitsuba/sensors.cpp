@@ -87,18 +87,6 @@ FilmDesc film(Reader& reader, const Element* element) {
   return out;
 }
 
-FieldAxis field_axis(const Plugin& p, const std::string& name) {
-  constexpr std::pair<const char*, FieldAxis> kAxes[] = {{"x", FieldAxis::x},
-                                                         {"y", FieldAxis::y},
-                                                         {"diagonal", FieldAxis::diagonal},
-                                                         {"smaller", FieldAxis::smaller},
-                                                         {"larger", FieldAxis::larger}};
-  for (const auto& [known, axis] : kAxes)
-    if (name == known) return axis;
-  throw InputError(p.where_of("fov_axis"), "\"fov_axis\" of " + p.title() + " is \"" + name + "\"",
-                   "x, y, diagonal, smaller and larger are known");
-}
-
 // Across the width, in degrees, and which axis it belongs to.
 std::pair<float, FieldAxis> field_of_view(Plugin& p, const FilmDesc& film) {
   const auto fov = p.number("fov");
@@ -143,6 +131,18 @@ int sample_count(Reader& reader, const Element* element) {
 }
 
 }  // namespace
+
+FieldAxis field_axis(const Plugin& p, const std::string& name) {
+  constexpr std::pair<const char*, FieldAxis> kAxes[] = {{"x", FieldAxis::x},
+                                                         {"y", FieldAxis::y},
+                                                         {"diagonal", FieldAxis::diagonal},
+                                                         {"smaller", FieldAxis::smaller},
+                                                         {"larger", FieldAxis::larger}};
+  for (const auto& [known, axis] : kAxes)
+    if (name == known) return axis;
+  throw InputError(p.where_of("fov_axis"), "\"fov_axis\" of " + p.title() + " is \"" + name + "\"",
+                   "x, y, diagonal, smaller and larger are known");
+}
 
 void Reader::build_sensor(const Element& element) {
   Plugin p(*this, element);

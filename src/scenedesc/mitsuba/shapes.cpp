@@ -110,7 +110,13 @@ void Reader::add_surface(Plugin& p, ShapeDesc& shape) {
   if (bsdfs.size() > 1)
     throw InputError(bsdfs[1]->where, p.title() + " has more than one BSDF", "keep one of them");
   if (!bsdfs.empty()) shape.bsdf = build_bsdf(*bsdfs[0]);
-  if (const Element* emitter = p.take_one("emitter")) {
+  const Element* emitter = p.take_one("emitter");
+  if (emitter && emitter->require("type") == "directionalarea") {
+    // Mitsuba's own path tracer finds none of its light either.
+    warn(emitter->where, "the emitter \"directionalarea\"", "a dark surface");
+    emitter = nullptr;
+  }
+  if (emitter) {
     if (emitter->require("type") != "area")
       throw InputError(emitter->where, "an emitter \"" + emitter->require("type") + "\" in a shape",
                        "only area emitters can be there");

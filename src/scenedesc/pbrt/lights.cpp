@@ -82,6 +82,26 @@ decltype(EmitterDesc::kind) goniometric(Reader& reader, Params& p, const Transfo
   return out;
 }
 
+decltype(EmitterDesc::kind) projection(Reader& reader, Params& p, const Transform& to_world) {
+  const bool old = reader.version3();
+  ProjectionLightDesc out;
+  out.to_world = to_world;
+  out.intensity = old ? spectrum(p, "I") * scale_of(p) : scale_of(p);
+  out.fov = p.number("fov", old ? 45 : 90);
+  if (!(out.fov > 0 && out.fov < 180)) p.fail("fov", "is not between 0 and 180", "give it in degrees");
+  out.axis = FieldAxis::smaller;
+  if (old) out.to_uv.m[4] = -0.5f;  // upside down
+  if (const float power = p.number("power", -1); power > 0) out.power = power;
+  BitmapTextureDesc picture;
+  const auto file =
+      reader.file(p.required_text("filename"), p.where_of("filename"), "picture", kMissingPicture);
+  picture.filename = file.name, picture.missing = file.missing;
+  picture.filter = old ? FilterMode::bilinear : FilterMode::nearest;
+  picture.wrap_u = picture.wrap_v = WrapMode::clamp;
+  out.picture.texture = reader.add_texture("", p.where(), std::move(picture));
+  return out;
+}
+
 DirectionalLightDesc distant(Params& p, const Transform& to_world) {
   DirectionalLightDesc out;
   const Vec3d from = p.point3("from", {0, 0, 0});
@@ -151,9 +171,7 @@ void Reader::read_light(Params& p, const std::string& given) {
   } else if (type == "goniometric") {
     out.kind = goniometric(*this, p, to_world);
   } else if (type == "projection") {
-    warn(p.where(), "the light \"" + type + "\"", "");
-    p.ignore_all();
-    return;
+    out.kind = projection(*this, p, to_world);
   } else {
     throw InputError(p.where(), "the light " + in_quotes(type) + " is not known",
                      "point, spot, distant, infinite, goniometric and projection are");

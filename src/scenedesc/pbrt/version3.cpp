@@ -40,7 +40,7 @@ void upgrade_camera(Params& p, std::string& type) {
 }
 
 void upgrade_light(Params& p, const std::string& type) {
-  if (type == "infinite" || type == "goniometric") p.rename("mapname", "filename");
+  if (type == "infinite" || type == "goniometric" || type == "projection") p.rename("mapname", "filename");
   // Exporters write an empty name where there is no map.
   if (p.text("filename", " ").empty()) p.drop("filename");
   p.ignore({"samples", "nsamples"});

@@ -9,6 +9,8 @@
 #include "base/rgb.h"
 #include "base/transform.h"
 #include "base/vec.h"
+#include "scenedesc/schema/sensor.h"
+#include "scenedesc/schema/textures.h"
 
 namespace lumirank::scenedesc {
 
@@ -52,6 +54,28 @@ struct ProfileLightDesc {
   std::optional<float> power = std::nullopt;
   float tilt_angle = 0;  // ies: degrees away from the position in which it was measured, for its TILT factors
 };
+// A point light that throws a picture: at the origin of to_world, along its +z.
+struct ProjectionLightDesc {
+  enum class Picture {
+    intensity,   // of the light
+    irradiance,  // of the plane at distance 1, times π (as Mitsuba's projector has it)
+  };
+  Transform to_world;
+  Rgb intensity{1};  // W/sr, or W/m² at distance 1, where the picture is 1
+  ColorInput picture{Rgb(1)};
+  Picture means = Picture::intensity;
+  // The frame's field, in degrees, along this axis of the picture; pixels are square, and so is what has
+  // none.
+  float fov = 45;
+  FieldAxis axis = FieldAxis::x;
+  bool square = false;  // the frame, whatever the picture is
+  // From -1 to 1 along the frame's +x and +y to uv.
+  UvTransform to_uv{{0.5f, 0, 0.5f, 0, 0.5f, 0.5f}};
+  // If positive, the light is cut off as a spot's (SpotLightDesc::Edge::angle).
+  float cutoff_angle = 0, beam_width = 0;
+  // On top of `intensity`: the picture is scaled so that at an intensity of 1 the light emits this.
+  std::optional<float> power = std::nullopt;
+};
 struct DirectionalLightDesc {
   Vec3f direction{0, 0, 1};  // in which the light travels
   Rgb irradiance{1};
@@ -88,8 +112,8 @@ struct SunSkyDesc {  // the models "sun", "sky" and "sunsky"
 struct EmitterDesc {
   std::string id;
   SourceLocation where;
-  std::variant<PointLightDesc, SpotLightDesc, ProfileLightDesc, DirectionalLightDesc, ConstantEnvironmentDesc,
-               EnvironmentMapDesc, SunSkyDesc>
+  std::variant<PointLightDesc, SpotLightDesc, ProfileLightDesc, ProjectionLightDesc, DirectionalLightDesc,
+               ConstantEnvironmentDesc, EnvironmentMapDesc, SunSkyDesc>
       kind;
 };
 

@@ -98,6 +98,25 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
     open("point");
     xml_.place("point", "position", profile->to_world.origin());
     xml_.color("intensity", profile->intensity * static_cast<float>(mean));
+  } else if (const auto* projection = std::get_if<ProjectionLightDesc>(&e.kind)) {
+    const bool as_spot = projection->cutoff_angle > 0,
+               as_irradiance = projection->means == ProjectionLightDesc::Picture::irradiance;
+    if (!as_spot && !as_irradiance) return warn(e.where, "a projection light of pbrt", "");
+    open(as_spot ? "spot" : "projector");
+    if (as_spot) {
+      color("texture", projection->picture);
+      xml_.color("intensity", projection->intensity);
+      xml_.number("cutoff_angle", projection->cutoff_angle),
+          xml_.number("beam_width", projection->beam_width);
+    } else {
+      color("irradiance", projection->picture);
+      xml_.number("scale", mean(projection->intensity));
+      xml_.number("fov", projection->fov);
+      constexpr const char* kAxes[] = {"x", "y", "smaller", "larger", "diagonal"};
+      if (projection->axis != FieldAxis::x)
+        xml_.string("fov_axis", kAxes[static_cast<int>(projection->axis)]);
+    }
+    xml_.transform("to_world", projection->to_world);
   } else if (const auto* sun = std::get_if<DirectionalLightDesc>(&e.kind)) {
     open("directional");
     xml_.place("vector", "direction", sun->direction);

@@ -34,7 +34,7 @@ Rgb emitted_power(const VirtualLights& lights, std::size_t j, float scene_radius
       return power * kPi * scene_radius * scene_radius;
     case LightKind::spot: {
       const SpotShape& spot = lights.spots[lights.closure[j]];
-      if (spot.profile) return power * static_cast<float>(spot.profile->integral());
+      if (spot.profile) return power * spot.profile->total();
       return power * 2 * kPi * (1 - 0.5f * (spot.cos_beam + spot.cos_cutoff));
     }
     case LightKind::surface:

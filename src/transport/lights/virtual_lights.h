@@ -9,7 +9,7 @@
 #include "base/rgb.h"
 #include "base/sinks.h"
 #include "base/vec.h"
-#include "emitters/profile.h"
+#include "emitters/intensity_profile.h"
 #include "scatter/closure.h"
 #include "scatter/closure_pool.h"
 #include "transport/lights/shining_lobes.h"
@@ -37,8 +37,8 @@ enum class LightKind : std::uint8_t {
 struct SpotShape {
   float cos_cutoff = 0, cos_beam = 1;
   float cutoff = 0, beam = 0;  // radians
-  // If given, its table is the fall-off, and the angles only bound it.
-  std::shared_ptr<const emitters::AngularProfile> profile;
+  // If given, it is the fall-off, and the angles only bound it.
+  std::shared_ptr<const emitters::IntensityProfile> profile;
   Frame frame;  // the profile's axes in the world
 };
 

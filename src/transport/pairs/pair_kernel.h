@@ -49,8 +49,9 @@ inline float spot_fall_off(const SpotShape& spot, float cosine) {
 }
 
 // Of the intensity on the axis, or of the profile's unit; `direction` (unit) is away from the light.
-inline float spot_share(const SpotShape& spot, float cosine, Vec3f direction) {
-  return spot.profile ? spot.profile->eval(spot.frame.to_local(direction)) : spot_fall_off(spot, cosine);
+inline Rgb spot_share(const SpotShape& spot, float cosine, Vec3f direction) {
+  return spot.profile ? spot.profile->intensity(spot.frame.to_local(direction))
+                      : Rgb(spot_fall_off(spot, cosine));
 }
 
 // What depends on the places and normals alone.
@@ -129,14 +130,15 @@ template <ColumnKind column_kind>
 }
 
 // spot_share() of the spots, 0 where nothing arrives.
-[[gnu::always_inline]] inline Lane spot_shares(const PairExtras& extras, const PairGeometry& at) {
-  Lane fall_off;
+[[gnu::always_inline]] inline Lane3 spot_shares(const PairExtras& extras, const PairGeometry& at) {
+  Lane3 shares{};
   const Lane3 away = at.w * (-at.inv_d);
-  for (int k = 0; k < kLanes; ++k)
-    fall_off[k] = extras.spots[k] && (bits(at.alive) >> k & 1)
-                      ? spot_share(*extras.spots[k], at.spot_cosine[k], {away.x[k], away.y[k], away.z[k]})
-                      : 0;
-  return fall_off;
+  for (int k = 0; k < kLanes; ++k) {
+    if (!(extras.spots[k] && (bits(at.alive) >> k & 1))) continue;
+    const Rgb share = spot_share(*extras.spots[k], at.spot_cosine[k], {away.x[k], away.y[k], away.z[k]});
+    shares.x[k] = share.r, shares.y[k] = share.g, shares.z[k] = share.b;
+  }
+  return shares;
 }
 
 template <std::uint16_t row_kind, ColumnKind column_kind>
