@@ -83,6 +83,58 @@ TEST(MitsubaEmitters, ADirectionalAreaIsDark) {
   EXPECT_FALSE(scene.shapes.at(0).emitter);
 }
 
+TEST(MitsubaShapes, MergedOnesAreThoseInThem) {
+  const std::string two =
+      "<shape type=\"merge\"><shape type=\"sphere\" id=\"a\"/><shape type=\"cube\"/></shape>";
+  const SceneDesc scene = parse(kCamera + two);
+  EXPECT_TRUE(scene.warnings.empty());
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_EQ(scene.shapes[0].id, "a");
+  const SceneDesc grouped = parse(kCamera + "<shape type=\"shapegroup\" id=\"g\"><shape type=\"disk\"/>" +
+                                  two + "</shape><shape type=\"instance\"><ref id=\"g\"/></shape>");
+  EXPECT_TRUE(grouped.warnings.empty());
+  ASSERT_EQ(grouped.shapes.size(), 5u);
+  EXPECT_EQ(std::get<ShapeGroupDesc>(grouped.shapes[3].kind).shapes.size(), 3u);
+}
+
+TEST(MitsubaColors, TabulatedSpectraAreThoseOfPairs) {
+  const auto radiance = [](const std::string& spectrum) {
+    const SceneDesc scene =
+        parse(kCamera + "<shape type=\"sphere\"><emitter type=\"area\">" + spectrum + "</emitter></shape>");
+    EXPECT_TRUE(scene.warnings.empty());
+    return scene.shapes.at(0).emitter->radiance.value;
+  };
+  const Rgb pairs = radiance("<spectrum name=\"radiance\" value=\"400:1, 500:2, 600:5, 700:9\"/>");
+  EXPECT_EQ(pairs,
+            radiance("<spectrum type=\"irregular\" name=\"radiance\"><string name=\"wavelengths\" "
+                     "value=\"400, 500, 600, 700\"/><string name=\"values\" value=\"1 2 5 9\"/></spectrum>"));
+  const std::string regular =
+      "<spectrum type=\"regular\" name=\"radiance\"><float name=\"wavelength_min\" "
+      "value=\"400\"/><float name=\"wavelength_max\" value=\"700\"/><string "
+      "name=\"values\" value=\"VALUES\"/></spectrum>";
+  const auto of = [&](const std::string& values) {
+    std::string text = regular;
+    return radiance(text.replace(text.find("VALUES"), 6, values));
+  };
+  EXPECT_EQ(pairs, of("1, 2, 5, 9"));
+  EXPECT_THROW(of("1"), InputError);
+  EXPECT_THROW(radiance("<spectrum type=\"irregular\" name=\"radiance\"><string name=\"wavelengths\" "
+                        "value=\"400, 500\"/><string name=\"values\" value=\"1 2 5\"/></spectrum>"),
+               InputError);
+}
+
+TEST(MitsubaBsdfs, PolarizedPlasticIsARoughOne) {
+  const SceneDesc scene =
+      parse(kCamera + "<bsdf type=\"pplastic\"><float name=\"alpha\" value=\"0.3\"/></bsdf>");
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto& plastic = std::get<PlasticDesc>(scene.bsdfs.at(0).kind);
+  EXPECT_EQ(plastic.alpha.value, 0.3f);
+  EXPECT_EQ(parse(kCamera + "<bsdf type=\"pplastic\"><float name=\"alpha_u\" value=\"0.3\"/><float "
+                            "name=\"alpha_v\" value=\"0.1\"/></bsdf>")
+                .warnings.size(),
+            1u);
+}
+
 TEST(MitsubaParameters, AnUnusedDefineIsNamed) {
   const SceneDesc scene = parse(kCamera, "3.0.0", {{{"nobody", "5"}}, false});
   ASSERT_EQ(scene.warnings.size(), 1u);

@@ -9,6 +9,7 @@ BsdfKind diffuse(Reader& reader, Plugin& p);
 BsdfKind rough_diffuse(Reader& reader, Plugin& p);
 BsdfKind conductor(Reader& reader, Plugin& p);
 BsdfKind plastic(Reader& reader, Plugin& p);
+BsdfKind polarized_plastic(Reader& reader, Plugin& p);
 BsdfKind ward(Reader& reader, Plugin& p);
 BsdfKind principled(Reader& reader, Plugin& p);
 BsdfKind principled_thin(Reader& reader, Plugin& p);

@@ -16,6 +16,7 @@ const std::map<std::string, Builder>& builders() {
       {"roughconductor", conductor},
       {"plastic", plastic},
       {"roughplastic", plastic},
+      {"pplastic", polarized_plastic},
       {"phong", plain_bsdf<PhongDesc>},
       {"ward", ward},
       {"principled", principled},

@@ -147,6 +147,19 @@ BsdfKind plastic(Reader& reader, Plugin& p) {
   return out;
 }
 
+// Without polarization it is a rough plastic, nearly: of what is reflected within, less comes out there.
+BsdfKind polarized_plastic(Reader& reader, Plugin& p) {
+  PlasticDesc out;
+  read_fields(reader, p, out);
+  const bool has_two = p.has("alpha_u") && p.has("alpha_v");
+  const Roughness r = roughness(reader, p, 0.1f);
+  if (has_two)
+    reader.warn(p.where_of("alpha_v"), "the anisotropy of " + p.title(), "\"alpha_u\" in both directions");
+  out.distribution = r.distribution, out.alpha = r.alpha_u;
+  out.as_mitsuba_3 = true;
+  return out;
+}
+
 BsdfKind ward(Reader& reader, Plugin& p) {
   WardDesc out;
   const std::string variant = p.text("variant").value_or("balanced");

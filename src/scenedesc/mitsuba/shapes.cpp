@@ -90,8 +90,14 @@ AreaEmitterDesc Reader::area_emitter(const Element& element) {
 
 ShapeGroupDesc Reader::shape_group(Plugin& p) {
   ShapeGroupDesc out;
-  for (const Element* member : p.take_all("shape"))
-    if (const int index = build_shape(*member, true); index != kNone) out.shapes.push_back(index);
+  const auto add = [&](const auto& self, const Element& member) -> void {
+    if (member.require("type") == "merge") {
+      for (const Element* part : Plugin(*this, member).take_all("shape")) self(self, *part);
+    } else if (const int index = build_shape(member, true); index != kNone) {
+      out.shapes.push_back(index);
+    }
+  };
+  for (const Element* member : p.take_all("shape")) add(add, *member);
   if (out.shapes.empty()) throw InputError(p.where(), p.title() + " holds no shapes", "nest a <shape>");
   return out;
 }
@@ -147,6 +153,11 @@ int Reader::build_shape(const Element& element, bool in_group) {
   if (in_group && (group || instance))
     throw InputError(p.where(), "a " + type + " in a shapegroup", "groups cannot be nested; take it out");
 
+  if (type == "merge") {  // its shapes as they are
+    for (const Element* part : p.take_all("shape")) build_shape(*part, in_group);
+    p.finish();
+    return kNone;
+  }
   if (group) {
     shape.kind = shape_group(p);
   } else if (instance) {

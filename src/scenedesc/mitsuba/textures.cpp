@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <locale>
+#include <sstream>
+
 #include "scenedesc/mitsuba/plugin.h"
 #include "scenedesc/schema/warnings.h"
 
@@ -88,6 +92,39 @@ BitmapTextureDesc bitmap(Reader& reader, Plugin& p) {
   return out;
 }
 
+// Mitsuba 3's "regular" and "irregular" as its <spectrum value="wavelength:value, …">.
+Element tabulated(Plugin& p, const Element& element) {
+  const auto list = [&](const char* name) {
+    return parse_list(p.required_text(name), p.where_of(name),
+                      "\"" + std::string(name) + "\" of " + p.title());
+  };
+  const std::vector<double> values = list("values");
+  std::vector<double> wavelengths;
+  if (p.type() == "irregular") {
+    wavelengths = list("wavelengths");
+  } else {
+    const double first = static_cast<double>(p.number("wavelength_min", 360)),
+                 last = static_cast<double>(p.number("wavelength_max", 830));
+    for (std::size_t k = 0; k < values.size(); ++k)
+      wavelengths.push_back(first + (last - first) * static_cast<double>(k) /
+                                        static_cast<double>(std::max<std::size_t>(1, values.size() - 1)));
+  }
+  if (values.size() < 2 || wavelengths.size() != values.size())
+    throw InputError(element.where,
+                     p.title() + " has " + std::to_string(wavelengths.size()) + " wavelengths and " +
+                         std::to_string(values.size()) + " values",
+                     "give as many of both, two at least");
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(9);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    text << (k > 0 ? ", " : "") << wavelengths[k] << ':' << values[k];
+  Element spectrum;
+  spectrum.tag = "spectrum", spectrum.where = element.where;
+  spectrum.attributes.emplace_back("value", text.str());
+  return spectrum;
+}
+
 }  // namespace
 
 bool Reader::constant_texture(const Element& element, Intent intent, Rgb& value) {
@@ -105,9 +142,7 @@ bool Reader::constant_texture(const Element& element, Intent intent, Rgb& value)
       } else if (*type == "d65") {
         value = Rgb(1) * p.number("scale", 1);
       } else if (*type == "regular" || *type == "irregular") {
-        warn(element.where, "the <" + element.tag + " type=\"" + *type + "\">", "the gray 0.5");
-        p.ignore_all();
-        value = Rgb(0.5f);
+        value = parse_color(tabulated(p, element), intent);
       } else {
         const auto color = p.color_if(*type == "uniform" || *type == "constant" ? "value" : "color", intent);
         if (!color) throw InputError(element.where, p.title() + " has no value");
