@@ -1,6 +1,7 @@
 #include "base/sample_stream.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lumirank {
 namespace {
@@ -28,26 +29,27 @@ std::uint32_t scramble_from_lowest(std::uint32_t x, std::uint64_t key) {
   return x;
 }
 
-// Sobol's second dimension, lowest bit first: bit r is the sum (mod 2) of the index's bits k with C(k, r)
-// odd, which by Lucas are those whose number k has all the ones of r.
-std::uint32_t pascal(std::uint32_t i) {
-  i ^= (i >> 1) & 0x55555555u;
-  i ^= (i >> 2) & 0x33333333u;
-  i ^= (i >> 4) & 0x0f0f0f0fu;
-  i ^= (i >> 8) & 0x00ff00ffu;
-  return i ^ (i >> 16);
+// Of each half of a number by itself, so that two take as long as one: Sobol's second dimension, lowest bit
+// first. Bit r is the sum (mod 2) of the index's bits k with C(k, r) odd, which by Lucas are those whose
+// number k has all the ones of r.
+std::uint64_t both_pascal(std::uint64_t i) {
+  i ^= (i >> 1) & 0x5555555555555555u;
+  i ^= (i >> 2) & 0x3333333333333333u;
+  i ^= (i >> 4) & 0x0f0f0f0f0f0f0f0fu;
+  i ^= (i >> 8) & 0x00ff00ff00ff00ffu;
+  return i ^ ((i >> 16) & 0x0000ffff0000ffffu);
 }
 
 // The transpose: bit r is the sum of the index's bits k with C(r, k) odd. Any rows of that triangle which
 // follow each other are as independent as the first ones, C(r, ·) being polynomials in r of each degree; so
 // whichever bits of a number it is added to are full already, the next ones are a permutation of the index's
 // lowest.
-std::uint32_t pascal_rows(std::uint32_t i) {
-  i ^= (i << 1) & 0xaaaaaaaau;
-  i ^= (i << 2) & 0xccccccccu;
-  i ^= (i << 4) & 0xf0f0f0f0u;
-  i ^= (i << 8) & 0xff00ff00u;
-  return i ^ (i << 16);
+std::uint64_t both_pascal_rows(std::uint64_t i) {
+  i ^= (i << 1) & 0xaaaaaaaaaaaaaaaau;
+  i ^= (i << 2) & 0xccccccccccccccccu;
+  i ^= (i << 4) & 0xf0f0f0f0f0f0f0f0u;
+  i ^= (i << 8) & 0xff00ff00ff00ff00u;
+  return i ^ ((i << 16) & 0xffff0000ffff0000u);
 }
 
 }  // namespace
@@ -69,12 +71,14 @@ SampleStream::Bits SampleStream::next_pair() {
   const std::uint64_t key = mix64(key_ + pairs_++);
   // The order of the points is shuffled within all aligned blocks of 2^k, so that every pair of dimensions
   // stays even, and two pairs know nothing of each other.
-  const std::uint32_t i = reversed(scramble_from_lowest(reversed_index_, key));
-  std::uint32_t dx = i, dy = pascal(i);
+  std::uint64_t index = scramble_from_lowest(reversed_index_, key);
+  if (over_film_) index |= std::uint64_t{scramble_from_lowest(reversed_place_, std::rotl(key, 32))} << 32;
+  index = both_reversed(index);
+  const std::uint64_t second = both_pascal(index);
+  auto dx = static_cast<std::uint32_t>(index), dy = static_cast<std::uint32_t>(second);
   if (over_film_) {
-    // The order within aligned blocks is shuffled here, too.
-    const std::uint32_t z = reversed(scramble_from_lowest(reversed_place_, mix64(key ^ 3)));
-    dx ^= pascal_rows(z), dy ^= pascal_rows(pascal(z));
+    const std::uint64_t shift = both_pascal_rows(index >> 32 | (second >> 32 << 32));
+    dx ^= static_cast<std::uint32_t>(shift), dy ^= static_cast<std::uint32_t>(shift >> 32);
   }
   const std::uint64_t x = scramble_from_lowest(dx, mix64(key ^ 1)),
                       y = scramble_from_lowest(dy, mix64(key ^ 2));

@@ -97,6 +97,23 @@ TEST(MitsubaShapes, MergedOnesAreThoseInThem) {
   EXPECT_EQ(std::get<ShapeGroupDesc>(grouped.shapes[3].kind).shapes.size(), 3u);
 }
 
+TEST(MitsubaShapes, AMergedOneCannotHoldItself) {
+  const std::string itself = "<shape type=\"merge\" id=\"m\"><shape type=\"sphere\"/><ref id=\"m\"/></shape>";
+  EXPECT_THROW(parse(kCamera + itself), InputError);
+  EXPECT_THROW(parse(kCamera + "<shape type=\"shapegroup\" id=\"g\">" + itself +
+                     "</shape><shape type=\"instance\"><ref id=\"g\"/></shape>"),
+               InputError);
+}
+
+TEST(MitsubaShapes, MergesThatDoubleHaveAnEnd) {
+  std::string text = kCamera + "<shape type=\"merge\" id=\"m0\"/>";
+  for (int k = 1; k < 40; ++k) {
+    const std::string before = "<ref id=\"m" + std::to_string(k - 1) + "\"/>";
+    text += "<shape type=\"merge\" id=\"m" + std::to_string(k) + "\">" + before + before + "</shape>";
+  }
+  EXPECT_THROW(parse(text), InputError);
+}
+
 TEST(MitsubaColors, TabulatedSpectraAreThoseOfPairs) {
   const auto radiance = [](const std::string& spectrum) {
     const SceneDesc scene =

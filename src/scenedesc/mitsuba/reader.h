@@ -55,6 +55,7 @@ class Reader : public SceneReader {
 
   // shapes.cpp
   ShapeGroupDesc shape_group(Plugin& p);
+  std::vector<const Element*> merged(Plugin& p);  // the shapes of a "merge"
   InstanceDesc shape_instance(Plugin& p);
   void add_surface(Plugin& p, ShapeDesc& shape);  // its BSDF and its light
   void add_media(Plugin& p, ShapeDesc& shape);    // media.cpp
@@ -64,6 +65,7 @@ class Reader : public SceneReader {
   std::unordered_map<const Element*, int> textures_, bsdfs_, groups_, volumes_, media_;
   std::set<const Element*> open_;  // being built: a reference to one of them is a loop
   std::set<const Element*> used_area_emitters_;
+  std::size_t merged_ = 0;  // shapes of all merges
 
   friend class OpenGuard;
 };

@@ -88,11 +88,24 @@ AreaEmitterDesc Reader::area_emitter(const Element& element) {
   return out;
 }
 
+// Merges that name merges twice over would double at each.
+std::vector<const Element*> Reader::merged(Plugin& p) {
+  constexpr std::size_t kMost = 1'000'000;
+  std::vector<const Element*> parts = p.take_all("shape");
+  merged_ += 1 + parts.size();
+  if (merged_ > kMost)
+    throw InputError(p.where(), "merged shapes name more than a million shapes", "name each of them once");
+  return parts;
+}
+
 ShapeGroupDesc Reader::shape_group(Plugin& p) {
   ShapeGroupDesc out;
   const auto add = [&](const auto& self, const Element& member) -> void {
     if (member.require("type") == "merge") {
-      for (const Element* part : Plugin(*this, member).take_all("shape")) self(self, *part);
+      const OpenGuard guard(*this, member);
+      Plugin merge(*this, member);
+      for (const Element* part : merged(merge)) self(self, *part);
+      merge.finish();
     } else if (const int index = build_shape(member, true); index != kNone) {
       out.shapes.push_back(index);
     }
@@ -154,7 +167,7 @@ int Reader::build_shape(const Element& element, bool in_group) {
     throw InputError(p.where(), "a " + type + " in a shapegroup", "groups cannot be nested; take it out");
 
   if (type == "merge") {  // its shapes as they are
-    for (const Element* part : p.take_all("shape")) build_shape(*part, in_group);
+    for (const Element* part : merged(p)) build_shape(*part, in_group);
     p.finish();
     return kNone;
   }
