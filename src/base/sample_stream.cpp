@@ -1,7 +1,6 @@
 #include "base/sample_stream.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace lumirank {
 namespace {
@@ -72,7 +71,7 @@ SampleStream::Bits SampleStream::next_pair() {
   // The order of the points is shuffled within all aligned blocks of 2^k, so that every pair of dimensions
   // stays even, and two pairs know nothing of each other.
   std::uint64_t index = scramble_from_lowest(reversed_index_, key);
-  if (over_film_) index |= std::uint64_t{scramble_from_lowest(reversed_place_, std::rotl(key, 32))} << 32;
+  if (over_film_) index |= std::uint64_t{scramble_from_lowest(reversed_place_, mix64(key ^ 3))} << 32;
   index = both_reversed(index);
   const std::uint64_t second = both_pascal(index);
   auto dx = static_cast<std::uint32_t>(index), dy = static_cast<std::uint32_t>(second);
