@@ -20,6 +20,7 @@ constexpr int kMinPixels = 512, kMaxPixels = 2048;
 
 struct PictureSize {
   int width = kMinPixels, height = kMinPixels;
+  int own_width = 1, own_height = 1;  // the picture's, whose proportions are the frame's
 };
 // As many whole pixels to a texel as are needed, or as the largest size leaves. Of no bitmap: a square.
 PictureSize size_of(const scatter::ColorInput& picture, const scatter::TextureSet& textures) {
@@ -30,17 +31,17 @@ PictureSize size_of(const scatter::ColorInput& picture, const scatter::TextureSe
   const int width = bitmap->pixels->width, height = bitmap->pixels->height, longer = std::max(width, height);
   if (longer <= kMaxPixels) {
     const int times = (kMinPixels + longer - 1) / longer;
-    return {width * times, height * times};
+    return {width * times, height * times, width, height};
   }
   const auto shrunk = [&](int side) {
     return std::max(1, static_cast<int>(std::lround(1.0 * side * kMaxPixels / longer)));
   };
-  return {shrunk(width), shrunk(height)};
+  return {shrunk(width), shrunk(height), width, height};
 }
 
 // Half of the frame's width and height at distance 1.
 Vec2f half_of(const sd::ProjectionLightDesc& light, const PictureSize& size) {
-  const int width = light.square ? 1 : size.width, height = light.square ? 1 : size.height;
+  const int width = light.square ? 1 : size.own_width, height = light.square ? 1 : size.own_height;
   const double across = sd::horizontal_fov(static_cast<double>(light.fov), light.axis, width, height);
   const auto half = static_cast<float>(std::tan(across * M_PI / 360));
   return {half, half * static_cast<float>(height) / static_cast<float>(width)};

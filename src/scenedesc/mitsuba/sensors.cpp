@@ -133,13 +133,9 @@ int sample_count(Reader& reader, const Element* element) {
 }  // namespace
 
 FieldAxis field_axis(const Plugin& p, const std::string& name) {
-  constexpr std::pair<const char*, FieldAxis> kAxes[] = {{"x", FieldAxis::x},
-                                                         {"y", FieldAxis::y},
-                                                         {"diagonal", FieldAxis::diagonal},
-                                                         {"smaller", FieldAxis::smaller},
-                                                         {"larger", FieldAxis::larger}};
-  for (const auto& [known, axis] : kAxes)
-    if (name == known) return axis;
+  for (const FieldAxis axis :
+       {FieldAxis::x, FieldAxis::y, FieldAxis::diagonal, FieldAxis::smaller, FieldAxis::larger})
+    if (name == name_of(axis)) return axis;
   throw InputError(p.where_of("fov_axis"), "\"fov_axis\" of " + p.title() + " is \"" + name + "\"",
                    "x, y, diagonal, smaller and larger are known");
 }

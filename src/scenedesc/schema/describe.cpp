@@ -6,6 +6,8 @@
 #include <memory>
 #include <type_traits>
 
+#include "scenedesc/schema/film_size.h"
+
 namespace lumirank::scenedesc {
 
 namespace {
@@ -185,12 +187,10 @@ std::string kind(const EmitterDesc& e) {
                           show(x.to_world);
                  },
                  [](const ProjectionLightDesc& x) {
-                   const char* axes[] = {"x", "y", "smaller", "larger", "diagonal", "all"};
                    std::string text = "projection of " + show(x.picture);
                    if (x.means == ProjectionLightDesc::Picture::irradiance) text += " as irradiance";
                    text += " × " + show(x.intensity) + ", field " + num(x.fov) + "° along " +
-                           axes[static_cast<int>(x.axis)] + (x.square ? " of a square" : "") + ", to_uv " +
-                           show(x.to_uv);
+                           name_of(x.axis) + (x.square ? " of a square" : "") + ", to_uv " + show(x.to_uv);
                    if (x.cutoff_angle > 0)
                      text += ", cutoff " + num(x.cutoff_angle) + "°, beam " + num(x.beam_width) + "°";
                    return text + (x.power ? ", power " + num(*x.power) : "") + show(x.to_world);

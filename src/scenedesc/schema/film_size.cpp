@@ -24,6 +24,24 @@ double measure(FieldAxis axis, double width, double height) {
 
 }  // namespace
 
+const char* name_of(FieldAxis axis) {
+  switch (axis) {
+    case FieldAxis::x:
+      return "x";
+    case FieldAxis::y:
+      return "y";
+    case FieldAxis::smaller:
+      return "smaller";
+    case FieldAxis::larger:
+      return "larger";
+    case FieldAxis::diagonal:
+      return "diagonal";
+    case FieldAxis::all:
+      break;
+  }
+  return "all";
+}
+
 float horizontal_fov(double fov, FieldAxis axis, int width, int height) {
   if (measure(axis, width, height) == width) return static_cast<float>(fov);
   const double half = std::tan(fov * kPiD / 360) * width / measure(axis, width, height);

@@ -5,6 +5,9 @@
 
 namespace lumirank::scenedesc {
 
+// As Mitsuba's "fov_axis" says it.
+const char* name_of(FieldAxis axis);
+
 // Degrees across the width of a film of width × height pixels, of a field that is `fov` degrees along the
 // axis.
 float horizontal_fov(double fov, FieldAxis axis, int width, int height);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scenedesc/ies/ies.h"
+#include "scenedesc/schema/film_size.h"
 #include "scenedesc/writer/writer.h"
 
 namespace lumirank::scenedesc {
@@ -112,9 +113,7 @@ void MitsubaWriter::emitter(const EmitterDesc& e) {
       color("irradiance", projection->picture);
       xml_.number("scale", mean(projection->intensity));
       xml_.number("fov", projection->fov);
-      constexpr const char* kAxes[] = {"x", "y", "smaller", "larger", "diagonal"};
-      if (projection->axis != FieldAxis::x)
-        xml_.string("fov_axis", kAxes[static_cast<int>(projection->axis)]);
+      if (projection->axis != FieldAxis::x) xml_.string("fov_axis", name_of(projection->axis));
     }
     xml_.transform("to_world", projection->to_world);
   } else if (const auto* sun = std::get_if<DirectionalLightDesc>(&e.kind)) {
