@@ -1,6 +1,7 @@
 #include "denoise/denoiser.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "denoise/turning.h"
 
 namespace lumirank::denoise {
 namespace {
@@ -118,9 +120,12 @@ class Device {
 Denoiser::Denoiser(const Oidn& functions, std::string version)
     : oidn_(functions), version_(std::move(version)) {}
 
-Image Denoiser::denoise(const Image& noisy, const Image* albedo, const Image* normal,
-                        Features features) const {
+Image Denoiser::denoise(const Image& noisy, const Image* albedo, const Image* normal, Features features,
+                        int orientations) const {
   check_input(noisy, albedo, normal);
+  constexpr std::array kQuarters = {0, 2, 1, 3};  // first those that differ most
+  if (orientations < 1 || orientations > static_cast<int>(kQuarters.size()))
+    throw InputError("a picture is denoised in 1 to 4 orientations, not in " + std::to_string(orientations));
   Image clean_albedo = cut(albedo, into_albedo);
   Image clean_normal = cut(normal, into_normal);
   Image output(noisy.width, noisy.height);
@@ -134,6 +139,19 @@ Image Denoiser::denoise(const Image& noisy, const Image* albedo, const Image* no
   add("albedo", clean_albedo);
   add("normal", clean_normal);
   device.filter(inputs, output, true, features != Features::noisy);
+  if (orientations == 1) return output;
+  for (int k = 1; k < orientations; ++k) {
+    const int quarters = kQuarters[static_cast<std::size_t>(k)];
+    std::vector<Image> turned_images;
+    turned_images.reserve(inputs.size());  // they are pointed at
+    std::vector<std::pair<const char*, const Image*>> turned_inputs;
+    for (const auto& [name, image] : inputs)
+      turned_inputs.emplace_back(name, &turned_images.emplace_back(turned(*image, quarters)));
+    Image turned_output(turned_images[0].width, turned_images[0].height);
+    device.filter(turned_inputs, turned_output, true, features != Features::noisy);
+    image::add_to(output, turned(turned_output, -quarters));
+  }
+  for (Rgb& c : output.pixels) c = c / static_cast<float>(orientations);
   return output;
 }
 

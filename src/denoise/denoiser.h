@@ -39,6 +39,11 @@ class Denoiser {
   // both of the size of `noisy` and black where there is no surface. What a reconstruction filter with
   // negative lobes lets overshoot is cut to these ranges.
   //
+  // The library's network makes something else of a picture that is turned. `orientations`, 1 to 4, is in how
+  // many the picture is denoised, of which the mean is given: some of what is wrong in each is not in
+  // another. Each takes as long as the first. Of four, the turned picture's is the picture's turned, but for
+  // rounding.
+  //
   // Runs on current_threads() threads (base/parallel.h), and several calls may run at a time. The same
   // pictures give the same bits, on any number of threads; another processor or another version of the
   // library may round otherwise.
@@ -48,9 +53,11 @@ class Denoiser {
   // with prefiltered ones 15 s.
   //
   // Throws InputError for pictures that are empty, of different sizes or not finite everywhere, and for
-  // normals without albedo; std::bad_alloc; InternalError with the library's words if it fails otherwise.
+  // normals without albedo or a number of orientations that there is not; std::bad_alloc; InternalError with
+  // the library's words if it fails otherwise.
   image::Image denoise(const image::Image& noisy, const image::Image* albedo = nullptr,
-                       const image::Image* normal = nullptr, Features features = Features::noisy) const;
+                       const image::Image* normal = nullptr, Features features = Features::noisy,
+                       int orientations = 1) const;
 
  private:
   Denoiser(const Oidn& functions, std::string version);

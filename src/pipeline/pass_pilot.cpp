@@ -12,7 +12,7 @@
 namespace lumirank::pipeline {
 namespace {
 
-constexpr int kTrialDivisor = 4, kMaxDivisorOfPasses = 4;
+constexpr int kMaxDivisorOfPasses = 4;
 // What the rest takes of a pass's seconds at least, before that is known; what a pass takes is foretold to
 // the second factor.
 constexpr double kRestOfPass = 0.3, kUnsure = 1.25;
@@ -56,7 +56,7 @@ PassPilot::PassPilot(const RenderTask& task, const View& view, const RenderSetti
 
 void PassPilot::run() {
   // Not kept: its pixels are too large.
-  const View small = smaller(whole_, kTrialDivisor);
+  const View small = smaller(whole_, trial_divisor(whole_));
   image::Image image;
   PassSeconds took;
   const auto before = seconds_;

@@ -271,7 +271,8 @@ class PassRun {
 
   void denoise() {
     const Timer timer;
-    const auto denoised = passes_->denoising().denoised(picture_->to_denoise(), picture_->sampled_noise());
+    const auto denoised =
+        passes_->denoising().denoised(picture_->to_denoise(), picture_->sampled_noise(), left());
     if (!denoised) return;
     std::vector<float> before = std::move(result_.picture.planes[0].rgb);
     result_.picture = is_smaller() ? to_picture(passes_->enlarged_with_emission(denoised->picture))

@@ -24,8 +24,7 @@ constexpr int kUsualPaths = 64, kMaxPaths = 1 << 20;
 constexpr double kFewPaths = 2;
 // Before a target for the error is believed.
 constexpr int kPathsBeforeError = 16;
-// A part of the film of this many times fewer pixels a side tells what a path takes.
-constexpr int kPathTrialDivisor = 4, kMaxPathDivisor = 4;
+constexpr int kMaxPathDivisor = 4;
 // Seconds after which a run can be interrupted, or its preview shown.
 constexpr double kAtOnce = 0.5;
 
@@ -93,7 +92,7 @@ class PathRun {
     if (const auto earlier = choices_.earlier("film_divisor", kMaxPathDivisor))
       return static_cast<int>(*earlier);
     const Timer timer;
-    const View small = smaller(view_, is_whole_film(view_) ? kPathTrialDivisor : 1);
+    const View small = smaller(view_, is_whole_film(view_) ? trial_divisor(view_) : 1);
     pathtrace::PathFilm trial(*task_.world, small, options_);
     if (!trial.add(1, sinks_)) throw Cancelled();
     double path = timer.seconds() * pixels(view_) / pixels(small);  // for each pixel
@@ -185,7 +184,8 @@ class PathRun {
       *task_.features = {denoising_.features(),
                          apart ? denoising_.with_emission_as_noise(difference) : difference,
                          denoising_.lacking_filter()};
-    if (const auto denoised = denoising_.denoised(traced, {difference, film_->sent_deviation(), apart})) {
+    const SampledNoise noise{difference, film_->sent_deviation(), apart};
+    if (const auto denoised = denoising_.denoised(traced, noise, left())) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       image::Image whole = denoising_.enlarged(denoised->picture);
       if (apart) image::add_to(whole, denoising_.features().emission);

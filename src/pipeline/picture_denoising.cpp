@@ -13,14 +13,18 @@
 namespace lumirank::pipeline {
 namespace {
 
-// The film whose denoising tells what the picture's will take; and what a larger one may take more.
-constexpr int kDenoiserTrial = 128, kDenoiserWarmUp = 64;
-constexpr double kDenoiserMargin = 1.15;
+// The film whose denoising tells what the picture's will take, up to a third too much if it is small: where
+// that does not matter; and what a larger one may take more.
+constexpr int kDenoiserTrial = 256, kShortDenoiserTrial = 128, kDenoiserWarmUp = 64;
+constexpr double kShortBudget = 5, kDenoiserMargin = 1.1;
 // What enlarging to a film takes, over denoising it with noisy features.
 constexpr double kEnlargingOverDenoising = 0.12;
-// Features that are called clean are worth more, and take this many times longer: where that is at most such
-// a part of the budget.
-constexpr double kCleanOverNoisy = 2.6, kTimeOfClean = 0.1;
+// Clean features take this many times longer, and are used where that is at most such a part of the budget.
+constexpr double kCleanOverNoisy = 2.4, kTimeOfClean = 0.12;
+// Orientations, and with how many of them denoising may take what part of the budget: the second is worth
+// more than two others.
+constexpr int kOrientations = 2, kMostOrientations = 4;
+constexpr double kTimeOfOrientations = 0.1, kTimeOfMostOrientations = 0.06;
 // Of fewer pixels a side it knows too little.
 constexpr int kSmallestDenoised = 16;
 // Film samples of each pixel; and of a larger film's than is rendered.
@@ -73,20 +77,43 @@ void PictureDenoising::try_denoiser(const View& view) {
       return timer.seconds();
     };
     seconds(kDenoiserWarmUp);  // the first time everything takes longer
-    pixel_seconds_ = kDenoiserMargin * seconds(kDenoiserTrial) / (kDenoiserTrial * kDenoiserTrial);
+    const int trial = settings_.time < kShortBudget ? kShortDenoiserTrial : kDenoiserTrial;
+    pixel_seconds_ = kDenoiserMargin * seconds(trial) / (trial * trial);
   }
-  seconds_ = pixel_seconds_ * static_cast<double>(view.width) * static_cast<double>(view.height);
-  bool clean = kCleanOverNoisy * seconds_ <= kTimeOfClean * settings_.time;
-  if (const auto earlier = choices_.earlier("clean_features", 1)) clean = *earlier == 1;
-  choices_.record("clean_features", clean ? 1 : 0);
-  if (clean)
-    seconds_ *= kCleanOverNoisy;
-  else
-    features_are_ = denoise::Features::noisy;
+  seconds_once_ = pixel_seconds_ * static_cast<double>(view.width) * static_cast<double>(view.height);
+}
+
+double PictureDenoising::Quality::times() const { return (clean ? kCleanOverNoisy : 1) * orientations; }
+
+PictureDenoising::Quality PictureDenoising::expected_quality() const {
+  if (!timed()) return {};
+  const auto fits = [&](const Quality& quality, double part) {
+    return quality.times() * seconds_once() <= part * settings_.time;
+  };
+  if (fits({true, kMostOrientations}, kTimeOfMostOrientations)) return {true, kMostOrientations};
+  if (fits({true, kOrientations}, kTimeOfOrientations)) return {true, kOrientations};
+  return {fits({true, 1}, kTimeOfClean), 1};
+}
+
+PictureDenoising::Quality PictureDenoising::chosen_quality(double unspent) const {
+  Quality quality = expected_quality();
+  if (!timed()) return quality;
+  const double seconds = quality.times() * seconds_once() + std::max(0.0, unspent);
+  if (Quality{true, 1}.times() * seconds_once() < seconds) quality.clean = true;
+  while (quality.orientations < kMostOrientations &&
+         Quality{quality.clean, quality.orientations + 1}.times() * seconds_once() < seconds)
+    ++quality.orientations;
+  if (const auto earlier = choices_.earlier("clean_features", 1)) quality.clean = *earlier == 1;
+  choices_.record("clean_features", quality.clean ? 1 : 0);
+  if (const auto earlier = choices_.earlier("orientations", kMostOrientations))
+    quality.orientations = std::max(1, static_cast<int>(*earlier));
+  choices_.record("orientations", quality.orientations);
+  return quality;
 }
 
 double PictureDenoising::seconds() const {
-  return divisor_ == 1 ? seconds_ : seconds_ * (1.0 / (divisor_ * divisor_) + kEnlargingOverDenoising);
+  return expected_quality().times() * seconds_once() +
+         (divisor_ > 1 ? kEnlargingOverDenoising * seconds_once_ : 0);
 }
 
 int PictureDenoising::samples_everywhere() const { return divisor_ == 1 ? kEverywhere : kEverywhereOfLarger; }
@@ -153,15 +180,17 @@ int PictureDenoising::samples_for(const char* choice, double one, double left, S
 }
 
 std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& picture,
-                                                          const SampledNoise& noise) const {
+                                                          const SampledNoise& noise, double unspent) const {
   if (!features_ || std::min(picture.width, picture.height) < kSmallestDenoised ||
       std::all_of(picture.pixels.begin(), picture.pixels.end(), [](Rgb c) { return is_black(c); }))
     return {};
   const PixelFeatures features = this->features();
   const image::Image albedo = denoise::reduced(features.albedo, picture.width, picture.height),
                      normal = denoise::reduced(features.normal, picture.width, picture.height);
-  image::Image clean =
-      denoise::without_overshoot(picture, denoiser_->denoise(picture, &albedo, &normal, features_are_));
+  const Quality quality = chosen_quality(unspent);
+  const auto features_are = quality.clean ? denoise::Features::clean : denoise::Features::noisy;
+  image::Image clean = denoise::without_overshoot(
+      picture, denoiser_->denoise(picture, &albedo, &normal, features_are, quality.orientations));
   if (noise.difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
   image::Image difference = denoise::with_outliers(noise.difference, picture, clean, noise.deviation);
   if (noise.of_emission) difference = with_emission_as_noise(std::move(difference));

@@ -47,7 +47,7 @@ class PictureDenoising {
   void note(bool was_used, std::map<std::string, std::string>& notes) const;
   // The picture is rendered with so many times fewer pixels a side, and enlarged by features of all pixels.
   void make_smaller(int divisor) { divisor_ = divisor; }
-  // What denoising the film is expected to take; 0 without a budget.
+  // What denoising the film is expected to take, as well as a budget pays for; 0 without one.
   double seconds() const;
   // Of the features' film samples: one for each pixel of a part or a smaller copy of the view, as measured. 0
   // where none are wanted.
@@ -79,14 +79,28 @@ class PictureDenoising {
   bool traced() const { return features_.has_value(); }
 
   // Without its noise; nothing if there is no denoiser, or nothing that it could do. What is no noise
-  // stays (denoise/shrinkage.h).
-  std::optional<denoise::Shrunk> denoised(const image::Image& picture, const SampledNoise& noise) const;
+  // stays (denoise/shrinkage.h). `unspent`: seconds of the budget that nothing else needs.
+  std::optional<denoise::Shrunk> denoised(const image::Image& picture, const SampledNoise& noise,
+                                          double unspent) const;
   // Made as large as the features, if it has fewer pixels: without emission that is seen straight, and
   // denoised. Needs trace_first().
   image::Image enlarged(image::Image sent) const;
 
  private:
+  // Features that are called clean are denoised with by a larger network; and the mean of several
+  // orientations has less of what is wrong in each. Both take longer.
+  struct Quality {
+    bool clean = true;
+    int orientations = 2;
+    double times() const;  // as long as noisy features in one orientation
+  };
+
   void try_denoiser(const View& view);
+  // Noisy features in one orientation, of the film that is rendered.
+  double seconds_once() const { return seconds_once_ / (divisor_ * divisor_); }
+  // What a budget pays for; and what it pays for at last.
+  Quality expected_quality() const;
+  Quality chosen_quality(double unspent) const;
   int samples_everywhere() const;
   bool timed() const { return settings_.time > 0; }
   // Of each pixel at an edge, where one in all of them takes so long.
@@ -101,9 +115,8 @@ class PictureDenoising {
   std::shared_ptr<const denoise::Denoiser> denoiser_;
   std::string trouble_;
   film::Filter asked_filter_;
-  double pixel_seconds_ = 0, seconds_ = 0;  // of a pixel, of the whole film
+  double pixel_seconds_ = 0, seconds_once_ = 0;  // of a pixel, of the whole film
   int divisor_ = 1;
-  denoise::Features features_are_ = denoise::Features::clean;
   std::optional<PixelFeatureTracing> features_;
 };
 

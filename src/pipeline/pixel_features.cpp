@@ -34,6 +34,7 @@ constexpr float kUsualAlbedo = 0.8f;
 constexpr float kLeastTrusted = 1e-3f, kTrusted = 0.5f;
 // What of a sample is left by media: less is dark, and its inverse may be infinite.
 constexpr float kLeastWeight = 1e-30f;
+constexpr std::size_t kPixelsOfMeans = 16384;
 
 float distance(Rgb a, Rgb b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
@@ -184,15 +185,17 @@ PixelFeatures PixelFeatureTracing::means() const {
   for (image::Image* image :
        {&features.emission, &features.noisy_emission, &features.albedo, &features.normal})
     *image = image::Image(view_.width, view_.height);
-  for (std::size_t p = 0; p < sums_.size(); ++p) {
-    const Sums& s = sums_[p];
-    const float part = 1 / static_cast<float>(std::max(1, s.count));
-    features.emission.pixels[p] = s.sharp * part,
-    features.noisy_emission.pixels[p] = (s.emission - s.sharp) * part;
-    const float of_trusted = s.count > 0 ? 1 / s.trusted : 0;
-    features.albedo.pixels[p] = s.albedo * of_trusted;
-    features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * of_trusted;
-  }
+  parallel_for(sums_.size(), kPixelsOfMeans, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const Sums& s = sums_[p];
+      const float part = 1 / static_cast<float>(std::max(1, s.count));
+      features.emission.pixels[p] = s.sharp * part,
+      features.noisy_emission.pixels[p] = (s.emission - s.sharp) * part;
+      const float of_trusted = s.count > 0 ? 1 / s.trusted : 0;
+      features.albedo.pixels[p] = s.albedo * of_trusted;
+      features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * of_trusted;
+    }
+  });
   return features;
 }
 

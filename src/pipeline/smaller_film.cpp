@@ -28,6 +28,13 @@ View smaller(const View& view, int divisor) {
   return less;
 }
 
+int trial_divisor(const View& view) {
+  constexpr int kUsual = 4, kOfLarge = 8;
+  constexpr double kLargePixels = 2.5e6;
+  return static_cast<double>(view.width) * static_cast<double>(view.height) < kLargePixels ? kUsual
+                                                                                           : kOfLarge;
+}
+
 double paths_worth_a_pixel(const View& view, double light_paths) {
   constexpr double kPixelsOfPath = 60000, kMin = 1, kMax = 8, kWorthOfLightPath = 0.5;
   const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);

@@ -15,6 +15,10 @@ bool is_whole_film(const View& view);
 // The same view, or window of it, on a film of a divisor-th of the width and height, at least one pixel.
 View smaller(const View& view, int divisor);
 
+// A film of this many times fewer pixels a side tells what the whole one will take. That of a large film is
+// small enough not to take long itself.
+int trial_divisor(const View& view);
+
 // A film of half the width and height, enlarged by features of all pixels, is the better picture where fewer
 // paths than this fit for each pixel: four times as many are left there, and the larger a picture is, the
 // less of it is as small as a pixel. Fewer of those that have so many light paths beside them, which take as

@@ -18,6 +18,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "denoise/denoiser.h"
+#include "denoise/turning.h"
 
 namespace lumirank::denoise {
 namespace {
@@ -269,6 +270,41 @@ TEST_F(Denoising, GivesTheSameBitsOnAnyNumberOfThreads) {
   };
   const Image expected = denoised(1);
   for (const int threads : {1, 2, 3, 7, 0}) EXPECT_EQ(denoised(threads).pixels, expected.pixels) << threads;
+}
+
+TEST_F(Denoising, OfAllOrientationsNoneIsAnother) {
+  const TwoColors scene;
+  const auto denoised = [&](int orientations, int quarters) {
+    const Image noisy = turned(scene.noisy, quarters), albedo = turned(scene.albedo, quarters),
+                normal = turned(scene.normal, quarters);
+    return turned(denoiser_->denoise(noisy, &albedo, &normal, Features::noisy, orientations), -quarters);
+  };
+  const Image one = denoised(1, 0), all = denoised(4, 0);
+  double turned_differs = 0;
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    EXPECT_LT(error(denoised(4, quarters), all), 1e-5) << quarters;
+    turned_differs = std::max(turned_differs, error(denoised(1, quarters), one));
+  }
+  EXPECT_GT(turned_differs, 1e-4) << "one orientation alone is another picture";
+}
+
+TEST_F(Denoising, IsTheMeanOfItsOrientations) {
+  const TwoColors scene;
+  Image mean(scene.noisy.width, scene.noisy.height);
+  for (const int quarters : {0, 2}) {
+    const Image noisy = turned(scene.noisy, quarters), albedo = turned(scene.albedo, quarters),
+                normal = turned(scene.normal, quarters);
+    image::add_to(mean, turned(denoiser_->denoise(noisy, &albedo, &normal), -quarters));
+  }
+  for (Rgb& c : mean.pixels) c = 0.5f * c;
+  const Image two = denoiser_->denoise(scene.noisy, &scene.albedo, &scene.normal, Features::noisy, 2);
+  EXPECT_LT(error(two, mean), 1e-6);
+}
+
+TEST_F(Denoising, RefusesOrientationsThatThereAreNot) {
+  const Image noisy(8, 6, Rgb(1));
+  for (const int orientations : {-1, 0, 5})
+    EXPECT_THROW(denoiser_->denoise(noisy, &noisy, &noisy, Features::noisy, orientations), InputError);
 }
 
 TEST_F(Denoising, ManyAtATime) {
