@@ -17,8 +17,8 @@ namespace {
 // that does not matter; and what a larger one may take more.
 constexpr int kDenoiserTrial = 256, kShortDenoiserTrial = 128, kDenoiserWarmUp = 64;
 constexpr double kShortBudget = 5, kDenoiserMargin = 1.1;
-// What enlarging to a film takes, over denoising it with noisy features.
-constexpr double kEnlargingOverDenoising = 0.12;
+// What enlarging to a film takes, and what follows for any, over denoising it with noisy features.
+constexpr double kEnlargingOverDenoising = 0.25, kAfterOverDenoising = 0.3;
 // Clean features take this many times longer, and are used where that is at most such a part of the budget.
 constexpr double kCleanOverNoisy = 2.4, kTimeOfClean = 0.12;
 // Orientations, and with how many of them denoising may take what part of the budget: the second is worth
@@ -98,7 +98,8 @@ PictureDenoising::Quality PictureDenoising::expected_quality() const {
 PictureDenoising::Quality PictureDenoising::chosen_quality(double unspent) const {
   Quality quality = expected_quality();
   if (!timed()) return quality;
-  const double seconds = quality.times() * seconds_once() + std::max(0.0, unspent);
+  const double seconds =
+      quality.times() * seconds_once() + std::max(0.0, unspent - kAfterOverDenoising * seconds_once_);
   if (Quality{true, 1}.times() * seconds_once() < seconds) quality.clean = true;
   while (quality.orientations < kMostOrientations &&
          Quality{quality.clean, quality.orientations + 1}.times() * seconds_once() < seconds)

@@ -29,10 +29,10 @@ View smaller(const View& view, int divisor) {
 }
 
 int trial_divisor(const View& view) {
-  constexpr int kUsual = 4, kOfLarge = 8;
-  constexpr double kLargePixels = 2.5e6;
-  return static_cast<double>(view.width) * static_cast<double>(view.height) < kLargePixels ? kUsual
-                                                                                           : kOfLarge;
+  constexpr int kMin = 4;
+  constexpr double kPixelsOfTrial = 32400;
+  const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
+  return std::max(kMin, static_cast<int>(std::ceil(std::sqrt(pixels / kPixelsOfTrial))));
 }
 
 double paths_worth_a_pixel(const View& view, double light_paths) {

@@ -15,8 +15,8 @@ bool is_whole_film(const View& view);
 // The same view, or window of it, on a film of a divisor-th of the width and height, at least one pixel.
 View smaller(const View& view, int divisor);
 
-// A film of this many times fewer pixels a side tells what the whole one will take. That of a large film is
-// small enough not to take long itself.
+// A film of so many times fewer pixels a side tells what the whole one will take: four, or more where that
+// film would have more than 32,400 pixels.
 int trial_divisor(const View& view);
 
 // A film of half the width and height, enlarged by features of all pixels, is the better picture where fewer

@@ -37,7 +37,7 @@ TEST_F(PictureDenoised, AsWellAsABudgetPays) {
 
 // The film that is rendered decides, and the whole one what enlarging takes.
 TEST_F(PictureDenoised, ASmallerFilmBetter) {
-  const double enlarging = 0.12 * 0.06;
+  const double enlarging = 0.25 * 0.06;
   EXPECT_NEAR(part_of_budget(0.06, 2), 0.06 / 4 * 2.4 * 2 + enlarging, 1e-9);
   EXPECT_NEAR(part_of_budget(0.06, 4), 0.06 / 16 * 2.4 * 4 + enlarging, 1e-9);
 }

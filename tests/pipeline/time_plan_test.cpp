@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/smaller_film.h"
 #include "pipeline/timed_passes.h"
 
 namespace lumirank::pipeline {
@@ -30,15 +29,6 @@ double planned_seconds(const TimePlan& p, const TimeCosts& c) {
   const double samples = c.pixels * p.spp;
   return c.passed + samples * c.receiver + c.pixels * p.film_samples * c.film_sample +
          static_cast<double>(p.lights) * c.light + p.direct_seconds + p.rest_seconds + p.film_seconds;
-}
-
-TEST(SmallerFilm, PathsWithLightPathsBesideThemAreWorthMore) {
-  View view;
-  view.width = 640, view.height = 360;
-  EXPECT_NEAR(paths_worth_a_pixel(view), 3.84, 1e-9);
-  EXPECT_NEAR(paths_worth_a_pixel(view, 2), 1.92, 1e-9);
-  view.width = 320, view.height = 180;
-  EXPECT_EQ(paths_worth_a_pixel(view, 2), 1);
 }
 
 TEST(TimePlan, AHugeBudgetLowersNothing) {
@@ -203,18 +193,6 @@ TEST(TimePlan, WithoutColumnsNothingIsShort) {
   TimeWishes w = budget_of(3);
   w.may_be_smaller = true;
   EXPECT_EQ(plan_time(w, c).divisor, 1);
-}
-
-TEST(SmallerFilm, EnlargesLinearlyBetweenCenters) {
-  Picture p;
-  p.width = 2, p.height = 1;
-  p.planes.push_back({"", {0, 1, 2, 4, 5, 6}});
-  const Picture larger = enlarged(p, 4, 2);
-  ASSERT_EQ(larger.planes[0].rgb.size(), 4u * 2 * 3);
-  // Centers at 1/4, 3/4, 5/4, 7/4 of the smaller one's pixels, whose own are at 1/2 and 3/2.
-  const float expected[] = {0, 1, 3, 4};
-  for (std::size_t y = 0; y < 2; ++y)
-    for (std::size_t x = 0; x < 4; ++x) EXPECT_FLOAT_EQ(larger.planes[0].rgb[3 * (y * 4 + x)], expected[x]);
 }
 
 TEST(TimePlan, AStageThatBeginsLateGetsLess) {
