@@ -145,6 +145,7 @@ Image Denoiser::denoise(const Image& noisy, const Image* albedo, const Image* no
     std::vector<Image> turned_images;
     turned_images.reserve(inputs.size());  // they are pointed at
     std::vector<std::pair<const char*, const Image*>> turned_inputs;
+    turned_inputs.reserve(inputs.size());
     for (const auto& [name, image] : inputs)
       turned_inputs.emplace_back(name, &turned_images.emplace_back(turned(*image, quarters)));
     Image turned_output(turned_images[0].width, turned_images[0].height);
