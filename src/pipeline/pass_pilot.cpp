@@ -32,7 +32,7 @@ constexpr int kMaxSide = 2;
 constexpr double kManyRounds = 4;
 // Rounds that are worth more than a film of half the size: one for so many pixels, of which the first may be
 // of passes this much smaller.
-constexpr double kPixelsOfRound = 300000, kMinRound = 0.75, kMaxRounds = 3;
+constexpr double kPixelsOfRound = 300000, kMinRound = 0.75, kMaxRounds = 6;
 
 double pixels_of(const View& view) {
   return static_cast<double>(view.width) * static_cast<double>(view.height);
