@@ -19,9 +19,10 @@ constexpr double kRestOfPass = 0.3, kUnsure = 1.25;
 // What is compared of a small film. Its passes have fewer lights, whose noise they share, and look worse than
 // those of the whole one: with a quarter of its width, of seventeen scenes paths were better in the nine
 // where they look 1.8 times worse and more, and not in the eight where they look up to 1.5 times worse
-// (docs/decisions.md). 4^0.34 is 1.6; with a smaller part they look as much worse as there are fewer lights.
+// (docs/decisions.md). 4^0.34 is 1.6; of a smaller part, which has as many times fewer lights, the same power
+// is taken.
 constexpr int kTrialPasses = 2, kMaxTrialPaths = 32;
-constexpr double kSmallPassesLookWorse = 0.34;
+constexpr double kPowerOfLookingWorse = 0.34;
 // What a pass counts for beside a path for each pixel, where it is asked whether all pixels are worth it.
 constexpr double kPathsWorthAPass = 2.5;
 // Passes of half the film that are better than paths, or than few whole ones that take as long as so many
@@ -207,7 +208,7 @@ bool PassPilot::small_paths_are_better(const View& small, const image::Image& fi
   const NoisyPicture by_paths{paths.sent(), paths.sent_difference()};
   if (missed_light(by_passes, by_paths) > kMissedByPaths) return false;
   return passes_over_paths(by_passes, seconds, by_paths, paths.seconds() / shrunk, paths.light_paths() > 0) >
-         std::pow(trial_divisor(whole_), kSmallPassesLookWorse);
+         std::pow(trial_divisor(whole_), kPowerOfLookingWorse);
 }
 
 }  // namespace lumirank::pipeline

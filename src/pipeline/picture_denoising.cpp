@@ -80,7 +80,7 @@ void PictureDenoising::try_denoiser(const View& view) {
     const int trial = settings_.time < kShortBudget ? kShortDenoiserTrial : kDenoiserTrial;
     pixel_seconds_ = kDenoiserMargin * seconds(trial) / (trial * trial);
   }
-  seconds_once_ = pixel_seconds_ * static_cast<double>(view.width) * static_cast<double>(view.height);
+  seconds_of_whole_ = pixel_seconds_ * static_cast<double>(view.width) * static_cast<double>(view.height);
 }
 
 double PictureDenoising::Quality::times() const { return (clean ? kCleanOverNoisy : 1) * orientations; }
@@ -99,7 +99,7 @@ PictureDenoising::Quality PictureDenoising::chosen_quality(double unspent) const
   Quality quality = expected_quality();
   if (!timed()) return quality;
   const double seconds =
-      quality.times() * seconds_once() + std::max(0.0, unspent - kAfterOverDenoising * seconds_once_);
+      quality.times() * seconds_once() + std::max(0.0, unspent - kAfterOverDenoising * seconds_of_whole_);
   if (Quality{true, 1}.times() * seconds_once() < seconds) quality.clean = true;
   while (quality.orientations < kMostOrientations &&
          Quality{quality.clean, quality.orientations + 1}.times() * seconds_once() < seconds)
@@ -114,7 +114,7 @@ PictureDenoising::Quality PictureDenoising::chosen_quality(double unspent) const
 
 double PictureDenoising::seconds() const {
   return expected_quality().times() * seconds_once() +
-         (divisor_ > 1 ? kEnlargingOverDenoising * seconds_once_ : 0);
+         (divisor_ > 1 ? kEnlargingOverDenoising * seconds_of_whole_ : 0);
 }
 
 int PictureDenoising::samples_everywhere() const { return divisor_ == 1 ? kEverywhere : kEverywhereOfLarger; }

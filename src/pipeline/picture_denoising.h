@@ -97,7 +97,7 @@ class PictureDenoising {
 
   void try_denoiser(const View& view);
   // Noisy features in one orientation, of the film that is rendered.
-  double seconds_once() const { return seconds_once_ / (divisor_ * divisor_); }
+  double seconds_once() const { return seconds_of_whole_ / (divisor_ * divisor_); }
   // What a budget pays for; and what it pays for at last.
   Quality expected_quality() const;
   Quality chosen_quality(double unspent) const;
@@ -115,7 +115,7 @@ class PictureDenoising {
   std::shared_ptr<const denoise::Denoiser> denoiser_;
   std::string trouble_;
   film::Filter asked_filter_;
-  double pixel_seconds_ = 0, seconds_once_ = 0;  // of a pixel, of the whole film
+  double pixel_seconds_ = 0, seconds_of_whole_ = 0;  // of a pixel, of the whole film, once
   int divisor_ = 1;
   std::optional<PixelFeatureTracing> features_;
 };
