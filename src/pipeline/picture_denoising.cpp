@@ -151,7 +151,7 @@ bool PictureDenoising::trace_first(const world::World& world, const View& view, 
   const int first = settings_.view.film_samples.value_or(kEdgeSamples) > samples_everywhere() ? 1 : 0;
   if (!features_->trace_differing(first, sinks)) return false;
   const double at_edges = timer.seconds();
-  if (!features_->trace_differing(edge_samples(at_edges, left) - first, sinks, 1)) return false;
+  if (!features_->trace_differing(edge_samples(at_edges, left) - first, sinks)) return false;
   const double differing = features_->differing();
   const double glaring_pixels = differing > 0 ? features_->glaring() / differing : 0;
   const int glaring = samples_for("glaring_samples", at_edges * glaring_pixels, left, {0, kGlaringSamples});
@@ -159,7 +159,7 @@ bool PictureDenoising::trace_first(const world::World& world, const View& view, 
 }
 
 bool PictureDenoising::trace_another(int number, const Sinks& sinks) {
-  return number < kEdgeSamples || features_->trace_another(static_cast<std::uint64_t>(number), sinks);
+  return number < kEdgeSamples || features_->trace_all(1, sinks);
 }
 
 int PictureDenoising::edge_samples(double one, double left) const {

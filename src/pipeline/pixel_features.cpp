@@ -80,12 +80,12 @@ PixelFeatureTracing::PixelFeatureTracing(const world::World& world, const View& 
       sums_(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height)),
       edges_(sums_.size(), Edge::none) {}
 
-bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, const Sinks& sinks) {
+bool PixelFeatureTracing::trace(int samples, Edge least, const Sinks& sinks) {
   if (samples <= 0) return !sinks.cancelled();
   const world::Camera camera(view_.sensor, world_.units());
   transport::ReceiverSettings settings = receiver_settings(recipe_, view_);
-  settings.film_samples = samples;
-  settings.seed = seed;
+  settings.film_samples = 0;
+  settings.seed = hash_ids(recipe_.seed, Stage::film_samples, 1);
   // Without chance: noise of features is taken for edges.
   if (!world_.media().empty())
     settings.segments = kMediumParts, settings.segments_by_depth = true,
@@ -99,7 +99,7 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
       eye.begin({view_.crop_x + static_cast<int>(p % width), view_.crop_y + static_cast<int>(p / width)});
       Sums& sums = sums_[p];
       for (int k = 0; k < samples; ++k) {
-        const transport::FilmSample sample = eye.trace(k, nullptr);
+        const transport::FilmSample sample = eye.trace_in_sequence(static_cast<std::uint64_t>(sums.count));
         auto [albedo, normal, weights] = look_at(eye.vertices());
         for (const transport::EyeSegment& part : eye.segments()) {
           const PartOfMedium seen = look_at(world_, part);
@@ -124,21 +124,18 @@ bool PixelFeatureTracing::trace(int samples, std::uint64_t seed, Edge least, con
 }
 
 bool PixelFeatureTracing::trace_all(int samples, const Sinks& sinks) {
-  if (!trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 1), Edge::none, sinks)) return false;
-  mark_edges();
+  if (!trace(samples, Edge::none, sinks)) return false;
+  if (!marked_) mark_edges();
+  marked_ = true;
   return true;
 }
 
-bool PixelFeatureTracing::trace_differing(int samples, const Sinks& sinks, std::uint64_t portion) {
-  return trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 2, portion), Edge::some, sinks);
+bool PixelFeatureTracing::trace_differing(int samples, const Sinks& sinks) {
+  return trace(samples, Edge::some, sinks);
 }
 
 bool PixelFeatureTracing::trace_glaring(int samples, const Sinks& sinks) {
-  return trace(samples, hash_ids(recipe_.seed, Stage::film_samples, 4), Edge::glaring, sinks);
-}
-
-bool PixelFeatureTracing::trace_another(std::uint64_t number, const Sinks& sinks) {
-  return trace(1, hash_ids(recipe_.seed, Stage::film_samples, 3, number), Edge::none, sinks);
+  return trace(samples, Edge::glaring, sinks);
 }
 
 void PixelFeatureTracing::mark_edges() {

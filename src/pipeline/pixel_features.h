@@ -36,17 +36,15 @@ class PixelFeatureTracing {
   // Must outlive it: the world. Random numbers are by the recipe's seed.
   PixelFeatureTracing(const world::World& world, const View& view, const Recipe& recipe);
 
-  // The first film samples, so many of each pixel. False if it was cancelled.
+  // So many film samples of each pixel; the first say where edges are. False if it was cancelled.
   bool trace_all(int samples, const Sinks& sinks);
   // The part of the pixels that differ from a neighbor, or within themselves; and of those that differ in
   // emission by more than a screen shows: a hundredth of a sunny window is seen on a bar across it.
   double differing() const { return part_from(Edge::some); }
   double glaring() const { return part_from(Edge::glaring); }
-  // So many more for these; the first may come in two portions. False if it was cancelled.
-  bool trace_differing(int samples, const Sinks& sinks, std::uint64_t portion = 0);
+  // So many more for these. False if it was cancelled.
+  bool trace_differing(int samples, const Sinks& sinks);
   bool trace_glaring(int samples, const Sinks& sinks);
-  // One more for each pixel; `number`: which. False if it was cancelled.
-  bool trace_another(std::uint64_t number, const Sinks& sinks);
   PixelFeatures means() const;
 
  private:
@@ -60,7 +58,7 @@ class PixelFeatureTracing {
   };
   enum class Edge : std::uint8_t { none, some, glaring };
   // In pixels with such an edge, or more.
-  bool trace(int samples, std::uint64_t seed, Edge least, const Sinks& sinks);
+  bool trace(int samples, Edge least, const Sinks& sinks);
   void mark_edges();
   double part_from(Edge least) const;
 
@@ -69,6 +67,7 @@ class PixelFeatureTracing {
   Recipe recipe_;
   std::vector<Sums> sums_;
   std::vector<Edge> edges_;  // by pixel
+  bool marked_ = false;
 };
 
 // Without single pixels that are far brighter than all around them and than `usual`, a luminance: what one

@@ -1,6 +1,8 @@
 #include "transport/rows/film_samples.h"
 
+#include "base/morton.h"
 #include "base/random.h"
+#include "base/sample_stream.h"
 
 namespace lumirank::transport {
 
@@ -16,7 +18,9 @@ void FilmEye::begin(Vec2i pixel) {
   pixel_ = pixel;
   id_ = static_cast<std::uint64_t>(pixel.y) * static_cast<std::uint64_t>(camera_.width()) +
         static_cast<std::uint64_t>(pixel.x);
-  pattern_ = PixelPattern(settings_.film_samples, hash_ids(settings_.seed, Stage::film_samples, id_, ~0ull));
+  if (settings_.film_samples > 0)
+    pattern_ =
+        PixelPattern(settings_.film_samples, hash_ids(settings_.seed, Stage::film_samples, id_, ~0ull));
   const Vec2f center{static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f};
   center_ = camera_.ray(center, {0.5f, 0.5f});
   beside_ = camera_.ray({center.x + 1, center.y}, {0.5f, 0.5f});
@@ -28,14 +32,29 @@ FilmSample FilmEye::trace(int k, FirstHit* first, scatter::ClosurePool* pool) {
   Rng rng(settings_.seed, Stage::film_samples, id_, number);
   const Vec2f film_jitter = rng.next_2d();
   const auto place = pattern_.place(k, film_jitter, rng.next_2d());
+  return follow({number, place.film, place.lens, rng}, first, pool);
+}
+
+FilmSample FilmEye::trace_in_sequence(std::uint64_t number) {
+  const auto place = static_cast<std::uint32_t>(
+      morton2(static_cast<std::uint32_t>(pixel_.x), static_cast<std::uint32_t>(pixel_.y)));
+  // Samples of odd number are a set of their own.
+  SampleStream spread =
+      SampleStream::over_film(settings_.seed, Stage::film_samples, 0, place, pass_sample(0, 1, 2 * number));
+  const Vec2f in_pixel = spread.next_2d();
+  return follow({number, in_pixel, spread.next_2d(), Rng(settings_.seed, Stage::film_samples, id_, number)},
+                nullptr, nullptr);
+}
+
+FilmSample FilmEye::follow(Look look, FirstHit* first, scatter::ClosurePool* pool) {
   FilmSample sample;
-  sample.film = on_pixel(pixel_, place.film);
+  sample.film = on_pixel(pixel_, look.in_pixel);
   vertices_.clear();
   const std::uint64_t pixel =
       static_cast<std::uint64_t>(pixel_.y) << 32 | static_cast<std::uint32_t>(pixel_.x);
   sample.emission =
-      chain_.follow(camera_.ray(sample.film, place.lens), hash_ids(pixel, Stage::film_samples, number), 0,
-                    rng, vertices_, pool, first);
+      chain_.follow(camera_.ray(sample.film, look.on_lens), hash_ids(pixel, Stage::film_samples, look.number),
+                    0, look.random, vertices_, pool, first);
   for (const SeenEmission& seen : chain_.straight_emission()) {
     sample.straight += seen.radiance;
     if (in_focus(seen.distance)) sample.sharp += seen.radiance;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/random.h"
 #include "transport/rows/eye_chain.h"
 #include "transport/rows/film_order.h"
 #include "transport/rows/receivers.h"
@@ -36,6 +37,9 @@ class FilmEye {
   // Sample k of the pixel: the same whenever it is asked for. What `first` and `pool` get:
   // EyeChain::follow().
   FilmSample trace(int k, FirstHit* first, scatter::ClosurePool* pool = nullptr);
+  // The same of an endless sequence, of which the first ones are evenly spread over the pixel however many
+  // they are, together with those of neighboring pixels.
+  FilmSample trace_in_sequence(std::uint64_t number);
   // Of the sample traced last; without a pool they have their albedo and roughness.
   const std::vector<EyeVertex>& vertices() const { return vertices_; }
   float unlikely() const { return chain_.unlikely(); }
@@ -48,6 +52,12 @@ class FilmEye {
   std::uint64_t pixel_id() const { return id_; }
 
  private:
+  struct Look {
+    std::uint64_t number;
+    Vec2f in_pixel, on_lens;  // in the unit square
+    Rng random;
+  };
+  FilmSample follow(Look look, FirstHit* first, scatter::ClosurePool* pool);
   // How far from center_ another ray has come.
   float apart(const geometry::Ray& ray, float distance) const;
   // Whether a pixel is wider than the circle of confusion at that distance along an eye ray.
