@@ -21,6 +21,9 @@ constexpr float kFitDeviation = 1;
 // Variances that count as none.
 constexpr float kAlbedoRidge = 1e-3f, kNormalRidge = 1e-2f;
 constexpr float kLeastOfAround = 0.8f, kMostOfAround = 1.25f;
+// Where light is compared by what it is over albedo: what is added to albedos, and the least part of a
+// pixel's albedo with which another says anything of it.
+constexpr float kAddedAlbedo = 0.05f, kTellingAlbedo = 0.1f;
 constexpr std::size_t kRowsOfImage = 4;
 
 // The albedo in one color, and the normal.
@@ -78,6 +81,18 @@ struct Model {
 struct Place {
   std::size_t first, second;
   float part;  // of the second
+};
+
+// Values between which light stays.
+struct LightRange {
+  float least = std::numeric_limits<float>::infinity(), most = 0;
+  void extend(float low, float high) { least = std::min(least, low), most = std::max(most, high); }
+  bool empty() const { return least > most; }
+  // With a margin, for a pixel of such an albedo.
+  LightRange widened(float albedo = 1) const {
+    return {kLeastOfAround * albedo * least, kMostOfAround * albedo * most};
+  }
+  float nearest(float value) const { return std::max(least, std::min(value, most)); }
 };
 
 // The two pixels of a smaller picture around a center of the larger one.
@@ -175,22 +190,30 @@ Image enlarged(const Image& small, const Image& albedo, const Image& normal) {
               const auto pixel = static_cast<std::size_t>(large.width) * y + static_cast<std::size_t>(x);
               const Features4 here = features_at(albedo.pixels[pixel], normal.pixels[pixel], color);
               Features4 slopes{}, between{};
-              float value = 0, least = std::numeric_limits<float>::infinity(), most = 0;
+              float value = 0;
+              LightRange around, over_albedo;
               for (std::size_t k = 0; k < 4; ++k) {
                 const Features4 there =
                     features_at(small_albedo.pixels[at[k]], small_normal.pixels[at[k]], color);
                 const Model& model = models[at[k]];
                 for (std::size_t i = 0; i < kFeatures; ++i)
                   slopes[i] += part[k] * model.slopes[i], between[i] += part[k] * there[i];
-                value += part[k] * small.pixels[at[k]][color];
-                if (part[k] > 0) least = std::min(least, model.least), most = std::max(most, model.most);
+                const float light = small.pixels[at[k]][color];
+                value += part[k] * light;
+                if (!(part[k] > 0)) continue;
+                around.extend(model.least, model.most);
+                const float over = light / (there[0] + kAddedAlbedo);
+                if (there[0] >= kTellingAlbedo * here[0]) over_albedo.extend(over, over);
               }
               float wanted = value;
               for (std::size_t i = 0; i < kFeatures; ++i) wanted += slopes[i] * (here[i] - between[i]);
               // Interpolation stays where the model leads outside, or is not finite.
-              const float low = std::min(value, kLeastOfAround * least),
-                          high = std::max(value, kMostOfAround * most);
-              large.pixels[pixel][color] = std::isfinite(wanted) ? std::clamp(wanted, low, high) : value;
+              around = around.widened();
+              around.extend(value, value);
+              float& out = large.pixels[pixel][color];
+              out = std::isfinite(wanted) ? around.nearest(wanted) : value;
+              // Beside a window are pixels without light: they have no albedo, and say nothing of its frame.
+              if (!over_albedo.empty()) out = over_albedo.widened(here[0] + kAddedAlbedo).nearest(out);
             }
           }
         });

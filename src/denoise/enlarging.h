@@ -14,10 +14,10 @@ image::Image reduced(const image::Image& image, int width, int height);
 // from interpolated ones. The model is fitted around each pixel of the small picture to it and to reduced
 // features by weighted least squares, with a little ridge, so that features that do not vary say nothing
 // (guided upsampling by a first-order model, as in Bitterli et al. 2016, "Nonlinearly Weighted First-order
-// Regression for Denoising Monte Carlo Renderings"). What is added leads to no less than four fifths
-// and no more than five fourths of what the pixels around have. `small` must not have emission that is seen
-// straight, which features do not know, and no noise. Throws InternalError for features of different sizes,
-// or smaller than the picture.
+// Regression for Denoising Monte Carlo Renderings"). What is added leads to no less than four fifths and no
+// more than five fourths of what the pixels around have, first of their light and then, where they have an
+// albedo, of their light over it. `small` must not have emission that is seen straight, which features do not
+// know, and no noise. Throws InternalError for features of different sizes, or smaller than the picture.
 image::Image enlarged(const image::Image& small, const image::Image& albedo, const image::Image& normal);
 
 }  // namespace lumirank::denoise

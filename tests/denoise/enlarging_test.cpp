@@ -112,21 +112,47 @@ TEST(Enlarged, SizesNeedNoCommonDivisor) {
   EXPECT_LT(mean_difference(enlarged(small, kNoAlbedo, kOneNormal), truth), 0.02);
 }
 
-// However features vary, light stays near what is around.
+// However normals vary, light stays near what is around.
 TEST(Enlarged, StaysWithinWhatIsAround) {
   Rng random(5, Stage::projection, 2);
-  const auto noise = [&](int, int) {
+  const Image normal = painted(kLargeWidth, kLargeHeight, [&](int, int) {
     return Rgb{random.next_float(), random.next_float(), random.next_float()};
-  };
-  const Image albedo = painted(kLargeWidth, kLargeHeight, noise),
-              normal = painted(kLargeWidth, kLargeHeight, noise);
+  });
   const Image small =
       painted(kLargeWidth / 2, kLargeHeight / 2, [&](int x, int) { return Rgb(x < 20 ? 1.0f : 100.0f); });
-  const Image large = enlarged(small, albedo, normal);
+  const Image large = enlarged(small, kNoAlbedo, normal);
   for (const Rgb& c : large.pixels)
     for (int k = 0; k < 3; ++k) {
       EXPECT_GE(c[k], 0.8f - 1e-5f);
       EXPECT_LE(c[k], 125.001f);
+    }
+}
+
+// The frame of a window, whose light is not a surface's, beside a reveal in which the light falls off: by the
+// model alone the frame would be black in places.
+TEST(Enlarged, FramesOfWindowsAreNotBlack) {
+  const auto column = [](int x, int y) {
+    return x - 40 - y / 8;
+  };  // the frame: 0 and 1; the window: 2 and on
+  const auto choose = [&](auto reveal, Rgb frame) {
+    return painted(kLargeWidth, kLargeHeight, [&](int x, int y) {
+      return column(x, y) < 0 ? reveal(-column(x, y)) : column(x, y) < 2 ? frame : Rgb(0);
+    });
+  };
+  const Image albedo = choose([](int) { return Rgb(0.56f); }, Rgb(0.56f)),
+              normal = choose(
+                  [](int) {
+                    return Rgb{1, 0, 0};
+                  },
+                  {0, 0, -1}),
+              truth = choose([](int depth) { return Rgb(std::min(4.0f, 0.3f + static_cast<float>(depth))); },
+                             Rgb(0.25f));
+  const Image large = enlarged(reduced(truth, kLargeWidth / 2, kLargeHeight / 2), albedo, normal);
+  for (int y = 0; y < kLargeHeight; ++y)
+    for (int x = 0; x < kLargeWidth; ++x) {
+      if (column(x, y) != 0 && column(x, y) != 1) continue;
+      EXPECT_GT(large.at(x, y).g, 0.7f * 0.25f) << x << ' ' << y;
+      EXPECT_LT(large.at(x, y).g, 1.3f * 0.25f) << x << ' ' << y;
     }
 }
 
