@@ -4,6 +4,7 @@
 // for Stochastic Transparency", 2011, and B. Burley, "Practical Hash-based Owen Scrambling", 2020.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "base/random.h"
@@ -49,15 +50,24 @@ class SampleStream {
 
  private:
   static constexpr std::uint32_t kPairs = 16;
+  // Made side by side, which takes little longer than one: a path needs three for each vertex.
+  static constexpr std::uint32_t kPairsAtOnce = 8;
   struct Bits {
     std::uint32_t x, y;
   };
-  Bits next_pair();
+  Bits next_pair() {
+    const std::uint32_t k = pairs_ % kPairsAtOnce;
+    if (k == 0) make_pairs();
+    ++pairs_;
+    return {static_cast<std::uint32_t>(ahead_[k] >> 32), static_cast<std::uint32_t>(ahead_[k])};
+  }
+  void make_pairs();
 
   std::uint64_t key_;
   std::uint32_t reversed_index_, reversed_place_ = 0, pairs_ = 0;
   bool over_film_ = false;
   Rng rng_;
+  std::array<std::uint64_t, kPairsAtOnce> ahead_;  // x in the upper half
 };
 
 // Numbers for a picture that is the mean of several: sample k of `count` in pass `pass` has this number, in
