@@ -83,6 +83,15 @@ struct EnvironmentEmitter {
   std::size_t fetch(Vec2f u) const;
   void fetch_texels(Vec2f u, std::size_t row) const;
   float pdf(Vec3f direction) const;
+  struct Seen {
+    Rgb radiance;
+    float pdf = 0;
+  };
+  Seen look(Vec3f direction) const;  // eval() and pdf(), for little more than either
+
+ private:
+  Vec2f position_of(Vec3f direction) const;  // on the map, in texels
+  float pdf_at(Vec2f position) const;
 };
 
 struct Emitter {

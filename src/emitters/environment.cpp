@@ -124,9 +124,18 @@ Rgb lookup(const EnvironmentEmitter& e, Vec2f position) {
 
 }  // namespace
 
+Vec2f EnvironmentEmitter::position_of(Vec3f direction) const {
+  return map_position(to_world.to_local(direction), width, height);
+}
+
 Rgb EnvironmentEmitter::eval(Vec3f direction) const {
   if (width == 1 && height == 1) return radiance[0];
-  return lookup(*this, map_position(to_world.to_local(direction), width, height));
+  return lookup(*this, position_of(direction));
+}
+
+EnvironmentEmitter::Seen EnvironmentEmitter::look(Vec3f direction) const {
+  const Vec2f position = position_of(direction);
+  return {width == 1 && height == 1 ? radiance[0] : lookup(*this, position), pdf_at(position)};
 }
 
 EnvironmentEmitter::Sample EnvironmentEmitter::sample(Vec2f u) const {
@@ -166,11 +175,12 @@ void EnvironmentEmitter::fetch_texels(Vec2f u, std::size_t row) const {
   if (row > 0) __builtin_prefetch(texel - width);
 }
 
-float EnvironmentEmitter::pdf(Vec3f direction) const {
+float EnvironmentEmitter::pdf(Vec3f direction) const { return pdf_at(position_of(direction)); }
+
+float EnvironmentEmitter::pdf_at(Vec2f position) const {
   if (!(rows.total() > 0)) return 0;
-  const Vec2f p = map_position(to_world.to_local(direction), width, height);
-  const int x = std::clamp(static_cast<int>(p.x), 0, width - 1);
-  const int y = std::clamp(static_cast<int>(p.y), 0, height - 1);
+  const int x = std::clamp(static_cast<int>(position.x), 0, width - 1);
+  const int y = std::clamp(static_cast<int>(position.y), 0, height - 1);
   const auto row = static_cast<std::size_t>(y);
   return rows.pmf(row) * columns[row].pmf(static_cast<std::size_t>(x)) / solid_angles[row];
 }

@@ -12,12 +12,13 @@ FoundEmission found_emission(const world::World& world, const world::LightSample
     if (from && !is_black(found.radiance)) found.light_pdf = lights.pdf_hit(*from, *hit, direction, distance);
     return found;
   }
-  if (world.environment() >= 0) {
-    found.radiance = world.background(direction);
-    if (from) found.light_pdf = lights.pdf_background(*from, direction);
+  if (from) {
+    const auto seen = lights.background(*from, direction);
+    found.radiance = seen.radiance, found.light_pdf = seen.pdf;
+  } else {
+    // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
+    found.radiance = world.background(direction) + world.sun_disc(direction);
   }
-  // Light sampling takes all of a sun's light elsewhere: its disc is met only directly and in mirrors.
-  if (!from) found.radiance += world.sun_disc(direction);
   return found;
 }
 

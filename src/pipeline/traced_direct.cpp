@@ -23,8 +23,8 @@ Met emission_along(const world::World& world, const world::LightSampler& lights,
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const auto hit = world.intersect({origin, direction});
     if (!hit) {
-      if (world.environment() < 0) return {};
-      return {through * world.background(direction), lights.pdf_background(from, direction)};
+      const auto seen = lights.background(from, direction);
+      return {through * seen.radiance, seen.pdf};
     }
     traveled += hit->hit.t;
     if (hit->emitter >= 0) {

@@ -67,6 +67,12 @@ LightBound bound_of(const emitters::ProfileEmitter& e) {
   return b;
 }
 
+const emitters::EnvironmentEmitter* environment_of(const World& world) {
+  if (world.environment() < 0) return nullptr;
+  return std::get_if<emitters::EnvironmentEmitter>(
+      &world.emitters()[static_cast<std::size_t>(world.environment())].kind);
+}
+
 }  // namespace
 
 emitters::LitPoint lit_point(Vec3f position, const scatter::Closure& closure, Vec3f wo) {
@@ -303,13 +309,24 @@ float LightSampler::pdf_place(const emitters::LitPoint& at, const SurfaceHit& hi
   return pdf > 0 ? pdf * tree_.pmf(at, leaf_of(hit.emitter, hit.hit.triangle)) : 0.0f;
 }
 
+float LightSampler::choice_of_environment(const emitters::LitPoint& at) const {
+  const auto k =
+      static_cast<std::size_t>(std::find(far_.begin(), far_.end(), world_.environment()) - far_.begin());
+  return (1 - near_share(at)) * far_choice_.pmf(k);
+}
+
 float LightSampler::pdf_background(const emitters::LitPoint& at, Vec3f direction) const {
-  const int e = world_.environment();
-  if (e < 0) return 0;
-  const auto& environment =
-      std::get<emitters::EnvironmentEmitter>(world_.emitters()[static_cast<std::size_t>(e)].kind);
-  const auto k = static_cast<std::size_t>(std::find(far_.begin(), far_.end(), e) - far_.begin());
-  return (1 - near_share(at)) * far_choice_.pmf(k) * environment.pdf(direction);
+  const auto* environment = environment_of(world_);
+  return environment ? choice_of_environment(at) * environment->pdf(direction) : 0.0f;
+}
+
+emitters::EnvironmentEmitter::Seen LightSampler::background(const emitters::LitPoint& at,
+                                                            Vec3f direction) const {
+  const auto* environment = environment_of(world_);
+  if (!environment) return {};
+  emitters::EnvironmentEmitter::Seen seen = environment->look(direction);
+  seen.pdf *= choice_of_environment(at);
+  return seen;
 }
 
 float LightSampler::probability_of_delta(const emitters::LitPoint& at, int emitter) const {

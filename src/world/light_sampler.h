@@ -49,6 +49,8 @@ class LightSampler {
   float pdf_hit(const emitters::LitPoint& at, const SurfaceHit& hit, Vec3f direction, float distance) const;
   // The same for a ray that leaves the scene.
   float pdf_background(const emitters::LitPoint& at, Vec3f direction) const;
+  // And with that what World::background() gives: both for little more than either.
+  emitters::EnvironmentEmitter::Seen background(const emitters::LitPoint& at, Vec3f direction) const;
 
   // Probability with which sample() takes a delta emitter.
   float probability_of_delta(const emitters::LitPoint& at, int emitter) const;
@@ -99,6 +101,8 @@ class LightSampler {
                                     Vec3f at) const;
   Sample sample_leaf(std::uint32_t leaf, Vec3f at, Vec2f u) const;
   float near_share(const emitters::LitPoint& at) const;
+  // Probability with which the environment is chosen.
+  float choice_of_environment(const emitters::LitPoint& at) const;
 
   const World& world_;
   std::vector<Leaf> leaves_;

@@ -131,22 +131,18 @@ TEST(Enlarged, StaysWithinWhatIsAround) {
 // The frame of a window, whose light is not a surface's, beside a reveal in which the light falls off: by the
 // model alone the frame would be black in places.
 TEST(Enlarged, FramesOfWindowsAreNotBlack) {
-  const auto column = [](int x, int y) {
-    return x - 40 - y / 8;
-  };  // the frame: 0 and 1; the window: 2 and on
+  // The frame is 0 and 1, the window 2 and on.
+  const auto column = [](int x, int y) { return x - 40 - y / 8; };
   const auto choose = [&](auto reveal, Rgb frame) {
     return painted(kLargeWidth, kLargeHeight, [&](int x, int y) {
       return column(x, y) < 0 ? reveal(-column(x, y)) : column(x, y) < 2 ? frame : Rgb(0);
     });
   };
-  const Image albedo = choose([](int) { return Rgb(0.56f); }, Rgb(0.56f)),
-              normal = choose(
-                  [](int) {
-                    return Rgb{1, 0, 0};
-                  },
-                  {0, 0, -1}),
-              truth = choose([](int depth) { return Rgb(std::min(4.0f, 0.3f + static_cast<float>(depth))); },
-                             Rgb(0.25f));
+  const auto falling = [](int depth) { return Rgb(std::min(4.0f, 0.3f + static_cast<float>(depth))); };
+  const auto sideways = [](int) { return Rgb{1, 0, 0}; };
+  const auto gray = [](int) { return Rgb(0.56f); };
+  const Image albedo = choose(gray, Rgb(0.56f)), normal = choose(sideways, {0, 0, -1}),
+              truth = choose(falling, Rgb(0.25f));
   const Image large = enlarged(reduced(truth, kLargeWidth / 2, kLargeHeight / 2), albedo, normal);
   for (int y = 0; y < kLargeHeight; ++y)
     for (int x = 0; x < kLargeWidth; ++x) {

@@ -118,7 +118,10 @@ TEST(Environment, DensityOfASampleAgreesWithPdf) {
     const auto s = e.sample(rng.next_2d());
     const Rgb again = e.eval(s.direction);  // from the rounded direction
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(s.radiance[c], again[c], 1e-5f * brightest);
-    if (std::abs(e.pdf(s.direction) / s.pdf - 1) > 1e-4f) ++differ;
+    const auto seen = e.look(s.direction);
+    EXPECT_EQ(seen.radiance, again);
+    EXPECT_EQ(seen.pdf, e.pdf(s.direction));
+    if (std::abs(seen.pdf / s.pdf - 1) > 1e-4f) ++differ;
   }
   // Only samples within rounding (some 10⁻⁶ of a texel's width) of an edge may be read as the neighbor's.
   EXPECT_LE(differ, 3);

@@ -165,6 +165,9 @@ TEST(LightSampler, AHitHasTheDensityOfItsSample) {
       if (!std::isfinite(s.direct.distance)) {
         ++skies;
         EXPECT_NEAR(lights.pdf_background(at, s.direct.direction) / s.pdf, 1, 1e-4) << name << " " << i;
+        const auto seen = lights.background(at, s.direct.direction);
+        EXPECT_EQ(seen.pdf, lights.pdf_background(at, s.direct.direction));
+        EXPECT_EQ(seen.radiance, world.background(s.direct.direction));
         continue;
       }
       const auto hit = world.intersect({at.position, s.direct.direction});
