@@ -17,8 +17,8 @@ endif()
 # -ffp-contract=off: a sum of products is rounded the same way wherever it is inlined, so an entry has one value whether
 # it is asked for in a row, a column or a block.
 set(LUMIRANK_FLAGS -ffp-contract=off -fno-math-errno -fno-trapping-math)
-if(LUMIRANK_NATIVE)
-  list(APPEND LUMIRANK_FLAGS -march=native)
+if(LUMIRANK_MARCH)
+  list(APPEND LUMIRANK_FLAGS -march=${LUMIRANK_MARCH})
 endif()
 if(LUMIRANK_SANITIZE)
   list(APPEND LUMIRANK_FLAGS -fsanitize=${LUMIRANK_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)

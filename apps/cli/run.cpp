@@ -67,7 +67,7 @@ std::string why_lost(int reason) {
 int run_command(const std::vector<std::string>& arguments, Streams streams) {
   CLI::App app{"Lumirank: global illumination by sampling the many-light matrix"};
   app.name("lumirank");
-  app.set_version_flag("--version", version());
+  app.set_version_flag("--version", version() + " (" + instruction_set() + ")");
   app.require_subcommand(1);
   Action action;
   add_render(app, action);

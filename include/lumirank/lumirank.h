@@ -22,6 +22,9 @@
 namespace lumirank {
 
 LUMIRANK_API std::string version();
+// What the library that runs was compiled for: "AVX-512", "AVX2" or "no wide vectors". A package for any
+// machine (docs/library.md) holds one for each, and the widest that the processor has is loaded.
+LUMIRANK_API std::string instruction_set();
 
 // A scene file after parsing; nothing is built yet. Cheap to copy.
 class LUMIRANK_API Scene {

@@ -59,6 +59,7 @@ void say_glass(const world::WorldInfo& info, const Sinks& sinks) {
 }  // namespace
 
 std::string version() { return program_version(); }
+std::string instruction_set() { return program_instruction_set(); }
 
 RenderResult render(const Scene& scene, const RenderSettings& settings, const Sinks& sinks,
                     const PreviewCallback& on_preview) {

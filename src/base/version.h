@@ -7,5 +7,7 @@ namespace lumirank {
 
 // "0.1.0"
 std::string program_version();
+// See lumirank.h.
+std::string program_instruction_set();
 
 }  // namespace lumirank

@@ -25,9 +25,10 @@ OtherImagesModule load_other_images_module() {
   std::vector<fs::path> places;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const char* place : {".", "lib/lumirank", "../lib/lumirank"}) places.push_back(program / place);
-  // In a shared library this code lies elsewhere than the program.
+  // In a shared library this code lies elsewhere than the program; and one of several for wide vectors lies
+  // in glibc-hwcaps/x86-64-v3.
   if (Dl_info here{}; dladdr(reinterpret_cast<void*>(&load_other_images_module), &here) && here.dli_fname)
-    for (const char* place : {".", "lumirank", "lib/lumirank"})
+    for (const char* place : {".", "lumirank", "lib/lumirank", "../../lumirank"})
       places.push_back(fs::absolute(here.dli_fname, error).parent_path() / place);
   for (const fs::path& place : places) {
     const fs::path file = (place / kOtherImagesModule).lexically_normal();

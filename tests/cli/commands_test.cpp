@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "lumirank/lumirank.h"
 #include "program.h"
 
 namespace lumirank::test {
@@ -28,6 +29,7 @@ TEST(Commands, Version) {
   const Outcome version = lumirank({"--version"});
   EXPECT_SUCCESS(version);
   EXPECT_NE(version.out.find('.'), std::string::npos);
+  EXPECT_NE(version.out.find(instruction_set()), std::string::npos) << version.out;
 }
 
 TEST(Commands, NoArgumentsShowTheUsage) { expect_refused(lumirank({}), "Usage: lumirank"); }
