@@ -125,8 +125,8 @@ bool PixelFeatureTracing::trace(int samples, Edge least, const Sinks& sinks) {
 
 bool PixelFeatureTracing::trace_all(int samples, const Sinks& sinks) {
   if (!trace(samples, Edge::none, sinks)) return false;
-  if (!marked_) mark_edges();
-  marked_ = true;
+  if (!edges_marked_) mark_edges();
+  edges_marked_ = true;
   return true;
 }
 

@@ -67,7 +67,7 @@ class PixelFeatureTracing {
   Recipe recipe_;
   std::vector<Sums> sums_;
   std::vector<Edge> edges_;  // by pixel
-  bool marked_ = false;
+  bool edges_marked_ = false;
 };
 
 // Without single pixels that are far brighter than all around them and than `usual`, a luminance: what one

@@ -38,9 +38,8 @@ FilmSample FilmEye::trace(int k, FirstHit* first, scatter::ClosurePool* pool) {
 FilmSample FilmEye::trace_in_sequence(std::uint64_t number) {
   const auto place = static_cast<std::uint32_t>(
       morton2(static_cast<std::uint32_t>(pixel_.x), static_cast<std::uint32_t>(pixel_.y)));
-  // Samples of odd number are a set of their own.
-  SampleStream spread =
-      SampleStream::over_film(settings_.seed, Stage::film_samples, 0, place, pass_sample(0, 1, 2 * number));
+  // Those of odd number are a set of their own.
+  SampleStream spread = SampleStream::over_film(settings_.seed, Stage::film_samples, 0, place, 2 * number);
   const Vec2f in_pixel = spread.next_2d();
   return follow({number, in_pixel, spread.next_2d(), Rng(settings_.seed, Stage::film_samples, id_, number)},
                 nullptr, nullptr);

@@ -29,7 +29,8 @@ struct FilmSample {
 // thread.
 class FilmEye {
  public:
-  // Of the settings: seed, film_samples, max_depth, max_splits, eye_medium, segments.
+  // Of the settings: seed, film_samples (0: of the sequence alone), max_depth, max_splits, eye_medium,
+  // segments.
   FilmEye(const world::World& world, const world::Camera& camera, const ReceiverSettings& settings);
 
   // The pixel of the whole film that the following calls are about.
