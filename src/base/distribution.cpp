@@ -5,11 +5,12 @@
 
 namespace lumirank {
 
-Distribution1D::Distribution1D(std::span<const float> weights) : cdf_(weights.size() + 1, 0.0) {
+Distribution1D::Distribution1D(std::span<const float> weights, std::size_t bins_at_once)
+    : cdf_(weights.size() + 1, 0.0) {
   for (std::size_t i = 0; i < weights.size(); ++i) cdf_[i + 1] = cdf_[i] + static_cast<double>(weights[i]);
   total_ = cdf_.back();
   if (weights.size() < kGuidedFrom) return;
-  const std::size_t parts = weights.size() / kBinsAtOnce;
+  const std::size_t parts = weights.size() / bins_at_once;
   guide_.resize(parts + 1);
   std::size_t i = 0;
   for (std::size_t k = 0; k < guide_.size(); ++k) {
@@ -19,21 +20,21 @@ Distribution1D::Distribution1D(std::span<const float> weights) : cdf_(weights.si
   }
 }
 
-// Of the guide, that `u` lies in.
+// Of the guide, that `u` lies in; exact, the product having fewer bits than a double.
 std::size_t Distribution1D::part(float u) const {
   const std::size_t parts = guide_.size() - 1;
   return std::min(static_cast<std::size_t>(static_cast<double>(u) * static_cast<double>(parts)), parts - 1);
 }
 
 void Distribution1D::fetch(float u) const {
-  if (!guide_.empty()) __builtin_prefetch(&guide_[part(u)]);
+  if (!guide_.empty()) prefetch(&guide_[part(u)]);
 }
 
-std::size_t Distribution1D::fetch_bins(float u) const {
-  if (guide_.empty()) return 0;
-  const std::size_t k = part(u), bin = (guide_[k] + guide_[k + 1]) / 2;
-  __builtin_prefetch(&cdf_[bin]);
-  return bin;
+void Distribution1D::fetch_bins(float u) const {
+  if (guide_.empty()) return;
+  // Where many lie between them the search begins in the middle.
+  const std::size_t k = part(u), first = guide_[k] + 1, last = guide_[k + 1] + 1;
+  for (const std::size_t i : {first - 1, (first + last) / 2, last}) prefetch(&cdf_[i]);
 }
 
 Distribution1D::Sample Distribution1D::sample(float u) const {
@@ -41,12 +42,9 @@ Distribution1D::Sample Distribution1D::sample(float u) const {
   // The last bin whose left edge is not above the target; bins of zero width are stepped over.
   auto first = cdf_.begin() + 1, last = cdf_.end() - 1;
   if (!guide_.empty()) {
-    const std::size_t parts = guide_.size() - 1, k = part(u);
+    const std::size_t k = part(u);
+    last = first + guide_[k + 1];
     first += guide_[k];
-    last = cdf_.begin() + 1 + guide_[k + 1];
-    // The product may round across a part.
-    if (k > 0 && target < *(first - 1)) first = cdf_.begin() + 1 + guide_[k - 1];
-    if (k + 2 <= parts && last != cdf_.end() - 1 && target >= *last) last = cdf_.begin() + 1 + guide_[k + 2];
   }
   const auto it = std::upper_bound(first, last, target);
   std::size_t i = static_cast<std::size_t>(it - cdf_.begin()) - 1;

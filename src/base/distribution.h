@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/prefetch.h"
+
 namespace lumirank {
 
 class Distribution1D {
@@ -13,7 +15,10 @@ class Distribution1D {
   Distribution1D() = default;
   // Weights must be finite and not negative. All zero is allowed: then `total()` is 0 and nothing may be
   // sampled.
-  explicit Distribution1D(std::span<const float> weights);
+  // `bins_at_once`: among how many sample() searches, on average. Fewer take more memory; by default so
+  // little that what is looked up first stays in the cache for all rows of an environment map, which its sums
+  // do not.
+  explicit Distribution1D(std::span<const float> weights, std::size_t bins_at_once = 8);
 
   struct Sample {
     std::size_t index;
@@ -22,16 +27,16 @@ class Distribution1D {
   };
   Sample sample(float u) const;
   // sample(u) waits for memory twice, one after the other. Asks for the first; and when that has come, for
-  // the second, and tells about which bin it will be: by kBinsAtOnce / 2 of usual ones.
+  // the second.
   void fetch(float u) const;
-  std::size_t fetch_bins(float u) const;
+  void fetch_bins(float u) const;
   float pmf(std::size_t i) const;
+  void fetch_pmf(std::size_t i) const { prefetch(&cdf_[i]); }
   double total() const { return total_; }
   std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
 
  private:
-  // So few entries that those of all rows of an environment map stay in the cache, which its sums do not.
-  static constexpr std::size_t kBinsAtOnce = 8, kGuidedFrom = 32;
+  static constexpr std::size_t kGuidedFrom = 32;
   std::vector<double> cdf_;  // size + 1 entries, not normalized
   double total_ = 0;  // of all, beside what is looked up first: the last sum lies far from those that are
   // The bins at equal parts of the sum, between which a search begins; empty for few bins.

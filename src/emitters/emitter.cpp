@@ -108,16 +108,7 @@ struct Direct {
     s.pdf = is_black(s.radiance) ? 0.0f : 1.0f;
     return s;
   }
-  DirectSample operator()(const EnvironmentEmitter& e) const {
-    DirectSample s;
-    const auto drawn = e.sample(u2);
-    s.direction = drawn.direction;
-    s.normal = -s.direction;
-    s.distance = kInfinity;
-    s.radiance = drawn.radiance;
-    s.pdf = drawn.pdf;
-    return s;
-  }
+  DirectSample operator()(const EnvironmentEmitter& e) const { return direct_of(e.sample(u2)); }
 };
 
 struct Emit {
@@ -185,6 +176,16 @@ struct Emit {
 };
 
 }  // namespace
+
+DirectSample direct_of(const EnvironmentEmitter::Sample& drawn) {
+  DirectSample s;
+  s.direction = drawn.direction;
+  s.normal = -s.direction;
+  s.distance = kInfinity;
+  s.radiance = drawn.radiance;
+  s.pdf = drawn.pdf;
+  return s;
+}
 
 Rgb SpotEmitter::intensity_towards(Vec3f direction) const {
   const float cosine = dot(direction, frame.n);

@@ -78,20 +78,29 @@ struct EnvironmentEmitter {
     float pdf;
   };
   Sample sample(Vec2f u) const;  // pdf in solid angle
-  // What sample(u) reads of a large map lies anywhere in memory. Asks for the first of it; and when that has
-  // come, for the rest. `row` is what the first call gave.
-  std::size_t fetch(Vec2f u) const;
-  void fetch_texels(Vec2f u, std::size_t row) const;
+  // The same in steps: what it reads of a large map lies anywhere in memory, and each step asks for what the
+  // next one reads.
+  struct Texel {
+    Distribution1D::Sample row, column;
+  };
+  Distribution1D::Sample fetch_row(Vec2f u) const;
+  void fetch_column(Vec2f u, const Distribution1D::Sample& row) const;
+  Texel fetch_texel(Vec2f u, const Distribution1D::Sample& row) const;
+  Sample sample_in(const Texel& texel) const;
   float pdf(Vec3f direction) const;
   struct Seen {
     Rgb radiance;
     float pdf = 0;
   };
   Seen look(Vec3f direction) const;  // eval() and pdf(), for little more than either
+  // And these in two steps, as above: the position is on the map, in texels.
+  Vec2f fetch_position(Vec3f direction) const;
+  Rgb eval_at(Vec2f position) const;
+  float pdf_at(Vec2f position) const;
 
  private:
-  Vec2f position_of(Vec3f direction) const;  // on the map, in texels
-  float pdf_at(Vec2f position) const;
+  Vec2f position_of(Vec3f direction) const;
+  void fetch_around(std::size_t row, std::size_t column) const;
 };
 
 struct Emitter {
@@ -116,6 +125,8 @@ struct DirectSample {
   std::uint32_t triangle = 0;  // area: index into AreaEmitter::triangles
   Vec2f barycentric;
 };
+// Of the environment, from whatever point.
+DirectSample direct_of(const EnvironmentEmitter::Sample& drawn);
 // pdf 0: nothing can arrive. u1 chooses the triangle.
 DirectSample sample_direct(const Emitter& emitter, Vec3f point, float u1, Vec2f u2);
 // Density of sample_direct for an area emitter's triangle seen from `point` along `direction` at `distance`.

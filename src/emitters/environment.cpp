@@ -8,15 +8,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/prefetch.h"
 
 namespace lumirank::emitters {
 
 namespace {
 
-int wrap(int x, int n) {
-  x %= n;
-  return x < 0 ? x + n : x;
-}
+// No further off than one period.
+int wrap(int x, int n) { return x < 0 ? x + n : (x >= n ? x - n : x); }
 
 // ∫ sinθ dθ and ∫ θ sinθ dθ between a and b.
 double moment0(double a, double b) { return std::cos(a) - std::cos(b); }
@@ -129,19 +128,44 @@ Vec2f EnvironmentEmitter::position_of(Vec3f direction) const {
 }
 
 Rgb EnvironmentEmitter::eval(Vec3f direction) const {
-  if (width == 1 && height == 1) return radiance[0];
-  return lookup(*this, position_of(direction));
+  return width == 1 && height == 1 ? radiance[0] : lookup(*this, position_of(direction));
+}
+
+Rgb EnvironmentEmitter::eval_at(Vec2f position) const {
+  return width == 1 && height == 1 ? radiance[0] : lookup(*this, position);
 }
 
 EnvironmentEmitter::Seen EnvironmentEmitter::look(Vec3f direction) const {
   const Vec2f position = position_of(direction);
-  return {width == 1 && height == 1 ? radiance[0] : lookup(*this, position), pdf_at(position)};
+  return {eval_at(position), pdf_at(position)};
+}
+
+Vec2f EnvironmentEmitter::fetch_position(Vec3f direction) const {
+  const Vec2f position = position_of(direction);
+  const auto row = static_cast<std::size_t>(std::clamp(static_cast<int>(position.y), 0, height - 1));
+  const auto column = static_cast<std::size_t>(std::clamp(static_cast<int>(position.x), 0, width - 1));
+  columns[row].fetch_pmf(column);
+  fetch_around(row, column);
+  return position;
+}
+
+// Interpolated with its neighbors: with one of those above and below, which may begin another line of memory.
+void EnvironmentEmitter::fetch_around(std::size_t row, std::size_t column) const {
+  const Rgb* texel = &radiance[row * static_cast<std::size_t>(width) + column];
+  prefetch(texel);
+  if (row + 1 < columns.size()) prefetch(texel + width);
+  if (row > 0) prefetch(texel - width);
 }
 
 EnvironmentEmitter::Sample EnvironmentEmitter::sample(Vec2f u) const {
   if (!(rows.total() > 0)) return {{0, 1, 0}, Rgb{}, 0};
   const auto row = rows.sample(u.y);
-  const auto column = columns[row.index].sample(u.x);
+  return sample_in({row, columns[row.index].sample(u.x)});
+}
+
+EnvironmentEmitter::Sample EnvironmentEmitter::sample_in(const Texel& texel) const {
+  if (!(rows.total() > 0)) return {{0, 1, 0}, Rgb{}, 0};
+  const auto& [row, column] = texel;
   // Uniform in solid angle within the texel: the cosine of the polar angle is linear.
   const double c0 = edges[row.index], c1 = edges[row.index + 1];
   const double cosine = std::clamp(c0 + (c1 - c0) * row.remapped, -1.0, 1.0);
@@ -153,26 +177,27 @@ EnvironmentEmitter::Sample EnvironmentEmitter::sample(Vec2f u) const {
   Sample s;
   s.direction = to_world.to_world(local);
   const double y = std::atan2(sine, cosine) / 3.14159265358979323846 * height;
-  s.radiance =
-      width == 1 && height == 1 ? radiance[0] : lookup(*this, {static_cast<float>(x), static_cast<float>(y)});
+  s.radiance = eval_at({static_cast<float>(x), static_cast<float>(y)});
   s.pdf = row.pmf * column.pmf / solid_angles[row.index];
   return s;
 }
 
-std::size_t EnvironmentEmitter::fetch(Vec2f u) const {
-  if (!(rows.total() > 0)) return 0;
-  const std::size_t row = rows.sample(u.y).index;
-  columns[row].fetch(u.x);
+Distribution1D::Sample EnvironmentEmitter::fetch_row(Vec2f u) const {
+  if (!(rows.total() > 0)) return {};
+  const auto row = rows.sample(u.y);
+  columns[row.index].fetch(u.x);
   return row;
 }
 
-void EnvironmentEmitter::fetch_texels(Vec2f u, std::size_t row) const {
-  if (!(rows.total() > 0)) return;
-  const Rgb* texel = &radiance[row * static_cast<std::size_t>(width) + columns[row].fetch_bins(u.x)];
-  __builtin_prefetch(texel);
-  // Interpolated with one of its neighbors, which most of the time is the one above or below.
-  if (row + 1 < columns.size()) __builtin_prefetch(texel + width);
-  if (row > 0) __builtin_prefetch(texel - width);
+void EnvironmentEmitter::fetch_column(Vec2f u, const Distribution1D::Sample& row) const {
+  if (rows.total() > 0) columns[row.index].fetch_bins(u.x);
+}
+
+EnvironmentEmitter::Texel EnvironmentEmitter::fetch_texel(Vec2f u, const Distribution1D::Sample& row) const {
+  if (!(rows.total() > 0)) return {};
+  const Texel texel{row, columns[row.index].sample(u.x)};
+  fetch_around(row.index, texel.column.index);
+  return texel;
 }
 
 float EnvironmentEmitter::pdf(Vec3f direction) const { return pdf_at(position_of(direction)); }

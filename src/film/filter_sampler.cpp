@@ -15,17 +15,18 @@ FilterSampler::FilterSampler(const Filter& filter) : filter_(filter) {
   double integral = 0, absolute = 0;
   for (int k = 0; k < kBins; ++k) {
     const float f = filter.eval(bin_center(filter, k));
+    negative_.push_back(std::signbit(f));
     magnitude[static_cast<std::size_t>(k)] = std::abs(f);
     integral += f, absolute += std::abs(f);
   }
-  table_ = Distribution1D(magnitude);
+  table_ = Distribution1D(magnitude, 1);
   scale_ = absolute / integral;
   integral_ = integral * 2 * static_cast<double>(filter.radius) / kBins;
 }
 
 FilterSampler::Axis FilterSampler::axis(float u) const {
   const auto s = table_.sample(u);
-  const float sign = std::copysign(1.0f, filter_.eval(bin_center(filter_, static_cast<int>(s.index))));
+  const float sign = negative_[s.index] ? -1.0f : 1.0f;
   const float t = (static_cast<float>(s.index) + s.remapped) / kBins;
   return {filter_.radius * (2 * t - 1), sign * static_cast<float>(scale_)};
 }

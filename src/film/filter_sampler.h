@@ -39,8 +39,9 @@ class FilterSampler {
 
   Filter filter_;
   Distribution1D table_;
-  double scale_ = 1;     // ∫|f| / ∫f
-  double integral_ = 1;  // ∫f
+  std::vector<bool> negative_;  // by its bins
+  double scale_ = 1;            // ∫|f| / ∫f
+  double integral_ = 1;         // ∫f
 };
 
 }  // namespace lumirank::film

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/bounds.h"
+#include "base/prefetch.h"
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "geometry/fibers.h"
@@ -26,6 +27,20 @@ struct TriangleMesh {
   // Twice the area times the unit normal, by the order of the corners.
   Vec3f area_vector(std::size_t triangle) const;
   Bounds3f bounds() const;
+
+  // Asks memory for what a triangle needs: its indices, and when these are there its corners.
+  void fetch_indices(std::size_t triangle) const {
+    if (!indices.empty()) prefetch(&indices[3 * triangle]);
+  }
+  void fetch_corners(std::size_t triangle) const {
+    if (indices.empty()) return;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t i = indices[3 * triangle + k];
+      prefetch(&positions[i]);
+      if (!normals.empty()) prefetch(&normals[i]);
+      if (!uvs.empty()) prefetch(&uvs[i]);
+    }
+  }
 };
 
 // Same in every bit that tracing and shading read.

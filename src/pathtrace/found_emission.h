@@ -1,6 +1,8 @@
 // What shines where a path arrives, and how likely light sampling would have found it.
 #pragma once
 
+#include <optional>
+
 #include "base/rgb.h"
 #include "world/light_sampler.h"
 #include "world/world.h"
@@ -17,6 +19,6 @@ struct FoundEmission {
 // where the path leaves the scene. `distance`: from the last vertex.
 FoundEmission found_emission(const world::World& world, const world::LightSampler& lights,
                              const emitters::LitPoint* from, const world::SurfaceHit* hit, Vec3f direction,
-                             float distance);
+                             float distance, std::optional<Vec2f> on_map = {});
 
 }  // namespace lumirank::pathtrace

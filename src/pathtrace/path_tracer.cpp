@@ -40,6 +40,11 @@ struct PathTracer::Walk {
   geometry::Ray eye_ray{};
   float from_camera = 0;  // way from the camera to the last vertex
   std::vector<MergePoint>* merge_points = nullptr;
+  // Where the current segment ends, and if nowhere, its place on the environment's map.
+  bool seen = false;  // by nothing but the eye
+  std::optional<geometry::Hit> met{};
+  std::optional<world::SurfaceHit> hit{};
+  std::optional<Vec2f> on_map{};
   Radiance sum{};
 
   void add(Rgb value) {
@@ -53,18 +58,33 @@ struct PathTracer::Walk {
 PathTracer::PathTracer(const world::World& world, const PathSettings& settings)
     : world_(world), lights_(world.light_sampler()), settings_(settings) {}
 
+PathTracer::Walk PathTracer::begin(const Start& start) const {
+  return {.random = SampleStream::over_film(settings_.seed, Stage::reference, 0, start.place, start.sample),
+          .key = hash_ids(settings_.seed, Stage::opacity, start.place, start.sample),
+          .ray = start.ray,
+          .counts = settings_.paths != Paths::rest,
+          .from_eye = beside_.has_value(),
+          .eye_ray = start.ray,
+          .merge_points = start.merge_points};
+}
+
 Radiance PathTracer::trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                            std::vector<MergePoint>* merge_points) const {
-  Walk walk{.random = SampleStream::over_film(settings_.seed, Stage::reference, 0, place, sample),
-            .key = hash_ids(settings_.seed, Stage::opacity, place, sample),
-            .ray = ray,
-            .counts = settings_.paths != Paths::rest,
-            .from_eye = beside_.has_value(),
-            .eye_ray = ray,
-            .merge_points = merge_points};
-  finish(walk);
-  walk.sum.segments = walk.segments;
-  return walk.sum;
+  const Start start{ray, place, sample, merge_points};
+  Radiance found;
+  trace({&start, 1}, {&found, 1});
+  return found;
+}
+
+void PathTracer::trace(std::span<const Start> starts, std::span<Radiance> found) const {
+  std::vector<Walk> walks;
+  walks.reserve(starts.size());
+  for (const Start& start : starts) walks.push_back(begin(start));
+  finish(walks);
+  for (std::size_t k = 0; k < walks.size(); ++k) {
+    found[k] = walks[k].sum;
+    found[k].segments = walks[k].segments;
+  }
 }
 
 Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, std::uint64_t key) const {
@@ -84,43 +104,85 @@ Rgb PathTracer::indirect_after(const Departure& departure, SampleStream random, 
             .near = departure.near,
             .eta_scale = next.eta * next.eta};
   if (walk.near && settings_.paths == Paths::columns) walk.ray.t_max = walk.near->max;
-  finish(walk);
+  finish({&walk, 1});
   return walk.sum.direct + walk.sum.indirect;
 }
 
-void PathTracer::finish(Walk& walk) const {
+// Step by step for all paths. Each step asks memory for what the next one reads: what paths meet, the corners
+// of triangles, texels and lights lie anywhere in it.
+void PathTracer::finish(std::span<Walk> walks) const {
   // A bound on straight passes, so that coincident null surfaces cannot hold a path for ever.
   constexpr int kMaxSteps = 4096;
-  for (int step = 0; step < kMaxSteps; ++step) {
-    if (!walk.light) walk.light = lights_.fetch(walk.random.next_2d());
-    const bool seen = walk.segments == 1;  // by nothing but the eye
-    const auto hit = seen ? world_.intersect_from_eye(walk.ray) : world_.intersect(walk.ray);
-    if (!hit && seen && world_.hides_emitters()) break;
-    if (hit) walk.traveled += hit->hit.t;
-    if (hit && walk.medium >= 0) {
-      walk.throughput *= world_.left_by_glass(walk.medium, hit->hit.t * length(walk.ray.direction));
-      if (is_black(walk.throughput)) break;
-    }
-    if (hit) lights_.fetch_rest(*walk.light);
-    add_emission(walk, hit ? &*hit : nullptr);
-    if (!hit) break;
-    const bool by_eye = walk.non_delta_vertices == 0;
-    // Panes that let light pass straight are glass to the eye, as for rows.
-    const int material = by_eye ? world_.materials().seen(hit->material) : hit->material;
-    if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
-      // No further segment may follow, but a straight pass is no segment.
-      if (world_.materials().passage(material) == scatter::MaterialSet::Passage::opaque) break;
-    }
-    Closure closure = world_.materials().closure(material, hit->point, -walk.ray.direction);
-    if (by_eye) scatter::face_viewer(closure, -walk.ray.direction);  // as rows are
-    if (!scatter(walk, *hit, closure)) break;
+  std::vector<Walk*> live;
+  for (Walk& walk : walks) live.push_back(&walk);
+  for (int step = 0; step < kMaxSteps && !live.empty(); ++step) {
+    for (Walk* walk : live) meet(*walk);
+    for (Walk* walk : live) fetch(*walk);
+    std::erase_if(live, [&](Walk* walk) { return !arrive(*walk); });
+    std::erase_if(live, [&](Walk* walk) { return !leave(*walk); });
   }
 }
 
+void PathTracer::meet(Walk& walk) const {
+  if (!walk.light) walk.light = lights_.fetch(walk.random.next_2d());
+  walk.seen = walk.segments == 1;
+  walk.hit.reset(), walk.on_map.reset();
+  if (walk.seen && world_.hides_emitters()) {
+    walk.hit = world_.intersect_from_eye(walk.ray);
+    walk.met = walk.hit ? std::optional(walk.hit->hit) : std::nullopt;
+  } else {
+    walk.met = world_.rays().intersect(walk.ray);
+  }
+  if (walk.met) world_.rays().mesh(walk.met->mesh).fetch_indices(walk.met->triangle);
+}
+
+void PathTracer::fetch(Walk& walk) const {
+  if (walk.met) {
+    lights_.fetch_column(*walk.light);
+    world_.rays().mesh(walk.met->mesh).fetch_corners(walk.met->triangle);
+  } else if (!(walk.seen && world_.hides_emitters())) {
+    walk.on_map = lights_.fetch_background(walk.ray.direction);
+  }
+}
+
+// The surface and what shines there; false ends the path.
+bool PathTracer::arrive(Walk& walk) const {
+  if (!walk.met && walk.seen && world_.hides_emitters()) return false;
+  if (walk.met) {
+    if (!walk.hit) walk.hit = world_.surface(*walk.met, walk.ray.direction);
+    walk.traveled += walk.met->t;
+    if (walk.medium >= 0) {
+      walk.throughput *= world_.left_by_glass(walk.medium, walk.met->t * length(walk.ray.direction));
+      if (is_black(walk.throughput)) return false;
+    }
+  }
+  add_emission(walk);
+  if (!walk.hit) return false;
+  lights_.fetch_texel(*walk.light);
+  world_.materials().fetch(walk.hit->material, walk.hit->point.uv);
+  return true;
+}
+
+// On from the surface; false ends the path.
+bool PathTracer::leave(Walk& walk) const {
+  const world::SurfaceHit& hit = *walk.hit;
+  const bool by_eye = walk.non_delta_vertices == 0;
+  // Panes that let light pass straight are glass to the eye, as for rows.
+  const int material = by_eye ? world_.materials().seen(hit.material) : hit.material;
+  if (settings_.max_depth >= 0 && walk.segments >= settings_.max_depth) {
+    // No further segment may follow, but a straight pass is no segment.
+    if (world_.materials().passage(material) == scatter::MaterialSet::Passage::opaque) return false;
+  }
+  Closure closure = world_.materials().closure(material, hit.point, -walk.ray.direction);
+  if (by_eye) scatter::face_viewer(closure, -walk.ray.direction);  // as rows are
+  return scatter(walk, hit, closure);
+}
+
 // What shines at the end of the current segment, weighted against light sampling (balance heuristic).
-void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
+void PathTracer::add_emission(Walk& walk) const {
+  const world::SurfaceHit* hit = walk.hit ? &*walk.hit : nullptr;
   const FoundEmission found = found_emission(world_, lights_, walk.specular ? nullptr : &walk.from, hit,
-                                             walk.ray.direction, walk.traveled);
+                                             walk.ray.direction, walk.traveled, walk.on_map);
   if (is_black(found.radiance)) return;
   float weight = walk.specular ? 1.0f : walk.bsdf_pdf / (walk.bsdf_pdf + found.light_pdf);
   if (walk.light_paths > 0 && (walk.specular || walk.non_delta_vertices > 1)) {
@@ -136,7 +198,8 @@ void PathTracer::add_emission(Walk& walk, const world::SurfaceHit* hit) const {
 void PathTracer::sample_lights(Walk& walk, const world::SurfaceHit& hit, const Closure& closure,
                                double u_light, float connection) const {
   const Vec3f wo = -walk.ray.direction;
-  const auto s = lights_.sample(world::lit_point(hit.point.position, closure, wo), u_light, walk.light->u);
+  const auto s =
+      lights_.sample_ahead(world::lit_point(hit.point.position, closure, wo), u_light, *walk.light);
   walk.light.reset();
   if (!(s.pdf > 0)) return;
   Rgb f = scatter::eval(closure, wo, s.direct.direction);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "base/rgb.h"
 #include "base/sample_stream.h"
@@ -65,6 +66,17 @@ class PathTracer {
   Radiance trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                  std::vector<MergePoint>* merge_points = nullptr) const;
 
+  // The same for several paths, each as if it were alone. They take their steps together, so that what one
+  // waits for from memory comes while others are at work.
+  struct Start {
+    geometry::Ray ray;
+    std::uint32_t place;
+    std::uint64_t sample;
+    std::vector<MergePoint>* merge_points = nullptr;
+  };
+  static constexpr std::size_t kPathsAtOnce = 16;  // more bring nothing
+  void trace(std::span<const Start> starts, std::span<Radiance> found) const;
+
   // A non-specular vertex, and the direction in which a path leaves it.
   struct Departure {
     Vec3f position, ng;
@@ -82,8 +94,13 @@ class PathTracer {
 
  private:
   struct Walk;
-  void finish(Walk& walk) const;
-  void add_emission(Walk& walk, const world::SurfaceHit* hit) const;
+  Walk begin(const Start& start) const;
+  void finish(std::span<Walk> walks) const;
+  void meet(Walk& walk) const;
+  void fetch(Walk& walk) const;
+  bool arrive(Walk& walk) const;
+  bool leave(Walk& walk) const;
+  void add_emission(Walk& walk) const;
   void sample_lights(Walk& walk, const world::SurfaceHit& hit, const scatter::Closure& closure,
                      double u_light, float connection) const;
   // The part of a path that clamped columns lack; `connection`: π f_x·G of its first two non-specular

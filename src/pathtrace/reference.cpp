@@ -1,5 +1,6 @@
 #include "pathtrace/reference.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <variant>
@@ -89,9 +90,8 @@ struct PathFilm::Impl {
     std::variant<PathTracer, VolumePathTracer> tracer;
     world::Camera camera;
 
-    Radiance trace(const geometry::Ray& ray, std::uint32_t place, std::uint64_t sample,
-                   std::vector<MergePoint>* points) const {
-      return std::visit([&](const auto& by) { return by.trace(ray, place, sample, points); }, tracer);
+    void trace(std::span<const PathTracer::Start> eye_paths, std::span<Radiance> found) const {
+      std::visit([&](const auto& by) { by.trace(eye_paths, found); }, tracer);
     }
   };
   world::View view;
@@ -153,36 +153,74 @@ struct PathFilm::Impl {
                             tracing.size() - 1)];
   }
 
+  int film_x(std::size_t p) const {
+    return static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
+  }
+  int film_y(std::size_t p) const {
+    return static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
+  }
+
+  // Paths that are traced together.
+  struct Batch {
+    struct Path {
+      std::size_t pixel;
+      int sample;
+      float weight;
+    };
+    const Tracing* by = nullptr;
+    std::size_t count = 0;
+    std::array<Path, PathTracer::kPathsAtOnce> paths;
+    std::array<PathTracer::Start, PathTracer::kPathsAtOnce> starts;
+    std::array<std::vector<MergePoint>, PathTracer::kPathsAtOnce> points;
+  };
+
   // `points`: nullptr, or where light paths are to be merged with what is traced.
-  void trace_pixel(std::size_t p, int begin, int end, std::vector<MergePoint>* points) {
-    const int x = static_cast<int>(p % static_cast<std::size_t>(view.width)) + view.crop_x;
-    const int y = static_cast<int>(p / static_cast<std::size_t>(view.width)) + view.crop_y;
+  void trace_pixel(std::size_t p, int begin, int end, std::vector<MergePoint>* points, Batch& batch) {
+    const int x = film_x(p), y = film_y(p);
     const auto place =
         static_cast<std::uint32_t>(morton2(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
     for (int s = begin; s < end; ++s) {
       const Tracing& now = this->at(place, s);
+      if (batch.by != &now || batch.count == batch.paths.size()) trace_batch(batch, points);
+      batch.by = &now;
       SampleStream random =
           SampleStream::over_film(options.seed, Stage::reference, 1, place, static_cast<std::uint64_t>(s));
       const auto at = filter.sample(random.next_2d());
       const Vec2f film{static_cast<float>(x) + 0.5f + at.offset.x,
                        static_cast<float>(y) + 0.5f + at.offset.y};
-      const std::size_t before = points ? points->size() : 0;
-      const Radiance radiance =
-          now.trace(now.camera.ray(film, random.next_2d()), place, static_cast<std::uint64_t>(s), points);
-      for (std::size_t k = before; points && k < points->size(); ++k)
-        (*points)[k].pixel = static_cast<std::uint32_t>(p), (*points)[k].throughput *= at.weight;
+      const std::size_t k = batch.count++;
+      batch.paths[k] = {p, s, at.weight};
+      batch.starts[k] = {now.camera.ray(film, random.next_2d()), place, static_cast<std::uint64_t>(s),
+                         points ? &batch.points[k] : nullptr};
+    }
+  }
+
+  void trace_batch(Batch& batch, std::vector<MergePoint>* points) {
+    if (batch.count == 0) return;
+    std::array<Radiance, PathTracer::kPathsAtOnce> found;
+    batch.by->trace({batch.starts.data(), batch.count}, {found.data(), batch.count});
+    for (std::size_t k = 0; k < batch.count; ++k) {
+      const auto [p, s, weight] = batch.paths[k];
+      const Radiance& radiance = found[k];
+      if (points) {
+        for (MergePoint& point : batch.points[k])
+          point.pixel = static_cast<std::uint32_t>(p), point.throughput *= weight;
+        points->insert(points->end(), batch.points[k].begin(), batch.points[k].end());
+        batch.points[k].clear();
+      }
       if (!is_finite(radiance.total()))
         throw InternalError("the reference met a value that is not finite; replay pixel " +
-                            std::to_string(x) + "," + std::to_string(y) + " sample " + std::to_string(s));
+                            std::to_string(film_x(p)) + "," + std::to_string(film_y(p)) + " sample " +
+                            std::to_string(s));
       PathFilmHalf& half = halves[s & 1];
-      half.emission[p].add(radiance.emission * at.weight);
-      half.direct[p].add(radiance.direct * at.weight);
-      half.indirect[p].add(radiance.indirect * at.weight);
-      const double light =
-          sent_luminance(radiance.direct, radiance.indirect) * static_cast<double>(at.weight);
+      half.emission[p].add(radiance.emission * weight);
+      half.direct[p].add(radiance.direct * weight);
+      half.indirect[p].add(radiance.indirect * weight);
+      const double light = sent_luminance(radiance.direct, radiance.indirect) * static_cast<double>(weight);
       half.by_eye[p] += light;
       half.squares[p] += light * light;
     }
+    batch.count = 0;
   }
 
   bool merges() const { return light_tracer && options.merged_pixels > 0; }
@@ -291,8 +329,10 @@ bool PathFilm::add(int paths, const Sinks& sinks, const std::function<void(doubl
   const auto trace = [&](int begin_sample, int end_sample, std::vector<std::vector<MergePoint>>* points) {
     parallel_for(m.pixels, kPixelsOfPart, [&](std::size_t begin, std::size_t end) {
       if (sinks.cancelled()) return;
-      for (std::size_t p = begin; p < end; ++p)
-        m.trace_pixel(p, begin_sample, end_sample, points ? &(*points)[begin / kPixelsOfPart] : nullptr);
+      std::vector<MergePoint>* part = points ? &(*points)[begin / kPixelsOfPart] : nullptr;
+      Impl::Batch batch;
+      for (std::size_t p = begin; p < end; ++p) m.trace_pixel(p, begin_sample, end_sample, part, batch);
+      m.trace_batch(batch, part);
       const double fraction = static_cast<double>(finished += end - begin) / all;
       if (progress) progress(fraction);
     });

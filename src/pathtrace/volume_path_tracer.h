@@ -32,6 +32,10 @@ class VolumePathTracer {
   // emission. Light paths are merged on surfaces alone.
   Radiance trace(geometry::Ray ray, std::uint32_t place, std::uint64_t sample,
                  std::vector<MergePoint>* merge_points = nullptr) const;
+  void trace(std::span<const PathTracer::Start> starts, std::span<Radiance> found) const {
+    for (std::size_t k = 0; k < starts.size(); ++k)
+      found[k] = trace(starts[k].ray, starts[k].place, starts[k].sample, starts[k].merge_points);
+  }
 
  private:
   struct Vertex;

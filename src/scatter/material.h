@@ -249,6 +249,15 @@ struct MaterialSet {
   // BSDFs). A mask's transparency appears as a delta_pass lobe of weight 1 - opacity.
   Closure closure(int material, const SurfacePoint& at, Vec3f wo) const;
 
+  // Asks memory for texels that closure() will read. Only after note_bitmaps(), when all is there.
+  void fetch(int material, const SurfaceUv& uv) const {
+    const auto k = static_cast<std::size_t>(material);
+    if (k >= bitmaps.size()) return;
+    for (const int bitmap : bitmaps[k]) textures.fetch_bitmap(bitmap, uv);
+  }
+  void note_bitmaps();
+  std::vector<std::vector<int>> bitmaps;  // of each material: textures that are a BitmapTexture
+
   // What the eye sees of it: itself, or the glass of a pane.
   int seen(int material) const {
     const auto* face = std::get_if<SlabFaceMaterial>(&materials[static_cast<std::size_t>(material)]);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/prefetch.h"
 
 namespace lumirank::scatter {
 namespace {
@@ -29,8 +30,8 @@ float reduce(float x, TexWrap wrap) {
 
 int wrap_index(int i, int n, TexWrap wrap) {
   switch (wrap) {
-    case TexWrap::repeat:
-      return ((i % n) + n) % n;
+    case TexWrap::repeat:  // no further off than one period
+      return i < 0 ? i + n : (i >= n ? i - n : i);
     case TexWrap::mirror: {
       const int k = ((i % (2 * n)) + 2 * n) % (2 * n);
       return k < n ? k : 2 * n - 1 - k;
@@ -41,25 +42,30 @@ int wrap_index(int i, int n, TexWrap wrap) {
   return std::clamp(i, 0, n - 1);
 }
 
-// `uv` already in texture space.
-Rgb bitmap_at(const BitmapTexture& t, Vec2f uv) {
-  const TexturePixels& p = *t.pixels;
+// Where uv, already in texture space, lies among texels; rows counted from the bottom, where v = 0 is.
+Vec2f place_on(const BitmapTexture& t, Vec2f uv) {
   uv = finite(uv);
-  const float x = reduce(uv.x, t.wrap_u) * static_cast<float>(p.width);
-  // Counted from the bottom, where v = 0 is; rows are stored from the top.
-  const float y = reduce(uv.y, t.wrap_v) * static_cast<float>(p.height);
-  const auto texel = [&](int column, int from_bottom) {
-    const int row = p.height - 1 - wrap_index(from_bottom, p.height, t.wrap_v);
-    return p.rgb[static_cast<std::size_t>(row) * static_cast<std::size_t>(p.width) +
-                 static_cast<std::size_t>(wrap_index(column, p.width, t.wrap_u))];
-  };
+  return {reduce(uv.x, t.wrap_u) * static_cast<float>(t.pixels->width),
+          reduce(uv.y, t.wrap_v) * static_cast<float>(t.pixels->height)};
+}
+
+// Rows are stored from the top.
+const Rgb& texel(const BitmapTexture& t, int column, int from_bottom) {
+  const TexturePixels& p = *t.pixels;
+  const int row = p.height - 1 - wrap_index(from_bottom, p.height, t.wrap_v);
+  return p.rgb[static_cast<std::size_t>(row) * static_cast<std::size_t>(p.width) +
+               static_cast<std::size_t>(wrap_index(column, p.width, t.wrap_u))];
+}
+
+Rgb bitmap_at(const BitmapTexture& t, Vec2f uv) {
+  const auto [x, y] = place_on(t, uv);
   if (t.filter == TexFilter::nearest)
-    return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+    return texel(t, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
   const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
   const int x0 = static_cast<int>(fx), y0 = static_cast<int>(fy);
   const float ax = x - 0.5f - fx, ay = y - 0.5f - fy;
-  return lerp(lerp(texel(x0, y0), texel(x0 + 1, y0), ax), lerp(texel(x0, y0 + 1), texel(x0 + 1, y0 + 1), ax),
-              ay);
+  return lerp(lerp(texel(t, x0, y0), texel(t, x0 + 1, y0), ax),
+              lerp(texel(t, x0, y0 + 1), texel(t, x0 + 1, y0 + 1), ax), ay);
 }
 
 // Mitsuba's: color 0 where both halves agree, so on [0, ½)² of each unit square.
@@ -223,6 +229,28 @@ const Texture& checked(const std::vector<Texture>& textures, int index) {
 
 Rgb TextureSet::lookup(int texture, const SurfaceUv& at) const {
   return std::visit(LookupVisitor{*this, at}, checked(textures, texture));
+}
+
+void TextureSet::fetch_bitmap(int texture, const SurfaceUv& at) const {
+  const auto& t = std::get<BitmapTexture>(textures[static_cast<std::size_t>(texture)]);
+  const auto [x, y] = place_on(t, transform(t.to_uv, finite(at.uv)));
+  const int x0 = static_cast<int>(std::floor(x - 0.5f)), y0 = static_cast<int>(std::floor(y - 0.5f));
+  prefetch(&texel(t, x0, y0));
+  prefetch(&texel(t, x0, y0 + 1));
+}
+
+void TextureSet::add_bitmaps(int texture, std::vector<int>& out) const {
+  const Texture& t = checked(textures, texture);
+  if (std::holds_alternative<BitmapTexture>(t)) out.push_back(texture);
+  const auto add = [&](int input) { add_bitmaps(input, out); };
+  std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.color0; }) add(kind.color0), add(kind.color1);
+        if constexpr (requires { kind.input; }) add(kind.input);
+        if constexpr (requires { kind.a; }) add(kind.a), add(kind.b);
+        if constexpr (requires { kind.amount; }) add(kind.amount);
+      },
+      t);
 }
 
 float TextureSet::lookup_float(int texture, const SurfaceUv& at) const {

@@ -68,6 +68,10 @@ using Texture = std::variant<ConstantTexture, BitmapTexture, CheckerboardTexture
 struct TextureSet {
   std::vector<Texture> textures;
   Rgb lookup(int texture, const SurfaceUv& at) const;
+  // Asks memory for what lookup() of a BitmapTexture reads.
+  void fetch_bitmap(int texture, const SurfaceUv& at) const;
+  // The bitmaps that a texture is made of, itself included.
+  void add_bitmaps(int texture, std::vector<int>& out) const;
   // Scalar inputs read the luminance of color textures (Mitsuba does the same).
   float lookup_float(int texture, const SurfaceUv& at) const;
   // ∂(lookup_float)/∂u and /∂v, for bump maps: of a bitmap that is interpolated its own slope; of one that is

@@ -176,6 +176,7 @@ class World::Builder {
       if (auto* bump = std::get_if<scatter::BumpMaterial>(&material))
         bump->scale *= static_cast<float>(w_.units.scale());
     w_.materials.textures = textures_.finish();
+    w_.materials.note_bitmaps();
   }
 
   void set_media() {

@@ -233,6 +233,16 @@ float LightSampler::pdf_for_another(int emitter, const emitters::AreaEmitter& ar
 }
 
 LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u_light, Vec2f u) const {
+  return sample(at, u_light, u, nullptr);
+}
+
+LightSampler::Sample LightSampler::sample_ahead(const emitters::LitPoint& at, double u_light,
+                                                const Ahead& ahead) const {
+  return sample(at, u_light, ahead.u, map_ ? &ahead : nullptr);
+}
+
+LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u_light, Vec2f u,
+                                          const Ahead* ahead) const {
   Sample s;
   const float near = near_share(at);
   if (u_light < near) {
@@ -243,7 +253,9 @@ LightSampler::Sample LightSampler::sample(const emitters::LitPoint& at, double u
   } else if (far_choice_.total() > 0) {
     const auto pick = far_choice_.sample(static_cast<float>((u_light - near) / (1.0 - near)));
     s.emitter = far_[pick.index];
-    s.direct = world_.sample_direct(s.emitter, at.position, 0, u);
+    s.direct = ahead && s.emitter == world_.environment()
+                   ? emitters::direct_of(map_->sample_in(ahead->texel))
+                   : world_.sample_direct(s.emitter, at.position, 0, u);
     s.pdf = s.direct.pdf * (1 - near) * pick.pmf;
   }
   return s;
@@ -327,6 +339,11 @@ emitters::EnvironmentEmitter::Seen LightSampler::background(const emitters::LitP
   emitters::EnvironmentEmitter::Seen seen = environment->look(direction);
   seen.pdf *= choice_of_environment(at);
   return seen;
+}
+
+emitters::EnvironmentEmitter::Seen LightSampler::background_at(const emitters::LitPoint& at,
+                                                               Vec2f position) const {
+  return {map_->eval_at(position), choice_of_environment(at) * map_->pdf_at(position)};
 }
 
 float LightSampler::probability_of_delta(const emitters::LitPoint& at, int emitter) const {

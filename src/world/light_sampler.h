@@ -35,14 +35,28 @@ class LightSampler {
   Sample sample(const emitters::LitPoint& at, double u_light, Vec2f u) const;
 
   // Numbers `u` of a sample to come. What an environment map will be asked for by them may be fetched while
-  // something else is done: fetch() some time before sample(), and fetch_rest() between them.
+  // something else is done: fetch() some time before sample(), and fetch_column() and fetch_texel() between
+  // them.
   struct Ahead {
     Vec2f u;
-    std::size_t row = 0;
+    emitters::EnvironmentEmitter::Texel texel{};  // only where the map has several
   };
-  Ahead fetch(Vec2f u) const { return {u, map_ ? map_->fetch(u) : 0}; }
-  void fetch_rest(const Ahead& ahead) const {
-    if (map_) map_->fetch_texels(ahead.u, ahead.row);
+  Ahead fetch(Vec2f u) const {
+    Ahead ahead{u};
+    if (map_) ahead.texel.row = map_->fetch_row(u);
+    return ahead;
+  }
+  void fetch_column(const Ahead& ahead) const {
+    if (map_) map_->fetch_column(ahead.u, ahead.texel.row);
+  }
+  void fetch_texel(Ahead& ahead) const {
+    if (map_) ahead.texel = map_->fetch_texel(ahead.u, ahead.texel.row);
+  }
+  // As sample() by ahead.u, all steps being done.
+  Sample sample_ahead(const emitters::LitPoint& at, double u_light, const Ahead& ahead) const;
+  // Likewise for background(): a position on the map, if there is one.
+  std::optional<Vec2f> fetch_background(Vec3f direction) const {
+    return map_ ? std::optional(map_->fetch_position(direction)) : std::nullopt;
   }
 
   // Solid-angle density of sample() for a surface hit at `distance` along unit `direction` from `at`.
@@ -51,6 +65,8 @@ class LightSampler {
   float pdf_background(const emitters::LitPoint& at, Vec3f direction) const;
   // And with that what World::background() gives: both for little more than either.
   emitters::EnvironmentEmitter::Seen background(const emitters::LitPoint& at, Vec3f direction) const;
+  emitters::EnvironmentEmitter::Seen background_at(const emitters::LitPoint& at, Vec2f position) const;
+  Rgb background_at(Vec2f position) const { return map_->eval_at(position); }
 
   // Probability with which sample() takes a delta emitter.
   float probability_of_delta(const emitters::LitPoint& at, int emitter) const;
@@ -101,6 +117,7 @@ class LightSampler {
                                     Vec3f at) const;
   Sample sample_leaf(std::uint32_t leaf, Vec3f at, Vec2f u) const;
   float near_share(const emitters::LitPoint& at) const;
+  Sample sample(const emitters::LitPoint& at, double u_light, Vec2f u, const Ahead* ahead) const;
   // Probability with which the environment is chosen.
   float choice_of_environment(const emitters::LitPoint& at) const;
 

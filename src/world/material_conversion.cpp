@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/members.h"
 #include "scenedesc/schema/files.h"
 #include "scenedesc/schema/hair.h"
 #include "world/material_builder.h"
@@ -27,21 +28,6 @@ constexpr std::size_t place_of_kind() {
 }
 template <typename Desc>
 using MaterialOf = std::variant_alternative_t<place_of_kind<Desc>(), sc::Material>;
-
-// Whether an aggregate has exactly so many members.
-struct AnyMember {
-  template <typename T>
-  operator T() const;
-};
-template <typename T, std::size_t... k>
-constexpr bool takes_members(std::index_sequence<k...>) {
-  return requires { T{(static_cast<void>(k), AnyMember{})...}; };
-}
-template <typename T, std::size_t count>
-constexpr bool has_members() {
-  return takes_members<T>(std::make_index_sequence<count>{}) &&
-         !takes_members<T>(std::make_index_sequence<count + 1>{});
-}
 
 // Fresnel's formulas have sixth powers of them.
 constexpr float kMaxIndex = 1e6f;

@@ -78,15 +78,20 @@ TEST(Distribution1D, DrawsTheRightBinAlsoWhereProductsRound) {
     }
 }
 
-TEST(Distribution1D, TellsAheadAboutWhichBinIsDrawn) {
-  const std::vector<float> even(4096, 1.0f);
-  const Distribution1D d(even);
+TEST(Distribution1D, DrawsTheSameHoweverFewBinsItSearches) {
+  std::vector<float> weights;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const float u = Rng(10, Stage::test, i).next_float();
-    d.fetch(u);
-    EXPECT_NEAR(static_cast<double>(d.fetch_bins(u)), static_cast<double>(d.sample(u).index), 4);
+    weights.push_back(u < 0.3f ? 0.0f : u * u);
   }
-  EXPECT_EQ(Distribution1D(std::vector<float>(5, 1.0f)).fetch_bins(0.9f), 0u);
+  const Distribution1D coarse(weights, 100), usual(weights), fine(weights, 1);
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    const float u = Rng(11, Stage::test, i).next_float();
+    const auto a = coarse.sample(u), b = usual.sample(u), c = fine.sample(u);
+    ASSERT_EQ(a.index, b.index) << u;
+    ASSERT_EQ(a.index, c.index) << u;
+    ASSERT_EQ(a.remapped, c.remapped) << u;
+  }
 }
 
 TEST(Distribution1D, MayHaveNoWeightAtAll) {

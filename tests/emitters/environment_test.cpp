@@ -127,6 +127,25 @@ TEST(Environment, DensityOfASampleAgreesWithPdf) {
   EXPECT_LE(differ, 3);
 }
 
+TEST(Environment, StepByStepItIsTheSame) {
+  for (const EnvironmentEmitter& e :
+       {spotted(), spotted(300, 170), make_environment(1, 1, {Rgb(2)}, turned())})
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+      Rng rng(5, Stage::test, i);
+      const Vec2f u = rng.next_2d();
+      const auto row = e.fetch_row(u);
+      e.fetch_column(u, row);
+      const auto stepped = e.sample_in(e.fetch_texel(u, row)), whole = e.sample(u);
+      ASSERT_EQ(stepped.direction, whole.direction);
+      ASSERT_EQ(stepped.radiance, whole.radiance);
+      ASSERT_EQ(stepped.pdf, whole.pdf);
+      const Vec2f position = e.fetch_position(whole.direction);
+      const auto seen = e.look(whole.direction);
+      ASSERT_EQ(e.eval_at(position), seen.radiance);
+      ASSERT_EQ(e.pdf_at(position), seen.pdf);
+    }
+}
+
 TEST(Environment, TheDensityIsZeroOnlyWhereTheRadianceIs) {
   const EnvironmentEmitter e = spotted();
   int black = 0;

@@ -44,6 +44,36 @@ TEST(PathFilm, WhatSurfacesSendIsAllButEmission) {
     }
 }
 
+// Beneath a sky, whose map has many texels, among a matt floor, a mirror, glass and a lamp: paths end after
+// one step and after many.
+TEST(PathTracer, PathsTracedTogetherAreAsIfAlone) {
+  test::SceneMaker scene;
+  scene.rectangle({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, scene.diffuse({0.7f, 0.6f, 0.5f}));
+  scene.rectangle({0, 1, 1}, {1, 0, 0}, {0, 0, -1}, scene.mirror(Rgb(0.9f)));
+  scene.rectangle({0, -1, 1}, {1, 0, 0}, {0, 0, 1}, scene.glass(1.5f));
+  scene.lamp({0, 0, 1.5f}, {0, 0.3f, 0}, {0.3f, 0, 0}, Rgb(4), scene.diffuse(Rgb(0.2f)));
+  scene.light(scenedesc::SunSkyDesc{});
+  const world::World world = scene.build();
+  const PathTracer tracer(world, PathSettings{3, -1, Paths::all, {}});
+  std::vector<PathTracer::Start> starts;
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    const float x = 0.05f * static_cast<float>(k) - 1;
+    starts.push_back({{{0.3f * x, -0.9f, 0.8f}, normalize(Vec3f{0.2f * x, 1, x})}, k, k % 3});
+  }
+  std::vector<Radiance> together(starts.size());
+  tracer.trace(starts, together);
+  float light = 0;
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    const Radiance alone = tracer.trace(starts[k].ray, starts[k].place, starts[k].sample);
+    light += alone.total().r;
+    EXPECT_EQ(together[k].emission, alone.emission);
+    EXPECT_EQ(together[k].direct, alone.direct);
+    EXPECT_EQ(together[k].indirect, alone.indirect);
+    EXPECT_EQ(together[k].segments, alone.segments);
+  }
+  EXPECT_GT(light, 0);
+}
+
 // What pixels say of their own noise, against what pictures by other paths differ by. Paths of a pixel are
 // spread evenly, so they differ by no more.
 TEST(PathFilm, DeviationIsThatOfOtherPaths) {

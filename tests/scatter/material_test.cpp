@@ -230,6 +230,24 @@ TEST(Mask, OpacityFollowsItsTexture) {
   EXPECT_NEAR(set.opacity(2, {{0.75f, 0}, Rgb(1)}), 0.5f, 1e-6f);  // a mask in a mask: the product
 }
 
+// However deep it is nested, each once; asking for it changes nothing and needs no picture to be read.
+TEST(MaterialSet, NotesTheBitmapsThatAMaterialReads) {
+  auto pixels = std::make_shared<TexturePixels>();
+  pixels->width = 2, pixels->height = 3;
+  pixels->rgb.assign(6, Rgb(0.5f));
+  BitmapTexture picture;
+  picture.pixels = pixels;
+  MixtureMaterial mixed{{{{0.5f, 4}, false, 0}, {{0.5f, -1}, false, 1}}};
+  MaterialSet set = materials({DiffuseMaterial{{{}, 2}}, DiffuseMaterial{gray(0.5f)}, BumpMaterial{0, 1, 0},
+                               TwoSidedMaterial{2, 1}, mixed, MaskMaterial{{0, 3}, 4}},
+                              {picture, ConstantTexture{}, MixTexture{0, 1, 1}, picture, picture});
+  set.note_bitmaps();
+  const std::vector<std::vector<int>> expected{{0}, {}, {0}, {0}, {0, 4}, {0, 3, 4}};
+  EXPECT_EQ(set.bitmaps, expected);
+  for (const float u : {0.0f, 0.999f, -7.3f, 1e30f, std::nanf("")}) set.fetch(5, {{u, u}, Rgb(1)});
+  set.fetch(77, {});
+}
+
 TEST(Passage, OfEveryNesting) {
   const MaterialSet set =
       materials({DiffuseMaterial{gray(1)},                           // 0
