@@ -105,10 +105,10 @@ struct PlasticMaterial {
   bool nonlinear = false;
   NormalDistribution distribution;
   FloatInput alpha;
-  bool lossless = false;  // these two: see PlasticDesc
+  bool lossless = false;  // these three: see PlasticDesc
   bool schlick = false;
+  bool as_mitsuba_3 = false;
   bool smooth = true;
-  bool as_mitsuba_3 = false;  // see PlasticDesc
 };
 void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 

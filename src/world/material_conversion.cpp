@@ -136,7 +136,12 @@ class MaterialBuilder::Conversion {
                   "the members of a material are the fields of its description");
     Made out = std::apply([&](const auto&... field) { return Made{member(field, d.*field.member)...}; },
                           Desc::fields());
-    if constexpr (smooth) out.smooth = is_smooth(d);
+    if constexpr (smooth) {
+      out.smooth = is_smooth(d);
+      const void* last = nullptr;
+      for_each_member(out, [&](const auto& member) { last = &member; });
+      if (last != &out.smooth) throw InternalError("a material's `smooth` is not its last member");
+    }
     return out;
   }
 

@@ -41,7 +41,8 @@ DielectricMaterial dielectric(NormalDistribution d, float eta, float au, float a
   return {eta, gray(1), gray(1), d, number(au), number(av), au == 0};
 }
 PlasticMaterial plastic(NormalDistribution d, float alpha, bool nonlinear) {
-  return {1.49f, color(0.8f, 0.4f, 0.1f), gray(1), nonlinear, d, number(alpha), false, false, alpha == 0};
+  return {1.49f,     color(0.8f, 0.4f, 0.1f), gray(1), nonlinear, d, number(alpha), false, false, false,
+          alpha == 0};
 }
 
 BsdfCase glass(std::string name, DielectricMaterial m) {

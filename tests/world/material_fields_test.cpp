@@ -110,13 +110,13 @@ TEST(MaterialFields, OfMicrofacetKinds) {
     const auto m = material_of<sc::ThinDielectricMaterial>(d);
     SAME(eta), SAME(specular_reflectance), SAME(specular_transmittance);
   }
-  // Two flags: each by itself.
-  for (const bool nonlinear : {false, true}) {
+  // Four flags: each by itself.
+  for (const int flag : {0, 1, 2, 3}) {
     auto d = DistinctValues().of<sd::PlasticDesc>();
-    d.nonlinear = nonlinear, d.lossless = !nonlinear, d.schlick = nonlinear;
+    d.nonlinear = flag == 0, d.lossless = flag == 1, d.schlick = flag == 2, d.as_mitsuba_3 = flag == 3;
     const auto m = material_of<sc::PlasticMaterial>(d);
     SAME(eta), SAME(diffuse_reflectance), SAME(specular_reflectance);
-    SAME(nonlinear), SAME(distribution), SAME(alpha), SAME(lossless), SAME(schlick);
+    SAME(nonlinear), SAME(distribution), SAME(alpha), SAME(lossless), SAME(schlick), SAME(as_mitsuba_3);
     EXPECT_FALSE(m.smooth);
   }
 }
