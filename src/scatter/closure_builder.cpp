@@ -146,21 +146,24 @@ void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint
                       reflectance(out.textures(), m.specular_reflectance, at.uv));
   coat.fresnel = FresnelKind::dielectric;
   coat.distribution = m.distribution;
-  coat.alpha_u = coat.alpha_v = alpha;
+  coat.alpha_v = alpha;
+  coat.alpha_u = m.smooth ? alpha : stretched_alpha(alpha, fraction(out.textures(), m.stretch, at.uv));
   coat.eta = m.eta;
+  const float mean_alpha = std::sqrt(coat.alpha_u * coat.alpha_v);
   Rgb base = reflectance(out.textures(), m.diffuse_reflectance, at.uv);
   if (m.schlick) {
     coat.fresnel = FresnelKind::schlick;
     coat.conductor_eta = std::exchange(coat.color, Rgb(1));
-    if (!m.smooth) out.push(masked_reflection_lobe(coat.conductor_eta, m.distribution, alpha), at, weight);
+    if (!m.smooth)
+      out.push(masked_reflection_lobe(coat.conductor_eta, m.distribution, mean_alpha), at, weight);
     // The base is made for an interface of index eta, which leaves 1 - its own reflectance.
     const float own = square((m.eta - 1) / (m.eta + 1));
     base *= std::min(1.0f, (1 - max_component(coat.conductor_eta)) / (1 - own));
   }
   out.push(coat, at, weight);
-  out.push(m.lossless
-               ? lossless_diffuse_lobe(base, m.eta, m.distribution, alpha)
-               : interfaced_diffuse_lobe(base, m.eta, m.distribution, alpha, m.nonlinear, m.as_mitsuba_3),
+  out.push(m.lossless ? lossless_diffuse_lobe(base, m.eta, m.distribution, mean_alpha)
+                      : interfaced_diffuse_lobe(base, m.eta, m.distribution, mean_alpha, m.nonlinear,
+                                                m.as_mitsuba_3),
            at, weight);
 }
 
@@ -238,6 +241,10 @@ void add_lobes(const BumpMaterial& m, ClosureBuilder& out, const SurfacePoint& a
 
 void add_lobes(const NormalMapMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
   out.add(m.nested, normal_mapped(out.textures(), m, at), weight);
+}
+
+void add_lobes(const TurnedTangentMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {
+  out.add(m.nested, with_turned_tangent(out.textures(), m, at), weight);
 }
 
 void add_lobes(const MixtureMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight) {

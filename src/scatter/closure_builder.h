@@ -39,6 +39,8 @@ Rgb reflectance(const TextureSet& textures, const ColorInput& input, const Surfa
 Rgb positive_color(const TextureSet& textures, const ColorInput& input, const SurfaceUv& uv);
 float number(const TextureSet& textures, const FloatInput& input, const SurfaceUv& uv);
 float fraction(const TextureSet& textures, const FloatInput& input, const SurfaceUv& uv);  // within [0, 1]
+// Along the tangent, see PlasticDesc.
+inline float stretched_alpha(float alpha, float stretch) { return alpha + (1 - alpha) * square(stretch); }
 float rough_alpha(const TextureSet& textures, const FloatInput& input,
                   const SurfaceUv& uv);  // [kMinAlpha, 1]
 
@@ -48,6 +50,8 @@ std::vector<float> mixture_weights(const TextureSet& textures, const MixtureMate
 // Perturbed points (perturb.cpp).
 SurfacePoint bumped(const TextureSet& textures, const BumpMaterial& m, const SurfacePoint& at);
 SurfacePoint normal_mapped(const TextureSet& textures, const NormalMapMaterial& m, const SurfacePoint& at);
+SurfacePoint with_turned_tangent(const TextureSet& textures, const TurnedTangentMaterial& m,
+                                 const SurfacePoint& at);
 // The same point with its other side outside; tangents stay.
 SurfacePoint turned(const SurfacePoint& at);
 

@@ -105,9 +105,10 @@ struct PlasticMaterial {
   bool nonlinear = false;
   NormalDistribution distribution;
   FloatInput alpha;
-  bool lossless = false;  // these three: see PlasticDesc
+  bool lossless = false;  // these four: see PlasticDesc
   bool schlick = false;
   bool as_mitsuba_3 = false;
+  FloatInput stretch = {};
   bool smooth = true;
 };
 void add_lobes(const PlasticMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
@@ -130,7 +131,8 @@ struct PrincipledMaterial {
   FloatInput roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, clearcoat,
       clearcoat_gloss, flatness;
   float eta = 1.5f;
-  bool lossless = false;  // see PrincipledDesc
+  bool lossless = false;  // these two: see PrincipledDesc
+  FloatInput stretch;
 };
 void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
@@ -223,6 +225,13 @@ struct NormalMapMaterial {
 };
 void add_lobes(const NormalMapMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
 
+struct TurnedTangentMaterial {
+  ColorInput direction;  // these two: see TurnedTangentDesc
+  float angle = 0;
+  int nested = -1;
+};
+void add_lobes(const TurnedTangentMaterial& m, ClosureBuilder& out, const SurfacePoint& at, float weight);
+
 struct MixtureMaterial {
   struct Part {
     FloatInput weight;
@@ -238,7 +247,7 @@ using Material =
                  ThinDielectricMaterial, PlasticMaterial, PhongMaterial, WardMaterial, PrincipledMaterial,
                  PrincipledThinMaterial, DiffuseTransmitterMaterial, MeasuredMaterial, CoatingMaterial,
                  SheenMaterial, HairMaterial, HairFiberMaterial, MaskMaterial, TwoSidedMaterial, BumpMaterial,
-                 NormalMapMaterial, MixtureMaterial, SlabFaceMaterial>;
+                 NormalMapMaterial, TurnedTangentMaterial, MixtureMaterial, SlabFaceMaterial>;
 
 // All materials of a world with the textures that they read; nested materials come before their users.
 struct MaterialSet {

@@ -35,6 +35,7 @@ struct PassageVisitor {
   }
   Passage operator()(const BumpMaterial& m) const { return set.passage(m.nested); }
   Passage operator()(const NormalMapMaterial& m) const { return set.passage(m.nested); }
+  Passage operator()(const TurnedTangentMaterial& m) const { return set.passage(m.nested); }
   Passage operator()(const MixtureMaterial& m) const {
     for (const MixtureMaterial::Part& part : m.parts)
       if (set.passage(part.nested) != Passage::opaque) return Passage::attenuating;
@@ -76,6 +77,7 @@ struct TransmittanceVisitor {
   Rgb operator()(const NormalMapMaterial& m) const {
     return set.transmittance(m.nested, normal_mapped(set.textures, m, at), w);
   }
+  Rgb operator()(const TurnedTangentMaterial& m) const { return set.transmittance(m.nested, at, w); }
   Rgb operator()(const MixtureMaterial& m) const {
     const std::vector<float> weights = mixture_weights(set.textures, m, at.uv);
     Rgb sum(0);
@@ -99,6 +101,7 @@ struct OpacityVisitor {
   float operator()(const TwoSidedMaterial& m) const { return set.opacity(m.front, uv); }
   float operator()(const BumpMaterial& m) const { return set.opacity(m.nested, uv); }
   float operator()(const NormalMapMaterial& m) const { return set.opacity(m.nested, uv); }
+  float operator()(const TurnedTangentMaterial& m) const { return set.opacity(m.nested, uv); }
 };
 
 struct HairVisitor {

@@ -49,4 +49,17 @@ SurfacePoint normal_mapped(const TextureSet& textures, const NormalMapMaterial& 
   return with_normal(at, at.shading.to_world(local / len), at.shading.s);
 }
 
+SurfacePoint with_turned_tangent(const TextureSet& textures, const TurnedTangentMaterial& m,
+                                 const SurfacePoint& at) {
+  const Rgb c = m.direction.texture >= 0 ? textures.lookup(m.direction.texture, at.uv) : m.direction.value;
+  const float x = 2 * c.r - 1, y = 2 * c.g - 1, cosine = std::cos(m.angle), sine = std::sin(m.angle);
+  const Vec3f up = dot(at.shading.t, at.dpdv) > 0 ? -at.shading.t : at.shading.t;
+  const Vec3f tangent = at.shading.s * (x * cosine - y * sine) + up * (x * sine + y * cosine);
+  const float len = length(tangent);
+  if (!(len > 1e-6f) || !std::isfinite(len)) return at;
+  SurfacePoint out = at;
+  out.shading = Frame::from_normal_tangent(at.shading.n, tangent / len);
+  return out;
+}
+
 }  // namespace lumirank::scatter

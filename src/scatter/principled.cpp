@@ -41,6 +41,8 @@ void add_lobes(const PrincipledMaterial& m, ClosureBuilder& out, const SurfacePo
   const float opaque = (1 - metallic) * (1 - spec_trans), clear = (1 - metallic) * spec_trans;
 
   Lobe spec = rough_reflection(roughness, input(m.anisotropic), m.eta);
+  if (const float stretch = input(m.stretch); stretch > 0)
+    spec.alpha_u = stretched_alpha(std::min(spec.alpha_u, 1.0f), stretch);
 
   Lobe through = spec;
   through.kind = LobeKind::microfacet_transmit;

@@ -41,7 +41,11 @@ DielectricMaterial dielectric(NormalDistribution d, float eta, float au, float a
   return {eta, gray(1), gray(1), d, number(au), number(av), au == 0};
 }
 PlasticMaterial plastic(NormalDistribution d, float alpha, bool nonlinear) {
-  return {1.49f,     color(0.8f, 0.4f, 0.1f), gray(1), nonlinear, d, number(alpha), false, false, false,
+  return {1.49f,     color(0.8f, 0.4f, 0.1f),
+          gray(1),   nonlinear,
+          d,         number(alpha),
+          false,     false,
+          false,     number(0),
           alpha == 0};
 }
 
@@ -331,6 +335,12 @@ std::vector<BsdfCase> build() {
   list.push_back(textured);
   list.push_back(single("conductor_ggx_brushed_less", conductor(kGgx, 0.05f, 0.33f)));
   list.push_back(glass("dielectric_ggx_0.33", dielectric(kGgx, 1.5f, 0.33f, 0.33f)));
+  PlasticMaterial brushed = plastic(kGgx, 0.1f, false);
+  brushed.lossless = true, brushed.stretch = number(0.7f);
+  list.push_back(nested("turned_plastic", brushed, TurnedTangentMaterial{{Rgb(0.9f, 0.8f, 0), -1}, 1, 0}));
+  BsdfCase stretched = principled("metal_stretched", 1, 0, 0.5f, 0);
+  std::get<PrincipledMaterial>(stretched.set.materials[0]).stretch = number(0.6f);
+  list.push_back(stretched);
   return list;
 }
 

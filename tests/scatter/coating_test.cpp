@@ -78,7 +78,8 @@ TEST(Coating, OverMattIsPlastic) {
   set.materials.push_back(CoatingMaterial{1.5f, gray(1), gray(0), number(1), NormalDistribution::ggx,
                                           number(0.2f), number(0.2f), false, 0, false});
   set.materials.push_back(PlasticMaterial{1.5f, ColorInput{Rgb(0.8f, 0.5f, 0.1f), -1}, gray(1), true,
-                                          NormalDistribution::ggx, number(0.2f), false, false, false, false});
+                                          NormalDistribution::ggx, number(0.2f), false, false, false,
+                                          number(0), false});
   const SurfacePoint at = point_with_normal({0, 0, 1});
   for (const float o : {0.9f, 0.3f})
     for (const float i : {0.95f, 0.5f, 0.1f}) {

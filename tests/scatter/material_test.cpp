@@ -93,8 +93,7 @@ TEST(FaceViewer, LeavesWhatIsSeenAlone) {
 TEST(Plastic, SmoothMatchesItsFormula) {
   const float n = 1.49f, rho = 0.6f;
   for (const bool nonlinear : {false, true}) {
-    PlasticMaterial m{n,         gray(rho), gray(1), nonlinear, NormalDistribution::ggx,
-                      number(0), false,     false,   true};
+    PlasticMaterial m{n, gray(rho), gray(1), nonlinear, NormalDistribution::ggx, number(0)};
     const MaterialSet set = materials({m});
     const Closure c = set.closure(0, point_with_normal(kUp), kTilted);
     const float r = fresnel_diffuse_reflectance(1 / n);
@@ -160,7 +159,7 @@ TEST(Coating, StraightOneOverWhiteIsLossless) {
 }
 
 TEST(Plastic, WhiteNonlinearIsLossless) {
-  PlasticMaterial m{1.6f, gray(1), gray(1), true, NormalDistribution::ggx, number(0), false, false, true};
+  PlasticMaterial m{1.6f, gray(1), gray(1), true, NormalDistribution::ggx, number(0)};
   const MaterialSet set = materials({m});
   for (float cosine : {1.0f, 0.5f, 0.05f}) {
     const Vec3f wo = at_angle(cosine, 1);

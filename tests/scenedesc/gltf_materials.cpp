@@ -349,6 +349,49 @@ TEST(GltfMaterial, SpecularClearCoatSheenUnlit) {
 
 // Exporters write nearly everything double-sided: a lamp that faces away shines all the same, and the inside
 // of a bulb is nobody's light.
+TEST(GltfMaterial, Anisotropy) {
+  GltfMaker m = with_material({{"pbrMetallicRoughness", {{"metallicFactor", 0.5}, {"roughnessFactor", 0}}},
+                               {"normalTexture", {{"index", 0}}},
+                               {"extensions",
+                                {{"KHR_materials_anisotropy",
+                                  {{"anisotropyStrength", 0.75},
+                                   {"anisotropyRotation", 0.5},
+                                   {"anisotropyTexture", {{"index", 0}}}}}}}});
+  add_images(m);
+  SceneDesc scene = parse(m);
+  EXPECT_EQ(warning_about(scene, "nisotropy"), nullptr);
+  const auto* turned = find_bsdf<TurnedTangentDesc>(scene);
+  ASSERT_NE(turned, nullptr);
+  EXPECT_EQ(turned->angle, 0.5f);
+  const auto bitmap = [&](int k) {
+    return std::get<BitmapTextureDesc>(scene.textures.at(static_cast<std::size_t>(k)).kind);
+  };
+  EXPECT_EQ(bitmap(turned->direction.texture).channel, TextureChannel::rgb);
+  // The tangent is turned within the surface that the normal map has bent.
+  const auto& map = *find_bsdf<NormalMapDesc>(scene);
+  EXPECT_TRUE(
+      std::holds_alternative<TurnedTangentDesc>(scene.bsdfs[static_cast<std::size_t>(map.nested)].kind));
+  const auto* plastic = find_bsdf<PlasticDesc>(scene);
+  const auto* metal = find_bsdf<PrincipledDesc>(scene);
+  ASSERT_TRUE(plastic && metal);
+  EXPECT_EQ(plastic->stretch.texture, metal->stretch.texture);
+  ASSERT_NE(plastic->stretch.texture, kNone);
+  EXPECT_GT(plastic->alpha.value, 0) << "a mirror along one direction alone is no mirror";
+
+  // Without strength there is no direction.
+  auto& anisotropy = m.root["materials"][0]["extensions"]["KHR_materials_anisotropy"];
+  anisotropy["anisotropyStrength"] = 0;
+  anisotropy.erase("anisotropyTexture");
+  scene = parse(m);
+  EXPECT_EQ(find_bsdf<TurnedTangentDesc>(scene), nullptr);
+  EXPECT_EQ(find_bsdf<PlasticDesc>(scene)->alpha.value, 0);
+  // Along the tangent as it is.
+  anisotropy = {{"anisotropyStrength", 0.5}};
+  scene = parse(m);
+  EXPECT_EQ(find_bsdf<TurnedTangentDesc>(scene), nullptr);
+  EXPECT_EQ(find_bsdf<PlasticDesc>(scene)->stretch.value, 0.5f);
+}
+
 TEST(GltfMaterial, DoubleSidedLampsShineBothWays) {
   GltfMaker m = with_material({{"emissiveFactor", {1, 1, 1}}, {"doubleSided", true}});
   SceneDesc scene = parse(m);

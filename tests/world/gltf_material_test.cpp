@@ -219,6 +219,43 @@ TEST(GltfBrdf, SheenFollowsTheExtension) {
   }
 }
 
+// KHR_materials_anisotropy: alpha_t = mix(alpha, 1, strength²) along the tangent, alpha_b = alpha across it;
+// D as that extension writes it, and V with the masking of either direction by itself, as in appendix B.3 of
+// glTF. The tangent is turned from +u towards the picture's top, so towards
+// -v, whichever way the uvs run.
+TEST(GltfBrdf, AnisotropyStretchesAlongTheTurnedTangent) {
+  for (const int v_along : {-1, 1})
+    for (const double turn : {0.0, 0.7}) {
+      const double strength = 0.6, roughness = 0.5, alpha = roughness * roughness;
+      const Point p = built(scene_of(
+          R"({"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,1],"metallicFactor":1,"roughnessFactor":0.5},
+              "extensions":{"KHR_materials_anisotropy":{"anisotropyStrength":0.6,"anisotropyRotation":)" +
+              std::to_string(turn) + "}}}",
+          v_along));
+      const double at = alpha + (1 - alpha) * strength * strength, ab = alpha;
+      const double up = -v_along;
+      const Vec3f t{static_cast<float>(std::cos(turn)), static_cast<float>(up * std::sin(turn)), 0};
+      const Vec3f b{static_cast<float>(-std::sin(turn)), static_cast<float>(up * std::cos(turn)), 0};
+      for_directions(0.1f, [&](Vec3f wo, Vec3f wi) {
+        const Vec3f h = normalize(wo + wi);
+        const double th = dot(t, h), bh = dot(b, h), nh = h.z;
+        const double x = ab * th, y = at * bh, z = at * ab * nh, a2 = at * ab;
+        const double w2 = a2 / (x * x + y * y + z * z), d = a2 * w2 * w2 / M_PI;
+        const auto stretched = [&](Vec3f w) {
+          return std::sqrt(std::pow(at * dot(t, w), 2) + std::pow(ab * dot(b, w), 2) + std::pow(w.z, 2));
+        };
+        const auto g = [&](Vec3f w) { return 2 * w.z / (w.z + stretched(w)); };
+        const double v = g(wo) * g(wi) / (4 * wo.z * wi.z);
+        const auto closure = p.world.materials().closure(p.hit.material, p.hit.point, wo);
+        const double f = scatter::eval_f(closure, wo, wi).g;
+        // What the facets mask comes back besides: a smooth, small part.
+        const double ratio = f / (d * v);
+        EXPECT_GT(f, 0.98 * d * v) << v_along << ' ' << turn << ' ' << ratio;
+        EXPECT_LT(f, 1.02 * d * v + 0.1) << v_along << ' ' << turn << ' ' << ratio;
+      });
+    }
+}
+
 // A normal map that leans towards green, "up in the picture": smaller v of glTF, whichever way the uvs turn
 // it.
 TEST(GltfBrdf, NormalMapsFollowMirroredUvs) {

@@ -116,7 +116,8 @@ TEST(MaterialFields, OfMicrofacetKinds) {
     d.nonlinear = flag == 0, d.lossless = flag == 1, d.schlick = flag == 2, d.as_mitsuba_3 = flag == 3;
     const auto m = material_of<sc::PlasticMaterial>(d);
     SAME(eta), SAME(diffuse_reflectance), SAME(specular_reflectance);
-    SAME(nonlinear), SAME(distribution), SAME(alpha), SAME(lossless), SAME(schlick), SAME(as_mitsuba_3);
+    SAME(nonlinear), SAME(distribution), SAME(alpha), SAME(lossless), SAME(schlick), SAME(as_mitsuba_3),
+        SAME(stretch);
     EXPECT_FALSE(m.smooth);
   }
 }
@@ -152,7 +153,7 @@ TEST(MaterialFields, OfPrincipledKinds) {
     const auto m = material_of<sc::PrincipledMaterial>(d);
     SAME(base_color), SAME(roughness), SAME(anisotropic), SAME(metallic), SAME(spec_trans), SAME(spec_tint);
     SAME(sheen), SAME(sheen_tint), SAME(clearcoat), SAME(clearcoat_gloss), SAME(flatness), SAME(eta);
-    SAME(lossless);
+    SAME(lossless), SAME(stretch);
   }
   {
     const auto d = DistinctValues().of<sd::PrincipledThinDesc>();
@@ -189,6 +190,12 @@ TEST(MaterialFields, OfKindsOverOthers) {
     const auto m = material_of<sc::BumpMaterial>(d, &below);
     SAME(scale);
     EXPECT_EQ(m.texture, 0);
+    EXPECT_EQ(m.nested, below);
+  }
+  {
+    const auto d = DistinctValues().of<sd::TurnedTangentDesc>();
+    const auto m = material_of<sc::TurnedTangentMaterial>(d, &below);
+    SAME(direction), SAME(angle);
     EXPECT_EQ(m.nested, below);
   }
   {

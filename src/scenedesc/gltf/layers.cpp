@@ -1,4 +1,4 @@
-// Coats and cloth: KHR_materials_clearcoat and KHR_materials_sheen.
+// Coats, cloth and brushed surfaces: KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy.
 #include "scenedesc/gltf/surface.h"
 
 namespace lumirank::scenedesc::gltf {
@@ -36,6 +36,17 @@ int Reader::leaf_bsdf(const Element& material, const Surface& s, const Element& 
   if (volume_of(material)) warn(material, "a solid that lets light through diffusely", "a thin sheet");
   const int opaque = two_sided(material, opaque_bsdf(material, s));
   return mix(material, s.metallic, opaque, mix(material, share, add_bsdf(transmission, leaf), opaque));
+}
+
+int Reader::turned_bsdf(const Element& anisotropy, int base) {
+  TurnedTangentDesc turned;
+  turned.angle = anisotropy.real("anisotropyRotation", 0);
+  turned.nested = base;
+  if (const auto info = anisotropy.find("anisotropyTexture"))
+    if (const int texture = build_texture(*info, true, TextureChannel::rgb); texture != kNone)
+      turned.direction = {Rgb(0), texture};
+  if (turned.direction.texture == kNone && turned.angle == 0) return base;
+  return add_bsdf(anisotropy, turned);
 }
 
 int Reader::coated_bsdf(const Element& clearcoat, int base) {

@@ -17,6 +17,7 @@ bool is_constant(const FloatInput& input, float value) {
 }
 // Sheets of a roughness up to this are clear: shadow rays pass them.
 constexpr float kSmoothSheet = 0.1f;
+constexpr float kLeastAlpha = 1e-3f;     // where it is stretched
 constexpr float kMaxReflectance = 0.9f;  // at normal incidence, of what is not metal
 bool is_black(const ColorInput& input) { return input.texture == kNone && input.value == Rgb(0); }
 
@@ -57,6 +58,7 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
     principled.roughness = s.roughness;
     principled.metallic = {1};
     principled.lossless = true;
+    principled.stretch = s.stretch;
     metal = add_bsdf(material, principled);
   }
   if (!is_constant(s.metallic, 1)) {
@@ -88,6 +90,7 @@ int Reader::opaque_bsdf(const Element& material, const Surface& s) {
       desc.specular_reflectance = tint;
       desc.distribution = Distribution::ggx;
       desc.alpha = s.alpha;
+      desc.stretch = s.stretch;
       desc.lossless = true;
       plastic = add_bsdf(material, desc);
     }
@@ -160,6 +163,7 @@ int Reader::uv_set_of(const Element& material) {
       {"KHR_materials_specular", "specularColorTexture"},
       {"KHR_materials_sheen", "sheenColorTexture"},
       {"KHR_materials_sheen", "sheenRoughnessTexture"},
+      {"KHR_materials_anisotropy", "anisotropyTexture"},
       {"KHR_materials_clearcoat", "clearcoatTexture"},
       {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"}};
   for (const auto& [extension, texture] : others)
@@ -179,6 +183,12 @@ void Reader::read_roughness(const Element& material, const BaseColor& base, Surf
         float_input(base.at, "roughnessFactor", 1, "metallicRoughnessTexture", TextureChannel::green);
   }
   s.alpha = squared(material, s.roughness);
+  const auto anisotropy = material.extension("KHR_materials_anisotropy");
+  if (!anisotropy) return;
+  s.stretch = float_input(*anisotropy, "anisotropyStrength", 0, "anisotropyTexture", TextureChannel::blue);
+  // A mirror along one direction alone is no mirror.
+  if (!is_constant(s.stretch, 0) && s.alpha.texture == kNone)
+    s.alpha.value = std::max(s.alpha.value, kLeastAlpha);
 }
 
 Reader::Surface Reader::surface_of(const Element& material, const BaseColor& base, bool colored) {
@@ -218,6 +228,12 @@ int Reader::lit_bsdf(const Element& material, const Surface& s) {
   if (const auto clearcoat = material.extension("KHR_materials_clearcoat"))
     bsdf = coated_bsdf(*clearcoat, bsdf);
   if (!transmits && !shines_through) bsdf = two_sided(material, bsdf);
+  if (!is_constant(s.stretch, 0)) {
+    const Element anisotropy = *material.extension("KHR_materials_anisotropy");
+    if (transmits)
+      warn(anisotropy, "anisotropy of what lets light pass", "refraction alike in all directions");
+    bsdf = turned_bsdf(anisotropy, bsdf);
+  }
   return normal_mapped(material, bsdf);
 }
 

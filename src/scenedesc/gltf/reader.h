@@ -98,6 +98,7 @@ class Reader : public SceneReader {
   int transmitting_bsdf(const Element& material, const Surface& surface, const Element& transmission);
   int leaf_bsdf(const Element& material, const Surface& surface, const Element& transmission);  // layers.cpp
   int sheen_bsdf(const Element& material, const Surface& surface, const Element& sheen);        // layers.cpp
+  int turned_bsdf(const Element& anisotropy, int base);                                         // layers.cpp
   int coated_bsdf(const Element& clearcoat, int base);                                          // layers.cpp
   int two_sided(const Element& at, int bsdf);
   int normal_mapped(const Element& material, int base);

@@ -8,7 +8,8 @@ namespace lumirank::scenedesc::gltf {
 struct Reader::Surface {
   ColorInput base;
   FloatInput metallic, roughness;
-  FloatInput alpha;  // roughness²: the width of GGX
+  FloatInput alpha;       // roughness²: the width of GGX
+  FloatInput stretch{0};  // KHR_materials_anisotropy, see PlasticDesc
   float ior = 1.5f;
   // KHR_materials_pbrSpecularGlossiness: reflectance at normal incidence, over `base`.
   std::optional<ColorInput> specular;

@@ -110,6 +110,9 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
   bool schlick = false;
   // Under a rough coating, what comes back inside is averaged as Mitsuba 3 does (scatter/interface.h).
   bool as_mitsuba_3 = false;
+  // glTF's KHR_materials_anisotropy: along the tangent alpha grows to alpha + (1 - alpha)·stretch². Of a
+  // rough coating.
+  FloatInput stretch{0};
 
   static constexpr BsdfInfo kInfo{"plastic"};
   static constexpr auto fields() {
@@ -121,7 +124,8 @@ struct PlasticDesc {  // smooth coating if alpha is the constant 0
                       Field{"alpha", &PlasticDesc::alpha, Role::roughness},
                       Field{"lossless", &PlasticDesc::lossless, Role::own},
                       Field{"schlick", &PlasticDesc::schlick, Role::own},
-                      Field{"as_mitsuba_3", &PlasticDesc::as_mitsuba_3, Role::own}};
+                      Field{"as_mitsuba_3", &PlasticDesc::as_mitsuba_3, Role::own},
+                      Field{"stretch", &PlasticDesc::stretch, Role::own}};
   }
 };
 struct PhongDesc {  // the modified (energy-conserving) Phong model
@@ -157,6 +161,7 @@ struct PrincipledDesc {  // Mitsuba 3's "principled"
   float eta = 1.5f;
   // Its metal sends back what single scattering by microfacets loses (scatter/interface.h). glTF.
   bool lossless = false;
+  FloatInput stretch{0};  // as PlasticDesc's, beside `anisotropic`
 
   static constexpr BsdfInfo kInfo{"principled"};
   static constexpr auto fields() {
@@ -172,7 +177,8 @@ struct PrincipledDesc {  // Mitsuba 3's "principled"
                       Field{"clearcoat_gloss", &PrincipledDesc::clearcoat_gloss, Role::number, Range::to_1},
                       Field{"flatness", &PrincipledDesc::flatness, Role::number, Range::to_1},
                       Field{"eta", &PrincipledDesc::eta, Role::own, Range::index},
-                      Field{"lossless", &PrincipledDesc::lossless, Role::own}};
+                      Field{"lossless", &PrincipledDesc::lossless, Role::own},
+                      Field{"stretch", &PrincipledDesc::stretch, Role::own}};
   }
 };
 struct HairDesc {  // Kajiya-Kay; only for curves. Shares of the light that meets a fiber
@@ -316,6 +322,20 @@ struct BumpMapDesc {
                       Field{"nested", &BumpMapDesc::nested, Role::nested}};
   }
 };
+// The tangent turned within the surface: glTF's KHR_materials_anisotropy. Axes are those of NormalMapDesc
+// with follow_uv.
+struct TurnedTangentDesc {
+  ColorInput direction{Rgb(1, 0.5f, 0)};  // where it points along the first two axes, 2·rg - 1
+  float angle = 0;  // by which that is turned on, from the first towards the second, radians
+  int nested = kNone;
+
+  static constexpr BsdfInfo kInfo{"turnedtangent"};
+  static constexpr auto fields() {
+    return std::tuple{Field{"direction", &TurnedTangentDesc::direction, Role::own},
+                      Field{"angle", &TurnedTangentDesc::angle, Role::own, Range::any, "tangent's angle"},
+                      Field{"nested", &TurnedTangentDesc::nested, Role::nested}};
+  }
+};
 struct NormalMapDesc {
   int texture = kNone;  // raw RGB, n = 2·rgb - 1 in the tangent frame
   int nested = kNone;
@@ -347,7 +367,7 @@ using BsdfKind =
     std::variant<DiffuseDesc, NullBsdfDesc, RoughDiffuseDesc, ConductorDesc, DielectricDesc,
                  ThinDielectricDesc, PlasticDesc, PhongDesc, WardDesc, PrincipledDesc, PrincipledThinDesc,
                  DiffuseTransmitterDesc, MeasuredDesc, CoatingDesc, SheenDesc, HairDesc, HairFiberDesc,
-                 MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc, MixtureDesc>;
+                 MaskDesc, TwoSidedDesc, BumpMapDesc, NormalMapDesc, TurnedTangentDesc, MixtureDesc>;
 
 struct BsdfDesc {
   std::string id;

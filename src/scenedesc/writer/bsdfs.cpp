@@ -104,6 +104,7 @@ void MitsubaWriter::write(const Desc& d, const BsdfDesc& desc, const std::string
                     d.distribution;
                   })
       if (!is_smooth(d.alpha_u, d.alpha_v)) name = "rough" + name;
+    if constexpr (std::is_same_v<Desc, PrincipledDesc>) warn_of_stretch(d.stretch, desc.where);
     if constexpr (std::is_same_v<Desc, PrincipledDesc>)
       if (d.lossless)
         warn(desc.where, "metal that gives back what its facets mask",
@@ -122,7 +123,13 @@ void MitsubaWriter::write(const Desc& d, const BsdfDesc& desc, const std::string
   xml_.close();
 }
 
+void MitsubaWriter::warn_of_stretch(const FloatInput& stretch, const SourceLocation& where) {
+  if (stretch.texture != kNone || stretch.value > 0)
+    warn(where, "anisotropy as glTF has it", "a reflection alike in all directions");
+}
+
 void MitsubaWriter::write(const PlasticDesc& d, const BsdfDesc& desc, const std::string& id) {
+  warn_of_stretch(d.stretch, desc.where);
   const bool smooth = is_smooth(d.alpha, d.alpha);
   if (d.lossless && !smooth) return lossless_plastic(d, desc, id);
   PlasticDesc written = d;
@@ -215,6 +222,11 @@ void MitsubaWriter::write(const NormalMapDesc& d, const BsdfDesc& desc, const st
   reference(map.texture, "normalmap");
   fields(d);
   xml_.close();
+}
+
+// Without stretched lobes, of which a warning tells, a turn changes nothing.
+void MitsubaWriter::write(const TurnedTangentDesc& d, const BsdfDesc&, const std::string& id) {
+  kind_of(scene_.bsdfs[static_cast<std::size_t>(d.nested)], id);
 }
 
 // Rough plastic that loses nothing. Mitsuba's keeps what single scattering in its interface lets through: a

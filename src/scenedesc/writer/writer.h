@@ -71,6 +71,8 @@ class MitsubaWriter {
   void write(const TwoSidedDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const BumpMapDesc& d, const BsdfDesc& desc, const std::string& id);
   void write(const NormalMapDesc& d, const BsdfDesc& desc, const std::string& id);
+  void write(const TurnedTangentDesc& d, const BsdfDesc& desc, const std::string& id);
+  void warn_of_stretch(const FloatInput& stretch, const SourceLocation& where);
   void write(const MixtureDesc& d, const BsdfDesc& desc, const std::string& id);
   void roughness(Distribution distribution, const FloatInput& alpha_u, const FloatInput& alpha_v);
   bool transmits(int index) const;
