@@ -240,17 +240,24 @@ void TextureSet::fetch_bitmap(int texture, const SurfaceUv& at) const {
 }
 
 void TextureSet::add_bitmaps(int texture, std::vector<int>& out) const {
-  const Texture& t = checked(textures, texture);
-  if (std::holds_alternative<BitmapTexture>(t)) out.push_back(texture);
-  const auto add = [&](int input) { add_bitmaps(input, out); };
-  std::visit(
-      [&](const auto& kind) {
-        if constexpr (requires { kind.color0; }) add(kind.color0), add(kind.color1);
-        if constexpr (requires { kind.input; }) add(kind.input);
-        if constexpr (requires { kind.a; }) add(kind.a), add(kind.b);
-        if constexpr (requires { kind.amount; }) add(kind.amount);
-      },
-      t);
+  checked(textures, texture);
+  // From the last to the first, each once: a texture may have its inputs by many ways.
+  std::vector<bool> read(static_cast<std::size_t>(texture) + 1);
+  const auto mark = [&](int input) { read[static_cast<std::size_t>(input)] = true; };
+  mark(texture);
+  for (int k = texture; k >= 0; --k) {
+    if (!read[static_cast<std::size_t>(k)]) continue;
+    const Texture& t = textures[static_cast<std::size_t>(k)];
+    if (std::holds_alternative<BitmapTexture>(t)) out.push_back(k);
+    std::visit(
+        [&](const auto& kind) {
+          if constexpr (requires { kind.color0; }) mark(kind.color0), mark(kind.color1);
+          if constexpr (requires { kind.input; }) mark(kind.input);
+          if constexpr (requires { kind.a; }) mark(kind.a), mark(kind.b);
+          if constexpr (requires { kind.amount; }) mark(kind.amount);
+        },
+        t);
+  }
 }
 
 float TextureSet::lookup_float(int texture, const SurfaceUv& at) const {

@@ -245,6 +245,12 @@ TEST(MaterialSet, NotesTheBitmapsThatAMaterialReads) {
   EXPECT_EQ(set.bitmaps, expected);
   for (const float u : {0.0f, 0.999f, -7.3f, 1e30f, std::nanf("")}) set.fetch(5, {{u, u}, Rgb(1)});
   set.fetch(77, {});
+
+  // By 2^200 ways to the same picture.
+  for (int k = 4; k < 204; ++k) set.textures.textures.emplace_back(ProductTexture{k, k});
+  set.materials[1] = DiffuseMaterial{{{}, 204}};
+  set.note_bitmaps();
+  EXPECT_EQ(set.bitmaps[1], std::vector<int>{4});
 }
 
 TEST(Passage, OfEveryNesting) {
