@@ -38,8 +38,11 @@ class TimedChoices;
 
 struct RunOptions {
   std::uint64_t seed = 1;
-  double time_seconds = 0;          // > 0: stop when this much time has passed since the call
-  double target_error = 0;          // > 0: stop when the whole error (common/exact_rows.h) falls below
+  double time_seconds = 0;  // > 0: stop when this much time has passed since the call
+  double target_error = 0;  // > 0: stop when the whole error (common/exact_rows.h) falls below
+  // The sums are one of several estimates that are averaged, and the mean is denoised: errors had better
+  // differ from pixel to pixel, even if there are a few more of them.
+  bool one_of_passes = false;
   TimedChoices* choices = nullptr;  // with a budget: where the clock's choices are kept, see timed_choices.h
   // Seconds since any moment, for time_seconds; empty: the wall clock. Tests let time pass by the entry.
   std::function<double()> clock;

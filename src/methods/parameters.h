@@ -74,6 +74,15 @@ Field<S> experiment(Field<S> field) {
   return field;
 }
 
+// The same for settings S that are a B and more.
+template <typename S, typename B>
+Fields<S> inherited_fields(const Fields<B>& base) {
+  Fields<S> fields;
+  for (const auto& field : base)
+    fields.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
+  return fields;
+}
+
 template <typename S>
 std::vector<Parameter> parameters_of(const Fields<S>& fields) {
   std::vector<Parameter> p;

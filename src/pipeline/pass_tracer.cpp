@@ -115,6 +115,7 @@ bool PassTracer::trace(std::uint64_t number, const View& view, image::Image& ima
   lap("matrix", took.fixed);
   methods::RunOptions run;
   run.seed = hash_ids(settings_.method.seed ? settings_.method.seed : settings_.seed, Stage::method, number);
+  run.one_of_passes = true;
   run.sinks = sinks_;
   const matrix::MeteredMatrix metered(*prepared_->matrix);
   estimate_ = method_->run(metered, run);

@@ -57,6 +57,7 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
                            {{"columns", "40"},
                             {"slice-rows", "40"},
                             {"neighbors", "3"},
+                            {"drawings", "3"},
                             {"color", "scalar"},
                             {"max-sum-share", "0"},
                             {"zero-columns", "sample"},
@@ -65,6 +66,30 @@ TEST(LightSlice, IsUnbiasedWithoutBoundsAndColorAveraging) {
                 .sums);
     EXPECT_LT(t.max_t(), t.limit());
   }
+}
+
+// What a representative errs by is shared by the rows that have it. With drawings neighbors have others: over
+// seeds their errors go together a good deal less, and each is as large as before.
+TEST(LightSlice, DrawingsMakeErrorsOfNeighborsDiffer) {
+  const auto m = matrix::sparse_matrix({200, 300, 1}, 0.3);
+  const auto exact = m.exact_sums();
+  const auto together = [&](const char* drawings) {
+    double product = 0, square = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const auto sums =
+          run_lightslice(m, {{"columns", "40"}, {"slice-rows", "100"}, {"drawings", drawings}}, seed).sums;
+      for (std::size_t i = 0; i + 1 < sums.size(); ++i) {
+        const double here = mean(sums[i] - exact[i]), next = mean(sums[i + 1] - exact[i + 1]);
+        product += here * next, square += here * here;
+      }
+    }
+    return std::pair{product / square, square};
+  };
+  const auto [one, error_of_one] = together("1");
+  const auto [eight, error_of_eight] = together("8");
+  EXPECT_GT(one, 0.1);
+  EXPECT_LT(std::abs(eight), 0.5 * one);
+  EXPECT_NEAR(error_of_eight / error_of_one, 1, 0.2);
 }
 
 TEST(LightSlice, StatesWhatItCost) {

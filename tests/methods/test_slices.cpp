@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <numbers>
 #include <set>
 
 #include "base/parallel.h"
@@ -97,6 +99,77 @@ TEST(Slices, KeepTheSidesOfASheetApart) {
   const Slices slices = make_slices({{}, position, normal, {}}, kRows, 32);
   for (std::size_t s = 0; s < slices.count(); ++s)
     for (const Index i : slices.slice(s)) EXPECT_EQ(i % 2, slices.slice(s)[0] % 2);
+}
+
+// Rows on a square, 64 × 64 pixels of four each. What one slice has, another has beside it within the overlap
+// and nowhere else, and rows of a pixel go together.
+TEST(Slices, OverlapNearTheirEdgesAlone) {
+  constexpr std::size_t kSide = 64, kRows = kSide * kSide * 4;
+  std::vector<Vec2f> pixel(kRows);
+  std::vector<Vec3f> position(kRows), normal(kRows, Vec3f{0, 0, 1});
+  for (std::size_t i = 0; i < kRows; ++i) {
+    const auto x = static_cast<float>(i / 4 % kSide), y = static_cast<float>(i / 4 / kSide);
+    pixel[i] = {x + 0.2f * static_cast<float>(i % 4), y + 0.5f};
+    position[i] = {x, y, 0};
+  }
+  const matrix::RowFeatures features{pixel, position, normal, {}};
+  // Two slices: cut in the middle, at 31.5, and a slice's side is a cell's over √2.
+  constexpr float kShare = 0.25f, kReach = kShare * (kSide - 1) / std::numbers::sqrt2_v<float>;
+  const auto slice_of = [&](std::uint64_t seed) {
+    std::vector<std::size_t> of(kRows);
+    const Slices slices = make_slices(features, kRows, kRows / 2, {kShare, seed});
+    EXPECT_EQ(slices.count(), 2u);
+    for (std::size_t s = 0; s < slices.count(); ++s)
+      for (const Index i : slices.slice(s)) of[i] = s;
+    return of;
+  };
+  const auto of = slice_of(1), of_other_seed = slice_of(2);
+  std::size_t crossed = 0, moved = 0;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    EXPECT_EQ(of[i], of[i / 4 * 4]);
+    const float from_cut = position[i].x - 31.5f;
+    if ((from_cut > 0) != (of[i] == 1)) {
+      ++crossed;
+      EXPECT_LT(std::abs(from_cut), kReach + 2);
+    }
+    moved += of[i] != of_other_seed[i];
+  }
+  // At a distance d within the reach a half of 1 - d/reach is on the other side: a quarter of 2·11/64 in all.
+  EXPECT_NEAR(static_cast<double>(crossed) / kRows, 0.25 * 2 * kReach / kSide, 0.01);
+  EXPECT_GT(moved, crossed / 2);
+}
+
+TEST(Slices, DealTheirPixelsEvenly) {
+  constexpr std::size_t kPixels = 1000, kParts = 8;
+  std::vector<Vec2f> pixel;
+  std::vector<Index> slice;
+  for (std::size_t p = 0; p < kPixels; ++p)
+    for (std::size_t k = 0; k <= p % 3; ++k) {
+      slice.push_back(static_cast<Index>(pixel.size()));
+      pixel.push_back({static_cast<float>(p) + 0.5f, 3});
+    }
+  PixelDeal deal;
+  deal.deal({pixel, {}, {}, {}}, slice, kParts, 7);
+  std::vector<std::size_t> part_of(pixel.size(), kParts);
+  for (std::size_t d = 0; d < kParts; ++d)
+    for (const Index i : deal.part(d)) {
+      ASSERT_EQ(part_of[i], kParts);
+      part_of[i] = d;
+    }
+  std::map<std::size_t, std::size_t> of_pixel;
+  for (std::size_t i = 0; i < pixel.size(); ++i) {
+    ASSERT_LT(part_of[i], kParts);
+    const auto [known, fresh] = of_pixel.try_emplace(static_cast<std::size_t>(pixel[i].x), part_of[i]);
+    EXPECT_EQ(known->second, part_of[i]);
+  }
+  std::set<std::size_t> first;  // parts of stretches' first pixels
+  for (std::size_t p = 0; p + kParts <= kPixels; p += kParts) {
+    std::set<std::size_t> parts;
+    for (std::size_t k = 0; k < kParts; ++k) parts.insert(of_pixel[p + k]);
+    EXPECT_EQ(parts.size(), kParts);
+    first.insert(of_pixel[p]);
+  }
+  EXPECT_EQ(first.size(), kParts);
 }
 
 TEST(Slices, WithoutFeaturesAreStretchesOfTheIndex) {

@@ -6,13 +6,13 @@ namespace lumirank::methods {
 
 namespace {
 
-struct AdaptiveSettings : SliceLightSettings {
+struct AdaptiveSettings : SliceRenderSettings {
   // `columns` is but a bound here, and the error decides.
   AdaptiveSettings() { columns = 3000, initial_clusters = 100, enough = 0.02; }
 };
 
 const Fields<AdaptiveSettings>& adaptive_fields() {
-  static const Fields<AdaptiveSettings> all = with_slice_light_fields<AdaptiveSettings>(
+  static const Fields<AdaptiveSettings> all = with_slice_render_fields<AdaptiveSettings>(
       {number_field<AdaptiveSettings>({"error", "of a slice's light",
                                        "A slice splits its clusters until they are estimated to err by less "
                                        "than this, or there are `columns` "

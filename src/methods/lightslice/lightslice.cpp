@@ -6,15 +6,20 @@ namespace lumirank::methods {
 
 namespace {
 
+const Fields<SliceRenderSettings>& fields() {
+  static const Fields<SliceRenderSettings> all = with_slice_render_fields<SliceRenderSettings>({});
+  return all;
+}
+
 class LightSlice final : public Method {
  public:
-  explicit LightSlice(const SliceLightSettings& settings) : settings_(settings) {}
+  explicit LightSlice(const SliceRenderSettings& settings) : settings_(settings) {}
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
     return render_slices(matrix, options, settings_);
   }
 
  private:
-  SliceLightSettings settings_;
+  SliceRenderSettings settings_;
 };
 
 }  // namespace
@@ -23,7 +28,7 @@ MethodInfo lightslice_info() {
   return method_info<LightSlice>(
       {"lightslice", "Clusters columns for every slice of receivers on their own.",
        "Ou, Pellacini 2011, LightSlice: matrix slice sampling for the many-lights problem", "columns"},
-      slice_light_fields());
+      fields());
 }
 
 }  // namespace lumirank::methods

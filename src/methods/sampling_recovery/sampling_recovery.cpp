@@ -58,7 +58,7 @@ class SamplingRecovery final : public Method {
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
     using Parameters = RecoverySettings::Parameters;
-    SliceRun run(matrix, options, settings_.slice_rows);
+    SliceRun run(matrix, options, settings_);
     RecoverySettings settings = settings_;
     if (settings_.parameters == Parameters::automatic ||
         (settings_.parameters == Parameters::by_target && options.target_error > 0))

@@ -88,8 +88,7 @@ const Fields<RecoverySettings>& recovery_fields() {
          "few slices so that the target error is met (3 % where none is given); given: they are "
          "taken as set; by-target: automatic if a target error is given."},
         &S::parameters, {"by-target", "given", "automatic"})};
-    for (const auto& field : slice_cut_fields())
-      all.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
+    for (auto& field : inherited_fields<S>(slice_cut_fields())) all.push_back(std::move(field));
     for (auto& field : prediction_fields()) all.push_back(std::move(field));
     for (auto& field : separation_fields()) all.push_back(std::move(field));
     return all;

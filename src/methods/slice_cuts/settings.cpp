@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/common/slices/slice_fields.h"
+
 namespace lumirank::methods {
 
 void SliceCutSettings::refine(const Turn& turn) {
@@ -10,6 +12,8 @@ void SliceCutSettings::refine(const Turn& turn) {
   initial_columns = turn.scaled(initial_columns);
   max_columns = turn.scaled(max_columns);
   alpha = std::min(1.0, alpha / turn.quality);
+  // Where time is short, clusters are coarse, and coherent rays are worth more of them.
+  drawings = std::min(drawings, turn.scaled(drawings));
 }
 
 std::size_t SliceCutSettings::samples(std::size_t rows) const {
@@ -51,7 +55,8 @@ const Fields<SliceCutSettings>& slice_cut_fields() {
           &S::redraw, off_on)),
       number_field<S>({"rho", "of a column's entries",
                        "How many visibilities are sampled at a time, at least four. 1: all."},
-                      &S::rho, 0, 1)};
+                      &S::rho, 0, 1),
+      slice_overlap_field<S>(&S::overlap)};
   return fields;
 }
 

@@ -20,6 +20,8 @@ struct SliceCutSettings {
   std::size_t cut_pixels = 128;  // by which clusters are chosen; 0: all of the slice
   double alpha = 0.003;
   double rho = 0.01;
+  double overlap = 0.05;      // see SliceOverlap
+  std::size_t drawings = 1;   // of representatives in a slice
   std::uint64_t redraws = 0;  // a turn's number: each has other representatives
 
   // So much finer, or coarser: see turns.h.

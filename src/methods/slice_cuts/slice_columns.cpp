@@ -30,6 +30,19 @@ void SliceColumns::choose(const SliceCutSettings& settings, std::span<const Inde
   } else {
     cut_.choose(settings, entries_);
   }
+  sampled_before_ = at_cut_pixels_ ? cut_entries_.sampled() : 0;
+  take_clusters();
+}
+
+void SliceColumns::redraw(const SliceCutSettings& settings, std::span<const Index> receivers,
+                          std::uint64_t key, std::uint64_t drawing) {
+  sampled_before_ = drawing == 0 ? sampled() : 0;
+  entries_.start(receivers, key);
+  cut_.redraw(settings, drawing);
+  take_clusters();
+}
+
+void SliceColumns::take_clusters() {
   columns_.clear();
   for (const SliceCut::Cluster& c : cut_.clusters())
     columns_.push_back({at_cut_pixels_ ? SliceCut::kNoSlot : c.slot, c.column});

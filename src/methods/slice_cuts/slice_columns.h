@@ -18,6 +18,10 @@ class SliceColumns {
 
   // Starts the entries of the slice and chooses its columns. Random numbers are keyed by `key`.
   void choose(const SliceCutSettings& settings, std::span<const matrix::Index> slice, std::uint64_t key);
+  // After choose(): the columns of other representatives (SliceCut::redraw), for some of the slice's
+  // receivers, which take its place.
+  void redraw(const SliceCutSettings& settings, std::span<const matrix::Index> receivers, std::uint64_t key,
+              std::uint64_t drawing);
   // Evaluates the columns that the choice has left unevaluated.
   void evaluate();
   // Writes the sums of the slice's receivers: each gets its own unoccluded contributions times its row's
@@ -28,14 +32,17 @@ class SliceColumns {
   SliceEntries& entries() { return entries_; }
   const SliceEntries& entries() const { return entries_; }
   const SliceCut& cut() const { return cut_; }
-  // Visibilities that were evaluated since choose(), with those of the choice.
-  std::size_t sampled() const { return entries_.sampled() + (at_cut_pixels_ ? cut_entries_.sampled() : 0); }
+  // Visibilities that were evaluated since choose() or redraw(); those of the choice count with the first.
+  std::size_t sampled() const { return entries_.sampled() + sampled_before_; }
 
  private:
   SliceEntries entries_;
   SliceEntries cut_entries_;  // of the cut's pixels
   SliceCut cut_;
   bool at_cut_pixels_ = false;  // whether the choice went by these
+  std::size_t sampled_before_ = 0;
+  void take_clusters();
+
   std::vector<matrix::Index> cut_receivers_;
   std::vector<ReducedColumn> columns_;
   std::vector<matrix::ScaledColumn> scaled_;

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "base/timer.h"
+#include "methods/common/slices/slice_fields.h"
 
 namespace lumirank::methods {
 
@@ -181,7 +182,8 @@ bool SliceCut::split(const SliceCutSettings& settings, SliceEntries& entries) {
 
 // A cluster stays whole because what was seen of its representative is dark, so that one is darker than the
 // cluster in the mean: the sums would be too small. Who is drawn after all decisions has no such bias.
-void SliceCut::redraw(std::uint64_t key) {
+void SliceCut::redraw(const SliceCutSettings& settings, std::uint64_t drawing) {
+  const std::uint64_t key = tree_.seed() + 1 + settings.redraws * kMaxDrawings + drawing;
   for (Cluster& c : clusters_) {
     if (tree_.is_leaf(c.node)) continue;
     c.column = tree_.redrawn(c.node, key);
@@ -201,7 +203,7 @@ void SliceCut::choose(const SliceCutSettings& settings, SliceEntries& entries) {
       contributions(settings, entries);
     }
   }
-  if (settings.splitting && settings.redraw) redraw(tree_.seed() + 1 + settings.redraws);
+  if (settings.splitting && settings.redraw) redraw(settings, 0);
 }
 
 }  // namespace lumirank::methods

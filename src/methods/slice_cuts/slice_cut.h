@@ -34,6 +34,8 @@ class SliceCut {
 
   // Evaluates representatives in `entries`, as far as it takes, and samples them for sparse visibility.
   void choose(const SliceCutSettings& settings, SliceEntries& entries);
+  // Other representatives of the clusters that were chosen, of drawing 1, 2, … below settings.drawings.
+  void redraw(const SliceCutSettings& settings, std::uint64_t drawing);
   // In the order of the tree: neighbors are near.
   std::span<const Cluster> clusters() const { return clusters_; }
   // What the cut by bounds took of the last choose().
@@ -42,7 +44,6 @@ class SliceCut {
  private:
   void initial_cut(std::size_t count, std::span<const matrix::Index> receivers);
   void add_slots(const SliceCutSettings& settings, SliceEntries& entries);
-  void redraw(std::uint64_t key);
   void sample_members(const SliceCutSettings& settings, SliceEntries& entries);
   void contributions(const SliceCutSettings& settings, SliceEntries& entries);
   bool split(const SliceCutSettings& settings, SliceEntries& entries);

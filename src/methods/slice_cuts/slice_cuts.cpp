@@ -1,21 +1,52 @@
 #include "methods/slice_cuts/slice_cuts.h"
 
+#include "methods/common/slices/slice_fields.h"
 #include "methods/slice_cuts/slice_run.h"
 
 namespace lumirank::methods {
 
 namespace {
 
+struct SliceCutsSettings : SliceCutSettings {
+  SliceCutsSettings() { drawings = 0; }  // see drawings_of()
+};
+
+const Fields<SliceCutsSettings>& fields() {
+  static const Fields<SliceCutsSettings> all = [] {
+    auto fields = inherited_fields<SliceCutsSettings>(slice_cut_fields());
+    fields.push_back(drawings_field<SliceCutsSettings>(&SliceCutsSettings::drawings));
+    return fields;
+  }();
+  return all;
+}
+
 // One slice with all of its visibilities traced. Work space of one thread.
 class TracedSlice {
  public:
-  TracedSlice(const LightTree& tree, const matrix::LightingMatrix& matrix) : slice_(tree, matrix) {}
+  TracedSlice(const LightTree& tree, const matrix::LightingMatrix& matrix)
+      : slice_(tree, matrix), features_(matrix.row_features()) {}
 
   void run(const SliceCutSettings& settings, std::span<const matrix::Index> slice, std::uint64_t key,
            std::span<Rgb> sums) {
     StepTimer timer;
     slice_.choose(settings, slice, key);
     tally_.add_choice(timer.step(), slice_.cut());
+    if (settings.drawings <= 1 || !settings.splitting || !settings.redraw) {
+      add(timer, sums);
+      return;
+    }
+    deal_.deal(features_, slice, settings.drawings, key);
+    for (std::size_t d = 0; d < settings.drawings; ++d) {
+      if (deal_.part(d).empty()) continue;
+      slice_.redraw(settings, deal_.part(d), key, d);
+      tally_.seconds_splitting += timer.step();
+      add(timer, sums);
+    }
+  }
+  const SliceTally& tally() const { return tally_; }
+
+ private:
+  void add(StepTimer& timer, std::span<Rgb> sums) {
     const std::size_t rows = slice_.entries().rows().size();
     visibility_.resize(rows * slice_.columns().size());
     for (std::size_t c = 0; c < slice_.columns().size(); ++c)
@@ -26,21 +57,22 @@ class TracedSlice {
     tally_.seconds_gather += timer.step();
     tally_.add(slice_);
   }
-  const SliceTally& tally() const { return tally_; }
 
- private:
   SliceColumns slice_;
+  matrix::RowFeatures features_;
+  PixelDeal deal_;
   std::vector<float> visibility_;
   SliceTally tally_;
 };
 
 class SliceCuts final : public Method {
  public:
-  explicit SliceCuts(const SliceCutSettings& settings) : settings_(settings) {}
+  explicit SliceCuts(const SliceCutsSettings& settings) : settings_(settings) {}
 
   Estimate run(const matrix::LightingMatrix& matrix, const RunOptions& options) const override {
-    SliceRun run(matrix, options, settings_.slice_rows);
+    SliceRun run(matrix, options, settings_);
     SliceCutSettings settings = settings_;
+    settings.drawings = drawings_of(settings.drawings, options);
     if (options.target_error > 0) search(matrix, run, settings);
     WorkspacePool<TracedSlice> pool([&] { return std::make_unique<TracedSlice>(run.tree(), matrix); });
     run.run(settings, true, pool);
@@ -54,7 +86,7 @@ class SliceCuts final : public Method {
   void search(const matrix::LightingMatrix& matrix, SliceRun& run, SliceCutSettings& settings) const {
     WorkspacePool<TracedSlice> pool([&] { return std::make_unique<TracedSlice>(run.tree(), matrix); });
     const auto choice = run.search(pool, false, [&](const SliceLevel& level) {
-      SliceCutSettings s = settings_;
+      SliceCutSettings s = settings;
       set_cut_level(level.cut, s);
       return s;
     });
@@ -63,7 +95,7 @@ class SliceCuts final : public Method {
     write_cut_level(settings, run.trace());
   }
 
-  SliceCutSettings settings_;
+  SliceCutsSettings settings_;
 };
 
 }  // namespace
@@ -77,7 +109,7 @@ MethodInfo slice_cuts_info() {
        "The light clusters of Huo et al. 2015 (section 4), without their recovery",
        "",
        {.needs = {matrix::Ability::bounds}, .segments = matrix::MethodContract::Segments::light_pieces}},
-      slice_cut_fields());
+      fields());
 }
 
 }  // namespace lumirank::methods

@@ -35,7 +35,8 @@ std::size_t max_slice_receivers(const matrix::LightingMatrix& matrix, std::size_
   return rows * std::max<std::size_t>(per_pixel, 1);
 }
 
-SliceRun::SliceRun(const matrix::LightingMatrix& matrix, const RunOptions& options, std::size_t slice_rows)
+SliceRun::SliceRun(const matrix::LightingMatrix& matrix, const RunOptions& options,
+                   const SliceCutSettings& settings)
     : matrix_(matrix),
       options_(options),
       clock_(options),
@@ -47,7 +48,8 @@ SliceRun::SliceRun(const matrix::LightingMatrix& matrix, const RunOptions& optio
   tree_.emplace(matrix, options.seed);
   numbers["seconds.tree"] = clock_.seconds() - before;
   slices_ = make_slices(matrix.row_features(), matrix.rows(),
-                        max_slice_receivers(matrix, slice_rows, options.time_seconds > 0));
+                        max_slice_receivers(matrix, settings.slice_rows, options.time_seconds > 0),
+                        {static_cast<float>(settings.overlap), options.seed});
   numbers["seconds.slices"] = clock_.seconds() - before - numbers["seconds.tree"];
   numbers["slices"] = static_cast<double>(slices_.count());
   numbers["rows"] = static_cast<double>(rows_.size());

@@ -24,7 +24,7 @@ std::size_t max_slice_receivers(const matrix::LightingMatrix& matrix, std::size_
 
 class SliceRun {
  public:
-  SliceRun(const matrix::LightingMatrix& matrix, const RunOptions& options, std::size_t slice_rows);
+  SliceRun(const matrix::LightingMatrix& matrix, const RunOptions& options, const SliceCutSettings& settings);
 
   const LightTree& tree() const { return *tree_; }
   const Slices& slices() const { return slices_; }

@@ -9,6 +9,7 @@
 #include "methods/common/column_clusters.h"
 #include "methods/common/power_draws.h"
 #include "methods/common/slices/slice_budget.h"
+#include "methods/common/slices/slice_fields.h"
 #include "methods/common/timed_choices.h"
 
 namespace lumirank::methods {
@@ -21,7 +22,8 @@ namespace {
 constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
 constexpr float kMinEntry = 1e-17f;          // its square is a number still
 constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no color to scale
-constexpr float kMaxSliceGain = 4;           // of a channel over the scalar factor
+constexpr std::uint64_t kDrawings = 0x64726177;
+constexpr float kMaxSliceGain = 4;  // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
   if (projection == 0 || slices <= projection) return {columns, slices, false};
@@ -72,7 +74,8 @@ const Fields<SliceLightSettings>& slice_light_fields() {
                        "A representative may not add more to a receiver than this share of the "
                        "greatest sum among the rows that its slice reads. Keeps specks away, and takes light "
                        "from receivers that are much brighter than those; 0: no bound, unbiased."},
-                      &S::max_sum_share, 0, 1e9)};
+                      &S::max_sum_share, 0, 1e9),
+      slice_overlap_field<S>(&S::overlap)};
   return fields;
 }
 
@@ -84,7 +87,8 @@ SliceLights::SliceLights(const matrix::LightingMatrix& matrix, const RunOptions&
       ids_(matrix.column_features().id),
       seed_(options.seed),
       turn_seed_(options.seed),
-      slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows)),
+      slices_(make_slices(matrix.row_features(), matrix.rows(), settings_.slice_rows,
+                          {static_cast<float>(settings.overlap), options.seed})),
       reduced_(matrix, sketch_shape(matrix.columns(), slices_.count(), settings.projection), options.seed),
       rows_(slices_.count(), matrix.columns()) {
   const double begin = clock.seconds();
@@ -212,12 +216,11 @@ void SliceLights::gather(std::size_t slice, Workspace& w) const {
 
 // q_j = (1 − share)·‖x_j‖/Σ‖x‖ + share·‖ρ_j‖/Σ‖ρ‖, x over the slice's rows and ρ over all; the sums are over
 // all lit columns of the slice.
-ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double local_sum, double global_sum,
-                               Workspace& w) const {
+ScaledColumn SliceLights::draw(std::uint64_t key, std::size_t cluster, Workspace& w) const {
   const auto members = w.splitter.members(cluster);
   const auto norms = w.splitter.norms(cluster);
-  const auto local = static_cast<float>((1 - settings_.global_share) / local_sum);
-  const auto global = static_cast<float>(settings_.global_share / global_sum);
+  const auto local = static_cast<float>((1 - settings_.global_share) / w.local_sum);
+  const auto global = static_cast<float>(settings_.global_share / w.global_sum);
   w.chance.resize(members.size());
   double s = 0, energy = 0, channels[3] = {};
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -229,7 +232,6 @@ ScaledColumn SliceLights::draw(std::size_t slice, std::size_t cluster, double lo
   }
   // The first of exponential arrivals, each keyed by its light: the same one in whatever order the members
   // are.
-  const std::uint64_t key = hash_ids(turn_seed_, Stage::representatives, slice);
   double first = std::numeric_limits<double>::infinity();
   std::size_t chosen = members.size() - 1;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -266,25 +268,33 @@ void SliceLights::choose(std::size_t slice, Workspace& w) const {
     return;
   }
   gather(slice, w);
-  std::size_t draws = 0;
+  std::size_t& draws = w.zero_draws;
+  draws = 0;
   if (settings_.zero_columns == ZeroColumns::sample && !w.zero.empty()) {
     draws =
         static_cast<std::size_t>(std::llround(settings_.zero_share * static_cast<double>(settings_.columns)));
     draws = std::clamp<std::size_t>(draws, 1, w.zero.size());
   }
   w.splitter.split_to(settings_.columns > draws ? settings_.columns - draws : 1, settings_.enough);
-  double local = 0, global = 0;
+  w.local_sum = w.global_sum = 0;
   for (std::size_t k = 0; k < w.splitter.clusters(); ++k) {
-    for (const float n : w.splitter.norms(k)) local += static_cast<double>(n);
-    for (const std::uint32_t j : w.splitter.members(k)) global += static_cast<double>(norms_[j].all);
+    for (const float n : w.splitter.norms(k)) w.local_sum += static_cast<double>(n);
+    for (const std::uint32_t j : w.splitter.members(k)) w.global_sum += static_cast<double>(norms_[j].all);
   }
-  for (std::size_t k = 0; k < w.splitter.clusters(); ++k)
-    w.chosen.push_back(draw(slice, k, local, global, w));
-  if (draws > 0) {
-    const auto zero = draw_columns(w.zero, matrix_.column_features().power,
-                                   {draws, true, turn_seed_, Stage::zero_columns, slice});
-    w.chosen.insert(w.chosen.end(), zero.begin(), zero.end());
-  }
+  redraw(slice, 0, w);
+}
+
+void SliceLights::redraw(std::size_t slice, std::uint64_t drawing, Workspace& w) const {
+  if (settings_.columns >= matrix_.columns()) return;  // all of them
+  const std::uint64_t seed =
+      drawing == 0 ? turn_seed_ : hash_ids(turn_seed_, Stage::representatives, kDrawings, drawing);
+  const std::uint64_t key = hash_ids(seed, Stage::representatives, slice);
+  w.chosen.clear();
+  for (std::size_t k = 0; k < w.splitter.clusters(); ++k) w.chosen.push_back(draw(key, k, w));
+  if (w.zero_draws == 0) return;
+  const auto zero = draw_columns(w.zero, matrix_.column_features().power,
+                                 {w.zero_draws, true, seed, Stage::zero_columns, slice});
+  w.chosen.insert(w.chosen.end(), zero.begin(), zero.end());
 }
 
 std::size_t SliceLights::memory_bytes() const {

@@ -38,15 +38,14 @@ struct SliceLightSettings {
   double global_share = 0.1;
   double max_sum_share = 0;
   double enough = 0;  // of a slice's light: no more columns once its clusters err by less; 0: all `columns`
+  double overlap = 0.05;  // see SliceOverlap
 };
 
 const Fields<SliceLightSettings>& slice_light_fields();
 // The same for a method whose settings S are these and more, with another default of `columns`.
 template <typename S>
 Fields<S> with_slice_light_fields(Fields<S> others) {
-  Fields<S> all;
-  for (const auto& field : slice_light_fields())
-    all.push_back({field.info, [set = field.set](S& s, const std::string& v) { return set(s, v); }});
+  auto all = inherited_fields<S>(slice_light_fields());
   all.front().info.default_text = std::to_string(S{}.columns);
   all.insert(all.end(), others.begin(), others.end());
   return all;
@@ -79,6 +78,8 @@ class SliceLights {
     std::vector<float> entries, point, chance;
     std::vector<matrix::Index> zero;
     std::vector<matrix::ScaledColumn> chosen;
+    std::size_t zero_draws = 0;            // of these, at the end
+    double local_sum = 0, global_sum = 0;  // of norms, over all lit columns of the slice
     // A column that represents others may not add more than this to a row (2-norm); 0: no bound.
     float max_added = 0;
     // What a chosen column adds where its entry is `entry`.
@@ -92,14 +93,16 @@ class SliceLights {
   // The columns of a slice: at most `columns` of them, into workspace.chosen; all columns where there are no
   // more. A function of (seed, slice) alone, whatever the order of columns within a cluster. One thread.
   void choose(std::size_t slice, Workspace& workspace) const;
+  // After choose(slice): other representatives of the same clusters, of drawing 1, 2, …; independent of each
+  // other.
+  void redraw(std::size_t slice, std::uint64_t drawing, Workspace& workspace) const;
 
  private:
   bool read_rows(const RunOptions& options, const RunClock& clock, std::span<Rgb> row_sum);
   void find_neighbors();
   void cluster();
   void gather(std::size_t slice, Workspace& workspace) const;
-  matrix::ScaledColumn draw(std::size_t slice, std::size_t cluster, double local_sum, double global_sum,
-                            Workspace& workspace) const;
+  matrix::ScaledColumn draw(std::uint64_t key, std::size_t cluster, Workspace& workspace) const;
 
   const matrix::LightingMatrix& matrix_;
   SliceLightSettings settings_;

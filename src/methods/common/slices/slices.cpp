@@ -1,11 +1,13 @@
 #include "methods/common/slices/slices.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/bounds.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
 
 namespace lumirank::methods {
 
@@ -15,6 +17,14 @@ namespace {
 
 constexpr float kNormalWeight = 0.125f;  // of the diagonal of the box of places
 constexpr std::size_t kBoxGrain = 8192;
+
+// The same for all rows of a pixel.
+std::uint64_t pixel_number(std::span<const Vec2f> pixels, Index i) {
+  if (pixels.empty()) return i;
+  const auto x = static_cast<std::int32_t>(std::floor(pixels[i].x)),
+             y = static_cast<std::int32_t>(std::floor(pixels[i].y));
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
+}
 
 struct Box {
   SlicePoints::Point low, high;
@@ -40,7 +50,8 @@ struct Box {
 // known beforehand.
 class Cutter {
  public:
-  Cutter(const SlicePoints& points, Slices& slices) : points_(points), slices_(slices) {}
+  Cutter(const SlicePoints& points, const matrix::RowFeatures& features, SliceOverlap overlap, Slices& slices)
+      : points_(points), pixels_(features.pixel), overlap_(overlap), slices_(slices) {}
 
   void cut(std::size_t begin, std::size_t end, std::size_t first_slice, std::size_t count) {
     if (count == 1) {
@@ -49,10 +60,14 @@ class Cutter {
       return;
     }
     const std::size_t left = count / 2, middle = begin + (end - begin) * left / count;
-    const std::size_t axis = longest_axis(begin, end);
+    const Box box = box_of(begin, end);
+    const std::size_t axis = box.longest_axis();
+    // Rows lie on surfaces: a slice's side is to the cell's as the root of their numbers.
+    const float reach =
+        overlap_.share * (box.high[axis] - box.low[axis]) / std::sqrt(static_cast<float>(count));
     // The same order whatever the algorithm: no two rows are equal in it.
     std::nth_element(at(begin), at(middle), at(end), [&](Index a, Index b) {
-      const float x = points_[a][axis], y = points_[b][axis];
+      const float x = moved(a, axis, reach), y = moved(b, axis, reach);
       return x != y ? x < y : a < b;
     });
     parallel_for(2, 1, [&](std::size_t half, std::size_t) {
@@ -67,17 +82,24 @@ class Cutter {
   std::vector<Index>::iterator at(std::size_t k) {
     return slices_.rows.begin() + static_cast<std::ptrdiff_t>(k);
   }
-  std::size_t longest_axis(std::size_t begin, std::size_t end) const {
-    return parallel_sum(end - begin, kBoxGrain, Box{},
-                        [&](std::size_t b, std::size_t e) {
-                          Box box;
-                          for (std::size_t k = b; k < e; ++k) box.extend(points_[slices_.rows[begin + k]]);
-                          return box;
-                        })
-        .longest_axis();
+  float moved(Index i, std::size_t axis, float reach) const {
+    const float x = points_[i][axis];
+    if (!(reach > 0) || !points_.known()) return x;
+    const std::uint64_t pixel = pixel_number(pixels_, i);
+    const double u = unit_double(hash_ids(overlap_.seed, Stage::method, pixel, axis));
+    return x + reach * static_cast<float>(2 * u - 1);
+  }
+  Box box_of(std::size_t begin, std::size_t end) const {
+    return parallel_sum(end - begin, kBoxGrain, Box{}, [&](std::size_t b, std::size_t e) {
+      Box box;
+      for (std::size_t k = b; k < e; ++k) box.extend(points_[slices_.rows[begin + k]]);
+      return box;
+    });
   }
 
   const SlicePoints& points_;
+  std::span<const Vec2f> pixels_;
+  SliceOverlap overlap_;
   Slices& slices_;
 };
 
@@ -98,7 +120,22 @@ SlicePoints::Point SlicePoints::operator[](Index i) const {
   return {p.x, p.y, p.z, n.x, n.y, n.z};
 }
 
-Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::size_t max_rows) {
+void PixelDeal::deal(const matrix::RowFeatures& features, std::span<const Index> slice, std::size_t parts,
+                     std::uint64_t key) {
+  parts_.resize(parts);
+  for (auto& part : parts_) part.clear();
+  std::size_t pixel = 0;
+  std::uint64_t turn = 0;
+  for (std::size_t k = 0; k < slice.size(); ++k) {
+    if (k > 0 && pixel_number(features.pixel, slice[k]) != pixel_number(features.pixel, slice[k - 1]))
+      ++pixel;
+    if (pixel % parts == 0) turn = hash_ids(key, Stage::method, pixel);
+    parts_[(pixel + turn) % parts].push_back(slice[k]);
+  }
+}
+
+Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::size_t max_rows,
+                   SliceOverlap overlap) {
   if (max_rows == 0) throw InternalError("make_slices: slices of no rows");
   Slices slices;
   slices.rows.resize(rows);
@@ -106,7 +143,7 @@ Slices make_slices(const matrix::RowFeatures& features, std::size_t rows, std::s
   // Rounding makes no slice too large: if n ≤ c·max_rows, both ⌊n·a/c⌋ and ⌈n·a/c⌉ are at most a·max_rows.
   const std::size_t count = (rows + max_rows - 1) / max_rows;
   slices.first.assign(count + 1, static_cast<std::uint32_t>(rows));
-  if (count > 0) Cutter(SlicePoints(features, rows), slices).cut(0, rows, 0, count);
+  if (count > 0) Cutter(SlicePoints(features, rows), features, overlap, slices).cut(0, rows, 0, count);
   return slices;
 }
 
