@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "methods/common/slices/slice_fields.h"
 #include "methods/sampling_recovery/slice_recovery.h"
 #include "methods/slice_cuts/slice_run.h"
 
@@ -52,6 +53,9 @@ void write_level(const RecoverySettings& settings, Trace& trace) {
   trace.numbers["automatic.uncertain"] = settings.uncertain;
 }
 
+// Each is a matrix of its own to recover, of fewer rows: eight cost what they bring.
+constexpr std::size_t kDrawingsOfPasses = 4;
+
 class SamplingRecovery final : public Method {
  public:
   explicit SamplingRecovery(const RecoverySettings& settings) : settings_(settings) {}
@@ -60,6 +64,7 @@ class SamplingRecovery final : public Method {
     using Parameters = RecoverySettings::Parameters;
     SliceRun run(matrix, options, settings_);
     RecoverySettings settings = settings_;
+    settings.drawings = drawings_of(settings.drawings, options, kDrawingsOfPasses);
     if (settings_.parameters == Parameters::automatic ||
         (settings_.parameters == Parameters::by_target && options.target_error > 0))
       search(matrix, run, settings);
@@ -75,7 +80,7 @@ class SamplingRecovery final : public Method {
   void search(const matrix::LightingMatrix& matrix, SliceRun& run, RecoverySettings& settings) const {
     WorkspacePool<SliceRecovery> pool([&] { return std::make_unique<SliceRecovery>(run.tree(), matrix); });
     const auto choice = run.search(pool, true, [&](const SliceLevel& level) {
-      RecoverySettings s = settings_;
+      RecoverySettings s = settings;
       set_level(level, s);
       return s;
     });

@@ -1,5 +1,7 @@
 #include "methods/sampling_recovery/settings.h"
 
+#include "methods/common/slices/slice_fields.h"
+
 #include <utility>
 
 namespace lumirank::methods {
@@ -89,6 +91,7 @@ const Fields<RecoverySettings>& recovery_fields() {
          "taken as set; by-target: automatic if a target error is given."},
         &S::parameters, {"by-target", "given", "automatic"})};
     for (auto& field : inherited_fields<S>(slice_cut_fields())) all.push_back(std::move(field));
+    all.push_back(drawings_field<S>(&S::drawings));
     for (auto& field : prediction_fields()) all.push_back(std::move(field));
     for (auto& field : separation_fields()) all.push_back(std::move(field));
     return all;

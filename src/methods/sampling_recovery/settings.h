@@ -9,6 +9,7 @@
 namespace lumirank::methods {
 
 struct RecoverySettings : SliceCutSettings {
+  RecoverySettings() { drawings = 0; }  // see drawings_of()
   enum class Parameters { by_target, given, automatic } parameters = Parameters::by_target;
   // Prediction.
   bool prediction = true;

@@ -189,10 +189,13 @@ void SliceRecovery::recover_visibility() {
 void SliceRecovery::run(const RecoverySettings& settings, std::span<const Index> slice, std::uint64_t key,
                         std::span<Rgb> sums) {
   settings_ = settings;
+  drawings_.run(settings_, slice, key, slice_, tally_, [&] { recover(key, sums); });
+}
+
+void SliceRecovery::recover(std::uint64_t key, std::span<Rgb> sums) {
   StepTimer timer;
-  slice_.choose(settings_, slice, key);
   slice_.evaluate();
-  tally_.add_choice(timer.step(), slice_.cut());
+  tally_.seconds_splitting += timer.step();
   assemble();
   state_.resize(e_.size());
   prediction_.run(settings_, clusters(), e_, key, slice_.entries(), state_);

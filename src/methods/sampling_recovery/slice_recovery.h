@@ -9,6 +9,7 @@
 #include "linalg/separation.h"
 #include "methods/sampling_recovery/prediction.h"
 #include "methods/sampling_recovery/settings.h"
+#include "methods/slice_cuts/slice_drawings.h"
 #include "methods/slice_cuts/slice_tally.h"
 
 namespace lumirank::methods {
@@ -29,7 +30,8 @@ struct RecoveryTally : SliceTally {
 // Work space of one thread.
 class SliceRecovery {
  public:
-  SliceRecovery(const LightTree& tree, const matrix::LightingMatrix& matrix) : slice_(tree, matrix) {}
+  SliceRecovery(const LightTree& tree, const matrix::LightingMatrix& matrix)
+      : slice_(tree, matrix), drawings_(matrix.row_features()) {}
 
   // Writes the sums of the slice's receivers. Random numbers are keyed by `key`.
   void run(const RecoverySettings& settings, std::span<const matrix::Index> slice, std::uint64_t key,
@@ -55,6 +57,7 @@ class SliceRecovery {
  private:
   void assemble();
   void choose_separated();
+  void recover(std::uint64_t key, std::span<Rgb> sums);
   void separate();
   void tally_separation();
   void resolve();
@@ -65,6 +68,7 @@ class SliceRecovery {
 
   RecoverySettings settings_;
   SliceColumns slice_;
+  SliceDrawings drawings_;
   Prediction prediction_;
   linalg::Separation separation_;
   linalg::DensityMap density_;

@@ -1,6 +1,7 @@
 #include "methods/slice_cuts/slice_cuts.h"
 
 #include "methods/common/slices/slice_fields.h"
+#include "methods/slice_cuts/slice_drawings.h"
 #include "methods/slice_cuts/slice_run.h"
 
 namespace lumirank::methods {
@@ -24,43 +25,28 @@ const Fields<SliceCutsSettings>& fields() {
 class TracedSlice {
  public:
   TracedSlice(const LightTree& tree, const matrix::LightingMatrix& matrix)
-      : slice_(tree, matrix), features_(matrix.row_features()) {}
+      : slice_(tree, matrix), drawings_(matrix.row_features()) {}
 
   void run(const SliceCutSettings& settings, std::span<const matrix::Index> slice, std::uint64_t key,
            std::span<Rgb> sums) {
-    StepTimer timer;
-    slice_.choose(settings, slice, key);
-    tally_.add_choice(timer.step(), slice_.cut());
-    if (settings.drawings <= 1 || !settings.splitting || !settings.redraw) {
-      add(timer, sums);
-      return;
-    }
-    deal_.deal(features_, slice, settings.drawings, key);
-    for (std::size_t d = 0; d < settings.drawings; ++d) {
-      if (deal_.part(d).empty()) continue;
-      slice_.redraw(settings, deal_.part(d), key, d);
-      tally_.seconds_splitting += timer.step();
-      add(timer, sums);
-    }
+    drawings_.run(settings, slice, key, slice_, tally_, [&] {
+      StepTimer timer;
+      const std::size_t rows = slice_.entries().rows().size();
+      visibility_.resize(rows * slice_.columns().size());
+      for (std::size_t c = 0; c < slice_.columns().size(); ++c)
+        slice_.entries().trace(slice_.columns()[c].column.column,
+                               std::span(visibility_).subspan(c * rows, rows));
+      tally_.seconds_visibility += timer.step();
+      slice_.gather(visibility_, sums);
+      tally_.seconds_gather += timer.step();
+      tally_.add(slice_);
+    });
   }
   const SliceTally& tally() const { return tally_; }
 
  private:
-  void add(StepTimer& timer, std::span<Rgb> sums) {
-    const std::size_t rows = slice_.entries().rows().size();
-    visibility_.resize(rows * slice_.columns().size());
-    for (std::size_t c = 0; c < slice_.columns().size(); ++c)
-      slice_.entries().trace(slice_.columns()[c].column.column,
-                             std::span(visibility_).subspan(c * rows, rows));
-    tally_.seconds_visibility += timer.step();
-    slice_.gather(visibility_, sums);
-    tally_.seconds_gather += timer.step();
-    tally_.add(slice_);
-  }
-
   SliceColumns slice_;
-  matrix::RowFeatures features_;
-  PixelDeal deal_;
+  SliceDrawings drawings_;
   std::vector<float> visibility_;
   SliceTally tally_;
 };

@@ -15,12 +15,12 @@ Field<S> slice_overlap_field(double B::*member) {
       member, 0, 1);
 }
 
-inline constexpr std::size_t kMaxDrawings = 64, kDrawingsOfPasses = 8;
+inline constexpr std::size_t kMaxDrawings = 64;
 
-// As asked for, or (0) by what the estimate is for. Two fifths more time than with one: rays that are traced
-// together come from farther apart.
-inline std::size_t drawings_of(std::size_t asked, const RunOptions& options) {
-  return asked > 0 ? asked : options.one_of_passes ? kDrawingsOfPasses : 1;
+// As asked for, or (0) `of_passes` in passes and 1 in a single picture. Eight take two fifths more time than
+// one: rays that are traced together come from farther apart.
+inline std::size_t drawings_of(std::size_t asked, const RunOptions& options, std::size_t of_passes = 8) {
+  return asked > 0 ? asked : options.one_of_passes ? of_passes : 1;
 }
 
 template <typename S, typename B>
@@ -29,7 +29,8 @@ Field<S> drawings_field(std::size_t B::*member) {
       {"drawings", "",
        "Representatives of each cluster, of which every pixel of a slice has one: where one is "
        "wrong is noise then, and no shadow across the slice. As many entries, and rays that are "
-       "less coherent. 0: 8 in passes, whose mean is denoised, 1 in a single picture."},
+       "less coherent. 0: in passes, whose mean is denoised, 8 (4 in sampling-recovery); 1 in a single "
+       "picture."},
       member, 0, kMaxDrawings);
 }
 
