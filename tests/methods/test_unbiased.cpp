@@ -53,6 +53,11 @@ TEST(Unbiased, RowColumnSamplingWithScalarColor) {
   }
 }
 
+TEST(Unbiased, RowColumnSamplingByEye) {
+  expect_unbiased(seen(matrix::low_rank_matrix({400, 500, 1}, 10), "row-column-sampling",
+                       {{"rows", "60"}, {"columns", "30"}, {"color", "scalar"}, {"row-weights", "eye"}}));
+}
+
 // Many columns vanish on the sampled rows here, differently for every seed: drawing some of them by power
 // makes up for it …
 TEST(Unbiased, RowColumnSamplingWithZeroColumnsSampled) {

@@ -114,6 +114,7 @@ void ColumnClusters::add_zero_squares(std::size_t draws, std::size_t dimension, 
 
 double ColumnClusters::expected_error(const linalg::Splitter& clusters) const {
   if (reduced_.squared_sum() == 0) return 0;
+  if (reduced_.kept().rows() > 0) return expected_error(clusters, reduced_.kept());
   const linalg::PointReader points(points_);
   double sum = 0;
   for (double square : expected_squares(clusters.partition(), points_.dimension,

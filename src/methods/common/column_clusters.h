@@ -23,10 +23,11 @@ class ColumnClusters {
 
   linalg::Splitter cluster(std::size_t columns, linalg::ClusteringAlgorithm algorithm) const;
   // Relative L1 error of the image to expect by the rows that the clustering has seen: √(E‖X_R − Σ_R‖²) /
-  // ‖Σ_R‖ (2007, section 3.4), taken to an L1 error by ReducedMatrix::l1_over_l2.
+  // ‖Σ_R‖ (2007, section 3.4), taken to an L1 error by ReducedMatrix::l1_over_l2; where rows count by eye, as
+  // below, at those of them that were kept.
   double expected_error(const linalg::Splitter& clusters) const;
-  // The same by rows that it has not seen: the exact standard deviation of the estimate at each of them,
-  // times √(2/π), summed. No column is rendered for it.
+  // The same by rows that it has not seen, or not as they are: the exact standard deviation of the estimate
+  // at each of them, times √(2/π), summed. No column is rendered for it.
   double expected_error(const linalg::Splitter& clusters, const HeldOutRows& unseen) const;
 
   // Takes, of 0, 0.1, 0.3 and 0.6, the share of the lights' power in the choice of representatives that

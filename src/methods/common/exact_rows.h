@@ -57,6 +57,7 @@ class ExactRows {
   // Evaluates the row into `values` (one per column) and keeps what the errors need.
   const ExactRow& read(const SampledRow& row, std::span<Rgb> values);
   void append(const ExactRows& others);
+  void add(const ExactRow& row) { rows_.push_back(row); }
 
   std::span<const ExactRow> rows() const { return rows_; }
   std::size_t size() const { return rows_.size(); }

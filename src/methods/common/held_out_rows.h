@@ -1,4 +1,5 @@
-// Rows that the clustering does not see: from them follows the error to expect at rows that were not read.
+// Rows kept as they are: from them follows, exactly, the error to expect there. Of rows that the clustering
+// does not see that is the one at rows that were not read.
 #pragma once
 
 #include <span>
@@ -15,6 +16,8 @@ class HeldOutRows {
 
   // Evaluates the row into `values` (one per column) and keeps its scalar entries, times the row's weight.
   void read(const SampledRow& row, std::span<Rgb> values);
+  // The same for a row whose `values` are known.
+  void add(const ExactRow& row, std::span<const Rgb> values);
 
   const linalg::SampledRows& entries() const { return entries_; }
   std::size_t rows() const { return known_.size(); }
@@ -24,6 +27,8 @@ class HeldOutRows {
   double image_sum() const { return image_sum_; }
 
  private:
+  void keep(const ExactRow& row, std::span<const Rgb> values);
+
   linalg::SampledRows entries_;
   ExactRows known_;
   double image_sum_ = 0;

@@ -27,7 +27,7 @@ RowColumnRun::RowColumnRun(const matrix::LightingMatrix& matrix, const RunOption
       rows_(matrix.rows()),
       columns_(matrix.columns()),
       sampler_(matrix, options.seed),
-      seen_(matrix, sketch_shape(matrix.columns(), settings), options.seed),
+      seen_(matrix, sketch_shape(matrix.columns(), settings), options.seed, settings.row_weights),
       unseen_(matrix),
       row_(matrix.columns()),
       afterwards_(matrix) {}
@@ -193,7 +193,8 @@ Estimate RowColumnRun::finish() {
   auto& numbers = trace_.numbers;
   if (!blend_.sums().empty()) report_errors();
   numbers["memory.sketch_bytes"] = static_cast<double>(seen_.sketch().memory_bytes());
-  numbers["memory.held_out_bytes"] = static_cast<double>(unseen_.entries().memory_bytes());
+  numbers["memory.held_out_bytes"] =
+      static_cast<double>(unseen_.entries().memory_bytes() + seen_.kept().entries().memory_bytes());
   numbers["predicted_error"] = blend_.expected_error();
   numbers["rows"] = static_cast<double>(rows_read());
   numbers["rows_held_out"] = static_cast<double>(unseen_.rows());

@@ -20,6 +20,12 @@ const Fields<RowColumnSettings>& row_column_fields() {
                       "memory of the "
                       "clustering are in proportion."},
                      &S::projection, 0, 1000),
+      choice_field<S>({"row-weights", "",
+                       "What a row that was read counts for where columns are clustered. light: as it is, so "
+                       "bright receivers "
+                       "decide; eye: over its own light and a little, so that a room beside a stripe of sun "
+                       "counts as well."},
+                      &S::row_weights, {"light", "eye"}),
       choice_field<S>({"clustering", "",
                        "combined: some by sampling (two thirds; two fifths of many), the rest by splitting; "
                        "or one of them alone."},

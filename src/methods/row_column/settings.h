@@ -5,6 +5,7 @@
 
 #include "linalg/clustering.h"
 #include "methods/common/cluster_settings.h"
+#include "methods/common/reduced_matrix.h"
 #include "methods/parameters.h"
 
 namespace lumirank::methods {
@@ -13,6 +14,7 @@ struct RowColumnSettings : ClusterSettings {
   std::size_t rows = 0;
   std::size_t columns = 0;
   std::size_t projection = 50;
+  RowWeights row_weights = RowWeights::eye;
   linalg::ClusteringAlgorithm clustering = linalg::ClusteringAlgorithm::combined;
 };
 
