@@ -91,8 +91,7 @@ void add_compare(CLI::App& app, Action& action) {
       ->required();
   add_setting_options(*command, options->common, {});
   // What a comparison sets by itself, or has no use for.
-  for (const char* other : {"--time", "--method", "--aov", "--compensate", "--shutter", "--shutter-samples",
-                            "--passes", "--denoise"})
+  for (const char* other : {"--time", "--method", "--aov", "--compensate", "--shutter", "--shutter-samples"})
     command->remove_option(command->get_option(other));
   command->add_option("--methods", options->methods, "names, separated by commas");
   command->add_option_function<std::string>(

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -18,11 +19,13 @@
 #include "image/metrics.h"
 #include "matrix/metered_matrix.h"
 #include "pages/page.h"
+#include "pipeline/develop.h"
 #include "pipeline/error_advice.h"
 #include "pipeline/media_parts.h"
 #include "pipeline/media_run.h"
 #include "pipeline/memory.h"
 #include "pipeline/noise_metric.h"
+#include "pipeline/pass_run.h"
 #include "pipeline/prepared.h"
 #include "pipeline/sound_pixels.h"
 #include "study/equal_cost.h"
@@ -61,13 +64,15 @@ class Study {
         check_media(info, settings.base);
       else
         methods::require_capabilities(info, transport::SceneMatrix::kCapabilities);
+    if (in_passes()) require_sound_passes();
     require_memory_of_runs();
     require_outputs(scene.files);
   }
 
   Comparison run() {
-    check_metric(settings_.base.method, false);
-    prepare_as_asked();
+    check_metric(settings_.base.method, in_passes());
+    // Passes have rows and columns of their own.
+    if (!in_passes()) prepare_as_asked();
     // Not before: a comparison that is refused leaves nothing behind.
     std::error_code code;
     const bool made = fs::create_directories(folder_, code);
@@ -100,8 +105,23 @@ class Study {
     return finish(true);
   }
 
+  // Whether runs are whole pictures in passes, as a render has them, instead of estimates of one matrix.
+  bool in_passes() const { return settings_.base.passes > 0 || settings_.base.denoise == Denoise::on; }
+
+  void require_sound_passes() const {
+    if (in_media_)
+      throw InputError("scenes with participating media are not rendered in passes",
+                       "leave out --passes and --denoise");
+    if (reference_.is_of_columns())
+      throw InputError(
+          "passes have lights of their own, which all columns of one matrix are no reference for",
+          "give --reference path or a file, or leave out --passes and --denoise");
+    check_passes(settings_.base);
+  }
+
   // Of methods that --error does not steer, once each.
   void warn_of_errors() const {
+    if (in_passes()) return;
     std::set<std::string> warned;
     for (const PlannedRun& run : plan_)
       if (const auto& info = methods::find_method(run.method); warned.insert(run.method).second)
@@ -172,7 +192,7 @@ class Study {
   }
 
   void make_reference() {
-    reference_.make(*world_, *subject_, sinks_, results_);
+    reference_.make(*world_, subject_.get(), sinks_, results_);
     if (!reference_.is_picture()) return;
     results_.reference_image = "reference.png";
     image::FilesTogether together;
@@ -202,7 +222,50 @@ class Study {
     method_settings[by_lights ? "lights" : "columns"] = std::to_string(fitting);
   }
 
+  static ComparisonRun result_of(const PlannedRun& run) {
+    ComparisonRun result;
+    result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
+    result.settings = run.method_settings;
+    return result;
+  }
+
+  bool run_in_passes(const PlannedRun& run) {
+    const methods::MethodInfo& info = methods::find_method(run.method);
+    RenderSettings settings = settings_.base;
+    settings.method.name = run.method, settings.method.parameters = run.method_settings;
+    settings.seed = run.seed, settings.time = run.time;
+    settings.view.spp.reset();
+    // Passes have numbers of lights that suit them, unless it is told.
+    if (run.lights != settings.lights.count_or_default()) settings.lights.count = run.lights;
+    if (const std::size_t wanted = info.lights_wanted ? info.lights_wanted(run.method_settings) : 0;
+        wanted > 0)
+      settings.lights.count = wanted;
+    settings.traced.rest = RestOfPaths::skip;
+    if (settings.denoise != Denoise::on) settings.denoise = Denoise::off;
+    RenderTask task;
+    task.world = world_, task.view = view_;
+    task.info = &info, task.method = info.make(run.method_settings), task.why = "compared";
+    Sinks quiet = sinks_;
+    quiet.progress = {};
+    const RenderResult rendered = pipeline::run_in_passes(std::move(task), settings, quiet, {});
+    if (rendered.interrupted) return false;
+
+    const Report& report = rendered.report;
+    ComparisonRun result = result_of(run);
+    result.seconds = report.seconds.at("total");
+    if (report.cost) {
+      result.rays = static_cast<double>(report.cost->shadow_rays);
+      result.entries = static_cast<double>(report.cost->entries);
+      result.sampling_rate = report.cost->sampling_rate;
+    }
+    result.numbers = report.numbers;
+    result.phases = report.seconds;
+    keep(std::move(result), image_of(rendered.picture));
+    return true;
+  }
+
   bool run_one(PlannedRun run) {
+    if (in_passes()) return run_in_passes(run);
     const methods::MethodInfo& info = methods::find_method(run.method);
     // Otherwise all runs sample the reference's own matrix.
     const bool new_lights = !reference_.is_of_columns();
@@ -224,10 +287,9 @@ class Study {
     const methods::Estimate estimate = info.make(method_settings)->run(metered, options);
     if (estimate.interrupted) return false;
 
-    ComparisonRun result;
+    ComparisonRun result = result_of(run);
     result.seconds = timer.seconds();
     for (const auto& [stage, seconds] : subject_->seconds()) result.setup_seconds += seconds;
-    result.method = run.method, result.label = run.label, result.series = run.series, result.seed = run.seed;
     result.settings = method_settings;
     result.settings["lights"] = std::to_string(subject_->lights());
     result.settings["spp"] = std::to_string(run.spp);
@@ -243,13 +305,18 @@ class Study {
       else if (key == "rows" || key == "columns")
         result.settings[key] = std::to_string(static_cast<long long>(value));
 
-    const image::Image image = subject_->picture(estimate.sums);
+    keep(std::move(result), subject_->picture(estimate.sums), estimate.sums);
+    return true;
+  }
+
+  // `sums` of rows, where errors are those at some of them.
+  void keep(ComparisonRun result, const image::Image& image, std::span<const Rgb> sums = {}) {
     const std::string stem = stem_of(results_.runs.size());
     image::FilesTogether together;
     result.image_file = stem + ".png";
     save(result.image_file, image);
     if (const SampledTruth* sampled_truth = reference_.sampled()) {
-      const auto sampled = sampled_truth->error_of(estimate.sums);
+      const auto sampled = sampled_truth->error_of(sums);
       result.error = sampled.metrics;
       result.settings["relative_l2 ±95 %"] = std::to_string(sampled.l2_half_width);
     } else {
@@ -260,7 +327,6 @@ class Study {
     together.commit();
     written_ = true;
     results_.runs.push_back(std::move(result));
-    return true;
   }
 
   void find_singular_values() {

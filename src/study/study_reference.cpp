@@ -47,7 +47,7 @@ void StudyReference::read_file() {
                      "give --size or another reference");
 }
 
-void StudyReference::make(const world::World& world, const Subject& subject, const Sinks& sinks,
+void StudyReference::make(const world::World& world, const Subject* subject, const Sinks& sinks,
                           Comparison& results) {
   const Timer timer;
   switch (wanted_.kind) {
@@ -55,10 +55,10 @@ void StudyReference::make(const world::World& world, const Subject& subject, con
       trace(world, sinks, results);
       break;
     case Kind::brute_force:
-      sum_columns(subject, sinks, results);
+      sum_columns(*subject, sinks, results);
       break;
     case Kind::receivers:
-      sum_at_receivers(subject, sinks, results);
+      sum_at_receivers(*subject, sinks, results);
       break;
     case Kind::file:
       results.reference_kind = std::filesystem::path(wanted_.file).filename().string();

@@ -22,8 +22,9 @@ class StudyReference {
   // A picture of all pixels; otherwise errors are known at some receivers only.
   bool is_picture() const { return wanted_.kind != ComparisonReference::Kind::receivers; }
 
-  // Makes what is not a file; fills the reference's part of `results`. Throws Cancelled.
-  void make(const world::World& world, const Subject& subject, const Sinks& sinks, Comparison& results);
+  // Makes what is not a file; fills the reference's part of `results`. `subject`: may be nullptr unless
+  // is_of_columns(). Throws Cancelled.
+  void make(const world::World& world, const Subject* subject, const Sinks& sinks, Comparison& results);
   const image::Image& picture() const { return picture_; }
   const SampledTruth* sampled() const { return sampled_.get(); }
 

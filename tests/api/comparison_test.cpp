@@ -45,6 +45,34 @@ TEST(TypedComparison, SaysWhatTheFilesSay) {
   EXPECT_EQ(c.notes[0].substr(0, 13), "At equal rays");
 }
 
+// In passes a run is the picture that a render has of the same settings: against that one it errs by nothing,
+// and another seed does not.
+TEST(TypedComparison, PassesAreThoseOfARender) {
+  const TemporaryFolder folder;
+  CompareSettings settings = small_comparison();
+  settings.base.passes = 3;
+  settings.base.view.spp.reset();
+  settings.methods = {"slice-cuts", "row-guided-sampling"};
+  settings.seeds = 2;
+  settings.reference.kind = ComparisonReference::Kind::file;
+  settings.reference.file = folder / "rendered.pfm";
+  for (const char* method : {"slice-cuts", "row-guided-sampling"}) {
+    RenderSettings alone = settings.base;
+    alone.method.name = method;
+    alone.traced.rest = RestOfPaths::skip;
+    alone.traced.panes = Panes::exact;
+    alone.denoise = Denoise::off;
+    write_picture(settings.reference.file, render(box(), alone).picture);
+    const Comparison c = compare(box(), settings, folder / method);
+    ASSERT_EQ(c.runs.size(), 4u);
+    for (const ComparisonRun& run : c.runs) {
+      EXPECT_EQ(run.error.relative_l1 == 0, run.method == method && run.seed == settings.base.seed)
+          << method << " against " << run.label << ", seed " << run.seed;
+      EXPECT_GT(run.rays, 0);
+    }
+  }
+}
+
 TEST(TypedComparison, RefusesWhatCannotBe) {
   const TemporaryFolder folder;
   const auto refused = [&](const auto& change, const std::string& part) {
@@ -60,6 +88,8 @@ TEST(TypedComparison, RefusesWhatCannotBe) {
   };
   using Kind = ComparisonReference::Kind;
   refused([](auto& s) { s.reference = {Kind::receivers, 60, 63, ""}; }, "at least 64");
+  refused([](auto& s) { s.base.passes = 2; }, "passes have lights of their own");
+  refused([](auto& s) { s.base.denoise = Denoise::on; }, "passes have lights of their own");
   refused([](auto& s) { s.reference = {Kind::receivers, 60, 193, ""}; }, "more receivers than the 192");
   refused([](auto& s) { s.reference = {Kind::file, 60, 0, "none.exr"}; }, "none.exr");
   refused([](auto& s) { s.sweeps = {{"", {"seed"}, {{"1"}}}}; }, "cannot be swept");
