@@ -19,11 +19,11 @@ using matrix::ScaledColumn;
 
 namespace {
 
-constexpr std::size_t kSliceStretch = 4096;  // columns decoded at a time
-constexpr float kMinEntry = 1e-17f;          // its square is a number still
-constexpr float kNoSliceColor = 1e-3f;       // of the scalar norm: no color to scale
-constexpr std::uint64_t kDrawings = 0x64726177;
-constexpr float kMaxSliceGain = 4;  // of a channel over the scalar factor
+constexpr std::size_t kSliceStretch = 4096;      // columns decoded at a time
+constexpr float kMinEntry = 1e-17f;              // its square is a number still
+constexpr float kNoSliceColor = 1e-3f;           // of the scalar norm: no color to scale
+constexpr std::uint64_t kDrawings = 0x64726177;  // of keys
+constexpr float kMaxSliceGain = 4;               // of a channel over the scalar factor
 
 linalg::ColumnSketch::Shape sketch_shape(std::size_t columns, std::size_t slices, std::size_t projection) {
   if (projection == 0 || slices <= projection) return {columns, slices, false};

@@ -50,6 +50,7 @@ Estimate render_slices(const matrix::LightingMatrix& matrix, const RunOptions& o
             fitting_drawings(most, lights.columns(), settings.columns, matrix.columns());
         w.deal.deal(matrix.row_features(), rows, drawings, hash_ids(options.seed, Stage::method, 3, s));
         for (std::size_t d = 0; d < drawings; ++d) {
+          if (w.deal.part(d).empty()) continue;
           if (d > 0) lights.redraw(s, d, w.lights);
           w.add(w.deal.part(d), sums);
         }
