@@ -272,7 +272,7 @@ TEST(SamplingRecovery, MeetsATargetByItself) {
     options.target_error = target;
     return find_method("sampling-recovery").make({{"slice-rows", "40"}})->run(room(), options);
   };
-  const Estimate loose = run(0.2), strict = run(0.016);
+  const Estimate loose = run(0.2), strict = run(0.02);
   for (const Estimate* e : {&loose, &strict}) {
     const auto& n = e->trace.numbers;
     EXPECT_LE(n.at("automatic.error"), n.at("automatic.target"));
