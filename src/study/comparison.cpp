@@ -1,6 +1,7 @@
 // Runs the plan of a comparison on one prepared scene, and writes every result as soon as it exists.
 #include "study/comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -116,7 +117,15 @@ class Study {
       throw InputError(
           "passes have lights of their own, which all columns of one matrix are no reference for",
           "give --reference path or a file, or leave out --passes and --denoise");
+    if (settings_.base.view.spp || sweeps("spp"))
+      throw InputError("passes have one receiver per pixel each", "give --passes instead of spp");
     check_passes(settings_.base);
+  }
+
+  bool sweeps(const std::string& key) const {
+    for (const ComparisonSweep& sweep : settings_.sweeps)
+      if (sweep.method.empty() && std::ranges::count(sweep.keys, key) > 0) return true;
+    return false;
   }
 
   // Of methods that --error does not steer, once each.
@@ -234,9 +243,8 @@ class Study {
     RenderSettings settings = settings_.base;
     settings.method.name = run.method, settings.method.parameters = run.method_settings;
     settings.seed = run.seed, settings.time = run.time;
-    settings.view.spp.reset();
     // Passes have numbers of lights that suit them, unless it is told.
-    if (run.lights != settings.lights.count_or_default()) settings.lights.count = run.lights;
+    if (sweeps("lights")) settings.lights.count = run.lights;
     if (const std::size_t wanted = info.lights_wanted ? info.lights_wanted(run.method_settings) : 0;
         wanted > 0)
       settings.lights.count = wanted;

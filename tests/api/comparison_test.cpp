@@ -90,6 +90,7 @@ TEST(TypedComparison, RefusesWhatCannotBe) {
   refused([](auto& s) { s.reference = {Kind::receivers, 60, 63, ""}; }, "at least 64");
   refused([](auto& s) { s.base.passes = 2; }, "passes have lights of their own");
   refused([](auto& s) { s.base.denoise = Denoise::on; }, "passes have lights of their own");
+  refused([](auto& s) { s.base.passes = 2, s.reference = {Kind::path, 1, 0, ""}; }, "one receiver per pixel");
   refused([](auto& s) { s.reference = {Kind::receivers, 60, 193, ""}; }, "more receivers than the 192");
   refused([](auto& s) { s.reference = {Kind::file, 60, 0, "none.exr"}; }, "none.exr");
   refused([](auto& s) { s.sweeps = {{"", {"seed"}, {{"1"}}}}; }, "cannot be swept");
