@@ -115,7 +115,10 @@ void ColumnSpace::factor() {
         r_[d][e] += share;
       }
     const double left = std::sqrt(inner(q, q, n));
-    if (!(left > std::max(kUnseen * size, least))) continue;
+    if (!(left > std::max(kUnseen * size, least))) {
+      std::fill_n(q, n, 0.0f);
+      continue;
+    }
     seen_[d] = 1;
     r_[d][d] = static_cast<float>(left);
     const auto scale = static_cast<float>(1 / left);
@@ -149,16 +152,16 @@ ColumnSpace::Fit ColumnSpace::fit(std::span<const float> values, std::vector<flo
   Fit fit;
   fit.size = std::sqrt(inner(values.data(), values.data(), n));
   coordinates.assign(rank_, 0.0f);
-  std::vector<float> rest(values.begin(), values.end()), shares(rank_, 0.0f);
-  for (std::size_t d = 0; d < rank_; ++d) {
-    if (!seen_[d]) continue;
-    const float* q = q_.data() + d * n;
-    shares[d] = static_cast<float>(inner(q, rest.data(), n));
-    add_scaled(-shares[d], q, rest.data(), n);
-  }
+  std::vector<float> rest(values.begin(), values.end());
+  // Directions that are not seen have a q of zeros, and so a share of 0.
+  const Eigen::Map<const Eigen::MatrixXf> q(q_.data(), static_cast<Eigen::Index>(n),
+                                            static_cast<Eigen::Index>(rank_));
+  Eigen::Map<Eigen::VectorXf> remainder(rest.data(), static_cast<Eigen::Index>(n));
+  const Eigen::VectorXf shares = q.transpose() * remainder;
+  remainder.noalias() -= q * shares;
   for (std::size_t d = rank_; d-- > 0;) {
     if (!seen_[d]) continue;
-    double right = static_cast<double>(shares[d]);
+    double right = static_cast<double>(shares[static_cast<Eigen::Index>(d)]);
     for (std::size_t e = d + 1; e < rank_; ++e)
       right -= static_cast<double>(r_[e][d]) * static_cast<double>(coordinates[e]);
     coordinates[d] = static_cast<float>(right / static_cast<double>(r_[d][d]));

@@ -68,10 +68,11 @@ struct MethodContract {
   bool instants = false;
   // What rays in media are to be for it, unless its settings say otherwise (MethodInfo::segments_wanted).
   enum class Segments {
-    pieces,          // eye rays in pieces
+    pieces,          // eye rays in pieces, longer ones where they are alike
+    smooth_pieces,   // the same, and columns that are smooth functions of the rows
     light_pieces,    // eye rays as they are, light rays in pieces
     whole,           // eye rays as they are
-    groups,          // eye rays in pieces that know their slices (RowFeatures::slice)
+    groups,          // smooth pieces that know their slices (RowFeatures::slice)
     groups_and_tree  // the same, and light rays in pieces that know their tree (ColumnFeatures::branch)
   } segments = Segments::pieces;
 };

@@ -1,6 +1,7 @@
 // Segments of rays in media: how alike they are, and that groups of them cover every ray once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "base/random.h"
@@ -103,6 +104,37 @@ TEST(Segments, GroupsCoverEveryRayOnce) {
         EXPECT_EQ(pieces.size(), segments.size());
       }
     }
+}
+
+TEST(Segments, WhatIsAlikeAlongARayIsPutTogether) {
+  const std::vector<media::Medium> media{fog(0)};
+  auto segments = bundle(3, 16);
+  // The second ray has a gap, and the third goes from thin to thick fog in its middle.
+  segments[16 + 5].joined = false;
+  for (int k = 8; k < 16; ++k) segments[32 + k].transmittance = 0.05f;
+  const SegmentSimilarity similarity(media, 4, true);
+  const auto pieces = merge_segments(segments, similarity, 3);
+  std::vector<std::vector<SegmentPiece>> of_rays(3);
+  for (const SegmentPiece& p : pieces) of_rays[p.source / 16].push_back(p);
+  for (const auto& pieces_of_ray : of_rays) {
+    float length = 0;
+    for (const SegmentPiece& p : pieces_of_ray) {
+      EXPECT_EQ(p.offset, 0);
+      EXPECT_NEAR(segments[p.source].origin.x, length, 1e-5);
+      length += p.length;
+    }
+    EXPECT_NEAR(length, 1, 1e-5);
+  }
+  // Equations 10 and 12, both ends together no further off than an eighth of the diagonal.
+  EXPECT_GT(of_rays[0].size(), 1u);
+  EXPECT_LT(of_rays[0].size(), 8u);
+  const auto begins_at = [](const std::vector<SegmentPiece>& list, std::uint32_t source) {
+    return std::ranges::any_of(list, [=](const SegmentPiece& p) { return p.source == source; });
+  };
+  EXPECT_TRUE(begins_at(of_rays[1], 16 + 5));
+  EXPECT_TRUE(begins_at(of_rays[2], 32 + 8));
+  // Nothing is as alike as that.
+  EXPECT_EQ(merge_segments(segments, similarity, similarity.most()).size(), segments.size());
 }
 
 }  // namespace

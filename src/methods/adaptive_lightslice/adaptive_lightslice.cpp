@@ -37,10 +37,10 @@ class AdaptiveLightSlice final : public Method {
 MethodInfo adaptive_lightslice_info() {
   return method_info<AdaptiveLightSlice>(
       {"adaptive-lightslice",
-       "LightSlice whose slices take as many columns as an error needs; for rays in media, whole.",
+       "LightSlice whose slices take as many columns as an error needs.",
        "Frederickx, Bartels, Dutré 2015, Adaptive LightSlice for Virtual Ray Lights",
        "error or columns",
-       {.needs = {}, .segments = matrix::MethodContract::Segments::whole}},
+       {.needs = {}, .segments = matrix::MethodContract::Segments::smooth_pieces}},
       adaptive_fields());
 }
 

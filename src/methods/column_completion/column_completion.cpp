@@ -18,7 +18,7 @@ namespace {
 enum class ColumnTreeKind { places, graph };
 
 struct ColumnCompletionSettings : CompletionSpaceSettings {
-  std::size_t slice_rows = 512;
+  std::size_t slice_rows = 2048;
   RowPartition partition = RowPartition::places;
   ColumnTreeKind tree = ColumnTreeKind::places;
 };
@@ -37,7 +37,7 @@ const Fields<ColumnCompletionSettings>& column_completion_fields() {
       number_field<S>({"beta", "of a slice's light",
                        "A node of columns that errs by more, as those drawn tell, is divided."},
                       &S::beta, 0, 1),
-      count_field<S>({"samples", "columns", "Drawn of each node (the paper: 10)."}, &S::samples, 1, 1000),
+      count_field<S>({"samples", "columns", "Drawn of each node."}, &S::samples, 1, 1000),
       count_field<S>({"asked", "rows",
                       "Of a slice, that tell first what the tree's coarse nodes bring, so that more of the "
                       "columns drawn matter (the paper: 0)."},
@@ -139,11 +139,13 @@ MethodInfo column_completion_info() {
        "Huo, Wang, Hu, Hua, Jin 2016, Adaptive matrix column sampling and completion for rendering "
        "participating media",
        "beta or sigma or rho",
-       {.needs = {}, .segments = Segments::groups}},
+       {.needs = {}, .segments = Segments::smooth_pieces}},
       column_completion_fields());
   info.segments_wanted = [name = info.name](const SettingsMap& settings) {
     const auto read = read_settings(name, column_completion_fields(), settings);
-    return read.tree == ColumnTreeKind::graph ? Segments::groups_and_tree : Segments::groups;
+    if (read.tree == ColumnTreeKind::graph) return Segments::groups_and_tree;
+    const bool by_graph = read.partition == RowPartition::given || read.partition == RowPartition::k_means;
+    return by_graph ? Segments::groups : Segments::smooth_pieces;
   };
   return info;
 }

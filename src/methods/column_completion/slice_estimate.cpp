@@ -17,6 +17,9 @@ constexpr std::size_t kFirstNodes = 16;
 // kOverfitted.
 constexpr std::size_t kFewestRows = 24, kRowsPerDirection = 2;
 constexpr double kMoreRows = 1.5, kOverfitted = 1.5;
+// But no more than so many for each direction: a column that so many do not foretell lies outside of the
+// space. Without an end to it columns of noise made half of all rows be sampled, of all columns after them.
+constexpr double kMostRowsPerDirection = 2.5;
 // A space with more directions than this share of the sampled rows tells nothing of a column.
 constexpr double kMostDirections = 0.5;
 
@@ -182,7 +185,11 @@ const std::vector<float>& SliceEstimate::complete(Index j, double scale, Kind& k
     const auto fit = kind.space.fit(numbers_, coordinates_);
     const double more = std::sqrt(static_cast<double>(all) / static_cast<double>(sampled));
     if (fit.left_out * more * scale <= sigma_ * light()) return kind.known[j] = coordinates_;
-    if (settings_.rho > 0 || !(fit.left_out > kOverfitted * fit.residual) || 2 * sampled > all) break;
+    const double most =
+        static_cast<double>(kFewestRows) + kMostRowsPerDirection * static_cast<double>(kind.space.rank());
+    if (settings_.rho > 0 || !(fit.left_out > kOverfitted * fit.residual) || 2 * sampled > all ||
+        static_cast<double>(sampled) > most)
+      break;
     // More rows, those that are sampled already among them.
     kind.wanted = static_cast<std::size_t>(kMoreRows * static_cast<double>(sampled));
     asked = sampled;

@@ -17,11 +17,11 @@
 namespace lumirank::methods {
 
 struct CompletionSpaceSettings {
-  double rho = 0;            // of a column's rows that are sampled; 0: found for each slice
-  double sigma = 0.005;      // of the slice's light that completion may miss in what a column stands for
-  double beta = 0.01;        // of the slice's light by which a node's columns may err
-  std::size_t samples = 20;  // the paper: 10
-  std::size_t asked = 8;     // rows of a slice that tell first what coarse nodes bring; the paper: 0
+  double rho = 0;        // of a column's rows that are sampled; 0: found for each slice
+  double sigma = 0.005;  // of the slice's light that completion may miss in what a column stands for
+  double beta = 0.01;    // of the slice's light by which a node's columns may err
+  std::size_t samples = 10;
+  std::size_t asked = 8;  // rows of a slice that tell first what coarse nodes bring; the paper: 0
 };
 
 // Deviations from the paper, and why (docs/participating-media.md has the measurements):

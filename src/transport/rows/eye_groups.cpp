@@ -41,12 +41,13 @@ struct GroupedStretch {
   std::vector<std::uint32_t> group;
 };
 
-GroupedStretch group_stretch(const world::World& world, const EyeSegments& all, std::span<const Vec2f> film,
-                             std::size_t begin, std::size_t end, std::size_t groups,
-                             const EyeGroupSettings& settings) {
+// Those of [begin, end), as they are compared.
+std::vector<Segment> stretch_of(const world::World& world, const EyeSegments& all,
+                                std::span<const Vec2f> film, std::size_t begin, std::size_t end,
+                                std::uint64_t seed) {
   std::vector<Segment> segments(end - begin);
   for (std::size_t k = begin; k < end; ++k) {
-    Rng rng(settings.seed, Stage::segments, all.id[k]);
+    Rng rng(seed, Stage::segments, all.id[k]);
     segments[k - begin] = {all.origin[k],
                            all.direction[k],
                            all.length[k],
@@ -55,18 +56,19 @@ GroupedStretch group_stretch(const world::World& world, const EyeSegments& all, 
                            film[all.sample[k]],
                            k > begin && joins(all, k)};
   }
-  const SegmentSimilarity similarity(world.media(), 2 * world.bounds().radius(), true);
-  SegmentGroupSettings of_groups;
-  of_groups.groups = groups, of_groups.refine = settings.refine, of_groups.merge = settings.merge;
-  of_groups.seed = hash_ids(settings.seed, Stage::segments, begin);
+  return segments;
+}
+
+GroupedStretch as_eye_segments(const world::World& world, const EyeSegments& all, std::size_t begin,
+                               std::span<const SegmentPiece> pieces, std::uint64_t seed) {
   GroupedStretch out;
-  for (const SegmentPiece& piece : group_segments(segments, similarity, of_groups)) {
+  for (const SegmentPiece& piece : pieces) {
     const std::size_t k = begin + piece.source;
     EyeSegment s{all.origin[k], all.direction[k], piece.length, all.weight[k],
                  all.id[k],     all.sample[k],    all.depth[k], all.medium[k]};
     if (piece.offset > 0) {
       s.id = mix64(s.id ^ 0x63757473ull);
-      Rng rng(settings.seed, Stage::segments, s.id);
+      Rng rng(seed, Stage::segments, s.id);
       s.weight *= through(world, all, k, piece.offset, rng);
       s.origin = s.origin + s.direction * piece.offset;
     }
@@ -76,40 +78,69 @@ GroupedStretch group_stretch(const world::World& world, const EyeSegments& all, 
   return out;
 }
 
-}  // namespace
-
-void group_eye_segments(const world::World& world, std::span<const Vec2f> film,
-                        const EyeGroupSettings& settings, EyeSegments& segments, const Sinks& sinks) {
-  // Stretches end where a film sample does.
+// Of segments that are compared and put into `group` by `pieces_of(segments, begin)`. Stretches end where a
+// film sample does.
+template <typename PiecesOf>
+std::vector<GroupedStretch> by_stretches(const world::World& world, const EyeSegments& segments,
+                                         std::span<const Vec2f> film, std::uint64_t seed, const Sinks& sinks,
+                                         const PiecesOf& pieces_of) {
   std::vector<std::size_t> first{0};
   for (std::size_t k = 1; k < segments.size(); ++k)
     if (segments.sample[k] / kRaysOfStretch != segments.sample[k - 1] / kRaysOfStretch) first.push_back(k);
-  first.push_back(segments.size());
-  if (segments.empty()) first = {0};
-  const std::size_t stretches = first.size() - 1;
-  const auto groups = static_cast<std::size_t>(
-      std::max(1.0, std::round(settings.groups_per_ray * static_cast<double>(kRaysOfStretch))));
-  std::vector<GroupedStretch> grouped(stretches);
+  if (!segments.empty()) first.push_back(segments.size());
+  std::vector<GroupedStretch> grouped(first.size() - 1);
   std::atomic<std::size_t> done{0};
-  parallel_for(stretches, 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(grouped.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end && !sinks.cancelled(); ++t) {
-      const std::size_t own = first[t + 1] - first[t];
-      grouped[t] = group_stretch(world, segments, film, first[t], first[t + 1],
-                                 std::clamp<std::size_t>(groups * own / kFullStretch, 1, groups), settings);
-      sinks.report("segments", static_cast<double>(++done) / static_cast<double>(stretches));
+      const auto compared = stretch_of(world, segments, film, first[t], first[t + 1], seed);
+      grouped[t] = as_eye_segments(world, segments, first[t], pieces_of(compared, first[t]), seed);
+      sinks.report("segments", static_cast<double>(++done) / static_cast<double>(grouped.size()));
     }
   });
   if (sinks.cancelled()) throw Cancelled();
+  return grouped;
+}
+
+// Writes them, and what slice each is of: `groups` for each stretch, or with 0 none.
+void write(std::span<const GroupedStretch> grouped, std::size_t groups, EyeSegments& segments) {
   std::size_t count = 0;
   for (const GroupedStretch& g : grouped) count += g.segments.size();
   segments.resize(count);
   segments.slice.clear();
   std::size_t next = 0;
-  for (std::size_t t = 0; t < stretches; ++t)
+  for (std::size_t t = 0; t < grouped.size(); ++t)
     for (std::size_t k = 0; k < grouped[t].segments.size(); ++k) {
       segments.set(next++, grouped[t].segments[k]);
-      segments.slice.push_back(static_cast<std::uint32_t>(t * groups) + grouped[t].group[k]);
+      if (groups > 0) segments.slice.push_back(static_cast<std::uint32_t>(t * groups) + grouped[t].group[k]);
     }
+}
+
+}  // namespace
+
+void group_eye_segments(const world::World& world, std::span<const Vec2f> film,
+                        const EyeGroupSettings& settings, EyeSegments& segments, const Sinks& sinks) {
+  const auto groups = static_cast<std::size_t>(
+      std::max(1.0, std::round(settings.groups_per_ray * static_cast<double>(kRaysOfStretch))));
+  const SegmentSimilarity similarity(world.media(), 2 * world.bounds().radius(), true);
+  const auto grouped = by_stretches(
+      world, segments, film, settings.seed, sinks, [&](std::span<const Segment> compared, std::size_t begin) {
+        SegmentGroupSettings own;
+        own.groups = std::clamp<std::size_t>(groups * compared.size() / kFullStretch, 1, groups);
+        own.refine = settings.refine, own.merge = settings.merge;
+        own.seed = hash_ids(settings.seed, Stage::segments, begin);
+        return group_segments(compared, similarity, own);
+      });
+  write(grouped, groups, segments);
+}
+
+void merge_eye_segments(const world::World& world, std::span<const Vec2f> film, float merge_above,
+                        std::uint64_t seed, EyeSegments& segments, const Sinks& sinks) {
+  const SegmentSimilarity similarity(world.media(), 2 * world.bounds().radius(), true);
+  const auto merged =
+      by_stretches(world, segments, film, seed, sinks, [&](std::span<const Segment> compared, std::size_t) {
+        return merge_segments(compared, similarity, merge_above);
+      });
+  write(merged, 0, segments);
 }
 
 }  // namespace lumirank::transport

@@ -1,4 +1,5 @@
-// Eye segments in slices of those that are alike (Huo et al. 2016, section 4).
+// Eye segments put together where they are alike, and in slices of those that are (Huo et al. 2016, section
+// 4).
 #pragma once
 
 #include <cstdint>
@@ -22,5 +23,10 @@ struct EyeGroupSettings {
 // along a space-filling curve. Deterministic in the seed.
 void group_eye_segments(const world::World& world, std::span<const Vec2f> film,
                         const EyeGroupSettings& settings, EyeSegments& segments, const Sinks& sinks = {});
+
+// Puts neighbors on a ray together that are alike by more than `merge_above` of 4 (SegmentSimilarity), so
+// that many short segments are left only where one place could not stand for them. Deterministic in the seed.
+void merge_eye_segments(const world::World& world, std::span<const Vec2f> film, float merge_above,
+                        std::uint64_t seed, EyeSegments& segments, const Sinks& sinks = {});
 
 }  // namespace lumirank::transport

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "linalg/kernel_boundary.h"
 #include "transport/segments/segment_graph.h"
@@ -70,6 +71,37 @@ void cut_at_boundary(std::span<const Segment> segments, std::span<const std::uin
   }
 }
 
+// Pieces, each put together with the one before it where that is alike.
+class PieceList {
+ public:
+  PieceList(std::span<const Segment> segments, const SegmentSimilarity& similarity, float merge_above)
+      : segments_(segments), similarity_(similarity), merge_above_(merge_above) {}
+
+  // `joined`: it goes on where the one before it ends.
+  void append(std::uint32_t source, float offset, float length, std::uint32_t group, bool joined) {
+    Segment piece = segments_[source];
+    piece.origin = piece.origin + piece.direction * offset, piece.length = length;
+    // Over part of a segment, as if the medium were the same all along it.
+    if (length < segments_[source].length)
+      piece.transmittance = std::pow(std::max(piece.transmittance, 1e-6f), length / segments_[source].length);
+    if (joined && pieces_.back().group == group && similarity_(last_, piece) > merge_above_) {
+      pieces_.back().length += length;
+      last_.length += length, last_.transmittance *= piece.transmittance;
+      return;
+    }
+    pieces_.push_back({source, offset, length, group});
+    last_ = piece;
+  }
+  std::vector<SegmentPiece> take() && { return std::move(pieces_); }
+
+ private:
+  std::span<const Segment> segments_;
+  const SegmentSimilarity& similarity_;
+  float merge_above_;
+  std::vector<SegmentPiece> pieces_;
+  Segment last_;  // the last piece, as a segment
+};
+
 }  // namespace
 
 std::vector<SegmentPiece> group_segments(std::span<const Segment> segments,
@@ -82,34 +114,26 @@ std::vector<SegmentPiece> group_segments(std::span<const Segment> segments,
     for (const auto& [pair, at] : boundaries(graph, group))
       cut_at_boundary(segments, group, pair, at, settings.kernel_width, cuts);
 
-  std::vector<SegmentPiece> out;
-  Segment last;  // the last piece, as a segment
-  const auto append = [&](std::uint32_t source, float offset, float length, std::uint32_t of, bool joined) {
-    Segment piece = segments[source];
-    piece.origin = piece.origin + piece.direction * offset, piece.length = length;
-    // Over part of a segment, as if the medium were the same all along it.
-    if (length < segments[source].length)
-      piece.transmittance = std::pow(std::max(piece.transmittance, 1e-6f), length / segments[source].length);
-    if (settings.merge && joined && out.back().group == of &&
-        similarity(last, piece) > settings.merge_above) {
-      out.back().length += length;
-      last.length += length, last.transmittance *= piece.transmittance;
-      return;
-    }
-    out.push_back({source, offset, length, of});
-    last = piece;
-  };
+  PieceList out(segments, similarity, settings.merge ? settings.merge_above : similarity.most());
   for (std::uint32_t v = 0; v < segments.size(); ++v) {
     const Segment& s = segments[v];
     const bool joined = s.joined && v > 0;
     if (cuts[v].at < 0) {
-      append(v, 0, s.length, group[v], joined);
+      out.append(v, 0, s.length, group[v], joined);
     } else {
-      append(v, 0, cuts[v].at, cuts[v].before, joined);
-      append(v, cuts[v].at, s.length - cuts[v].at, cuts[v].behind, true);
+      out.append(v, 0, cuts[v].at, cuts[v].before, joined);
+      out.append(v, cuts[v].at, s.length - cuts[v].at, cuts[v].behind, true);
     }
   }
-  return out;
+  return std::move(out).take();
+}
+
+std::vector<SegmentPiece> merge_segments(std::span<const Segment> segments,
+                                         const SegmentSimilarity& similarity, float merge_above) {
+  PieceList out(segments, similarity, merge_above);
+  for (std::uint32_t v = 0; v < segments.size(); ++v)
+    out.append(v, 0, segments[v].length, 0, segments[v].joined && v > 0);
+  return std::move(out).take();
 }
 
 }  // namespace lumirank::transport

@@ -1,5 +1,5 @@
-// Segments in groups of those that are alike, cut anew where groups meet (Huo et al. 2016, sections 4.2.2 and
-// 4.2.3).
+// Segments put together where they are alike, and in groups, cut anew where groups meet (Huo et al. 2016,
+// sections 4.2.2 and 4.2.3).
 #pragma once
 
 #include <cstdint>
@@ -34,5 +34,10 @@ struct SegmentGroupSettings {
 std::vector<SegmentPiece> group_segments(std::span<const Segment> segments,
                                          const SegmentSimilarity& similarity,
                                          const SegmentGroupSettings& settings);
+
+// All of all segments, in their order, as one group: neighbors on a ray are put together while the piece that
+// they make is more alike to the next of them than `merge_above`. No graph is needed for that.
+std::vector<SegmentPiece> merge_segments(std::span<const Segment> segments,
+                                         const SegmentSimilarity& similarity, float merge_above);
 
 }  // namespace lumirank::transport

@@ -15,10 +15,15 @@ constexpr std::size_t kMinSliceRows = 128,
 
 constexpr double kPlanned = 0.6;  // of the time: the rest is for what clusters cost beyond a guess
 
+// Of the columns that are allowed, those that are taken where an error decides.
+constexpr double kTaken = 1.0 / 6;
+
 // Reading a row costs an entry per column, rendering a slice's columns `columns` per row.
 std::size_t slice_rows(const SliceLightSettings& settings, std::size_t columns) {
   if (settings.slice_rows > 0) return settings.slice_rows;
-  return std::clamp(columns / std::max<std::size_t>(settings.columns, 1), kMinSliceRows, kMaxRowsFound);
+  const double taken = static_cast<double>(settings.columns) * (settings.enough > 0 ? kTaken : 1.0);
+  const double rows = static_cast<double>(columns) / std::max(taken, 1.0);
+  return std::clamp(static_cast<std::size_t>(rows), kMinSliceRows, kMaxRowsFound);
 }
 
 // Seconds of a row: the fastest of three spread over the matrix, since the first warms caches.
