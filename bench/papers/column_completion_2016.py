@@ -40,7 +40,7 @@ STATUE = [(g, rho) for g in (0, 0.5, 0.9, 0.99) for rho in (0, 0.1, 0.2)]  # 0: 
 EVERY_COLUMN = {"beta": 0}  # section 6.2: completion alone, without choosing among columns
 AT_EQUAL_TIME = {OURS: {}, SLICES: {}, CUTS: {}, ALL: {}, PLAIN: {"rows": 100, "columns": 200}}
 LADDERS = {  # of part scaling, from poor to good
-    OURS: [{"samples": n} for n in (3, 5, 10, 20, 40)],
+    OURS: [{"samples": 5, "sigma": 0.01}, {"sigma": 0.01, "beta": 0.02}, {"sigma": 0.01}, {}, {"samples": 20}],
     SLICES: [{"error": e} for e in (0.05, 0.02, 0.01, 0.005)],
     CUTS: [{"max-nodes": n} for n in (250, 500, 1000, 2000, 4000)],
     PLAIN: [{"rows": r, "columns": 3 * r} for r in (50, 100, 200, 400, 800)],
@@ -256,7 +256,8 @@ class Experiments:
         page.heading("Time at equal error, by the number of lights")
         page.say(f"Seconds until relative L1 is {percent(self.args.level)} of all columns of the same lights, read off the sweep of each method by straight lines in logarithms; left open where it does not get "
                  f"there. {ALL} has no error to speak of: its time is that of all columns, from the spans of the truth.")
-        ladders = {m: LADDERS[m] for m in self.has(*LADDERS)}
+        asked = self.args.methods.split(",") if self.args.methods else list(LADDERS)
+        ladders = {m: LADDERS[m] for m in self.has(*LADDERS) if m in asked}
         if SLICES in ladders:
             ladders[WHOLE_RAYS] = [{"eye-rays": "whole", **settings} for settings in LADDERS[SLICES]]
         for name in self.scenes(("fog",)):
@@ -337,6 +338,7 @@ def main():
     parser.add_argument("--truth-seconds", type=float, help="of the two references together; default 1800")
     parser.add_argument("--counts", type=lambda s: [int(n) for n in s.split(",")], help="lights of part scaling; default 10000 … 1000000")
     parser.add_argument("--level", type=float, default=0.05, help="relative L1 of part scaling; default 0.05")
+    parser.add_argument("--methods", help="of part scaling, by commas; default: all")
     parser.add_argument("--smoke", type=pathlib.Path, nargs="+", default=[], metavar="SCENE", help="of part smoke")
     parser.add_argument("--truth-paths", type=int, default=512, help="of Mitsuba in part smoke; default 512")
     parser.add_argument("--try-with", metavar="METHOD:KEY=A,B,C")

@@ -268,6 +268,7 @@ class Study {
     }
     result.numbers = report.numbers;
     result.phases = report.seconds;
+    if (report.sizes) result.settings["lights"] = std::to_string(report.sizes->lights);
     keep(std::move(result), image_of(rendered.picture));
     return true;
   }

@@ -62,13 +62,17 @@ TEST(TypedComparison, PassesAreThoseOfARender) {
     alone.traced.rest = RestOfPaths::skip;
     alone.traced.panes = Panes::exact;
     alone.denoise = Denoise::off;
-    write_picture(settings.reference.file, render(box(), alone).picture);
+    const RenderResult rendered = render(box(), alone);
+    write_picture(settings.reference.file, rendered.picture);
     const Comparison c = compare(box(), settings, folder / method);
     ASSERT_EQ(c.runs.size(), 4u);
     for (const ComparisonRun& run : c.runs) {
       EXPECT_EQ(run.error.relative_l1 == 0, run.method == method && run.seed == settings.base.seed)
           << method << " against " << run.label << ", seed " << run.seed;
       EXPECT_GT(run.rays, 0);
+      if (run.method == method && run.seed == settings.base.seed) {
+        EXPECT_EQ(run.settings.at("lights"), std::to_string(rendered.report.sizes->lights));
+      }
     }
   }
 }
