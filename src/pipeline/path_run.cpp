@@ -184,7 +184,7 @@ class PathRun {
       *task_.features = {denoising_.features(),
                          apart ? denoising_.with_emission_as_noise(difference) : difference,
                          denoising_.lacking_filter()};
-    const SampledNoise noise{difference, film_->sent_deviation(), apart};
+    const SampledNoise noise{difference, film_->sent_deviation(), apart, apart || !options_.emission};
     if (const auto denoised = denoising_.denoised(traced, noise, left())) {
       std::vector<float> before = std::move(result_.picture.planes[0].rgb);
       image::Image whole = denoising_.enlarged(denoised->picture);

@@ -9,6 +9,7 @@
 #include "denoise/fireflies.h"
 #include "denoise/outliers.h"
 #include "denoise/overshoot.h"
+#include "denoise/unpremultiply.h"
 
 namespace lumirank::pipeline {
 namespace {
@@ -186,12 +187,18 @@ std::optional<denoise::Shrunk> PictureDenoising::denoised(const image::Image& pi
       std::all_of(picture.pixels.begin(), picture.pixels.end(), [](Rgb c) { return is_black(c); }))
     return {};
   const PixelFeatures features = this->features();
-  const image::Image albedo = denoise::reduced(features.albedo, picture.width, picture.height),
-                     normal = denoise::reduced(features.normal, picture.width, picture.height);
+  const auto of_its_size = [&](const image::Image& image) {
+    return denoise::reduced(image, picture.width, picture.height);
+  };
+  image::Image light = picture, albedo = of_its_size(features.albedo), normal = of_its_size(features.normal);
+  const image::Image cover = of_its_size(features.cover);
+  if (noise.without_emission)
+    for (image::Image* image : {&light, &albedo, &normal}) *image = denoise::unpremultiplied(*image, cover);
   const Quality quality = chosen_quality(unspent);
   const auto features_are = quality.clean ? denoise::Features::clean : denoise::Features::noisy;
   image::Image clean = denoise::without_overshoot(
-      picture, denoiser_->denoise(picture, &albedo, &normal, features_are, quality.orientations));
+      light, denoiser_->denoise(light, &albedo, &normal, features_are, quality.orientations));
+  if (noise.without_emission) denoise::premultiply(clean, cover);
   if (noise.difference.pixels.empty()) return denoise::Shrunk{std::move(clean), 0};
   image::Image difference = denoise::with_outliers(noise.difference, picture, clean, noise.deviation);
   if (noise.of_emission) difference = with_emission_as_noise(std::move(difference));
@@ -218,7 +225,12 @@ image::Image PictureDenoising::with_emission_as_noise(image::Image difference) c
 image::Image PictureDenoising::enlarged(image::Image sent) const {
   const PixelFeatures features = this->features();
   if (sent.width == features.albedo.width && sent.height == features.albedo.height) return sent;
-  return denoise::enlarged(sent, features.albedo, features.normal);
+  const image::Image cover = denoise::reduced(features.cover, sent.width, sent.height);
+  image::Image large = denoise::enlarged(denoise::unpremultiplied(sent, cover),
+                                         denoise::unpremultiplied(features.albedo, features.cover),
+                                         denoise::unpremultiplied(features.normal, features.cover));
+  denoise::premultiply(large, features.cover);
+  return large;
 }
 
 }  // namespace lumirank::pipeline

@@ -28,6 +28,8 @@ struct SampledNoise {
   image::Image difference;       // of halves of what was sampled: twice the noise; empty: not known
   std::vector<float> deviation;  // of each pixel's luminance, as its own paths say; empty: not known
   bool of_emission = false;      // all emission that few film samples find is noise as well
+  // The picture lacks PixelFeatures::emission.
+  bool without_emission = false;
 };
 
 class PictureDenoising {

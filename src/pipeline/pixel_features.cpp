@@ -116,6 +116,7 @@ bool PixelFeatureTracing::trace(int samples, Edge least, const Sinks& sinks) {
           sums.min_color = min_of(sums.min_color, color), sums.max_color = max_of(sums.max_color, color);
         sums.normal = sums.normal + normal * trusted, sums.normals += length(normal) * trusted;
         sums.trusted += trusted;
+        if (weights > 0 || is_black(sample.sharp)) ++sums.covered;
         ++sums.count;
       }
     }
@@ -180,7 +181,7 @@ double PixelFeatureTracing::part_from(Edge least) const {
 PixelFeatures PixelFeatureTracing::means() const {
   PixelFeatures features;
   for (image::Image* image :
-       {&features.emission, &features.noisy_emission, &features.albedo, &features.normal})
+       {&features.emission, &features.noisy_emission, &features.albedo, &features.normal, &features.cover})
     *image = image::Image(view_.width, view_.height);
   parallel_for(sums_.size(), kPixelsOfMeans, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -188,6 +189,8 @@ PixelFeatures PixelFeatureTracing::means() const {
       const float part = 1 / static_cast<float>(std::max(1, s.count));
       features.emission.pixels[p] = s.sharp * part,
       features.noisy_emission.pixels[p] = (s.emission - s.sharp) * part;
+      features.cover.pixels[p] =
+          Rgb(is_black(s.emission - s.sharp) ? static_cast<float>(s.covered) * part : 1.0f);
       const float of_trusted = s.count > 0 ? 1 / s.trusted : 0;
       features.albedo.pixels[p] = s.albedo * of_trusted;
       features.normal.pixels[p] = Rgb{s.normal.x, s.normal.y, s.normal.z} * of_trusted;

@@ -22,6 +22,8 @@ struct PixelFeatures {
   // Σ weight · albedo, Σ weight · normal / Σ weight of the surfaces at the ends of the eye's specular chains:
   // what a mirror shows counts, not the mirror. Black where there is none.
   image::Image albedo, normal;
+  // Part of the pixel that is not `emission` alone: gray, [0, 1]. 1 where there is noisy emission.
+  image::Image cover;
 };
 
 // What is told of a picture by who rendered it, beside its colors. Empty where it is not known.
@@ -54,7 +56,7 @@ class PixelFeatureTracing {
     Vec3f normal{0, 0, 0};
     float normals = 0;  // Σ |normal| of the samples: longer than their sum where they differ
     float trusted = 0;  // what samples count for in albedo and normals, together
-    int count = 0;
+    int count = 0, covered = 0;
   };
   enum class Edge : std::uint8_t { none, some, glaring };
   // In pixels with such an edge, or more.

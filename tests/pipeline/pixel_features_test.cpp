@@ -60,6 +60,7 @@ TEST(PixelFeatures, EdgesHaveTheirCoverageAndTheRestFewSamples) {
       EXPECT_NEAR(features.emission.at(x, y).g, 2 * lit, lit > 0 && lit < 1 ? 0.05f : 1e-4f) << x << ' ' << y;
       EXPECT_NEAR(features.albedo.at(x, y).g, 0.4f * (1 - lit), lit > 0 && lit < 1 ? 0.02f : 1e-4f);
       EXPECT_EQ(features.noisy_emission.at(x, y), Rgb(0));
+      EXPECT_NEAR(features.cover.at(x, y).g, 1 - lit, lit > 0 && lit < 1 ? 0.05f : 0.0f);
       EXPECT_NEAR(features.normal.at(x, y).b, 1 - lit,
                   lit > 0 && lit < 1 ? 0.05f : 1e-4f);  // a black lamp receives nothing
     }
@@ -122,6 +123,9 @@ TEST(PixelFeatures, ALampOutOfFocusIsNoisyEmission) {
   const PixelFeatures sharp = seen(10, glaring), blurred = seen(5, glaring);
   EXPECT_NEAR(total(sharp.emission), light, 0.03 * light);
   EXPECT_EQ(total(sharp.noisy_emission), 0);
+  // Of the lamp alone light needs no denoiser; where there is nothing it does no harm.
+  EXPECT_NEAR(total(sharp.cover), kFilmSide * kFilmSide - light / 100, 0.03 * light / 100);
+  for (const Rgb& p : blurred.cover.pixels) EXPECT_EQ(p, Rgb(1));
   EXPECT_EQ(total(blurred.emission), 0);
   EXPECT_NEAR(total(blurred.noisy_emission), light, 0.08 * light);
   // Its circle of confusion has a radius of 0.8, of 1 that are half of the film; one sample in 64 meets the
@@ -141,6 +145,7 @@ TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   const PixelFeatures features = traced(desc);
   for (const Rgb& p : features.emission.pixels) EXPECT_EQ(p, Rgb(0));
   for (const Rgb& p : features.noisy_emission.pixels) EXPECT_GT(p.g, 0.5f);
+  for (const Rgb& p : features.cover.pixels) EXPECT_EQ(p, Rgb(1));
   for (const Rgb& p : features.albedo.pixels) {
     EXPECT_GT(p.r, 0.25f);
     EXPECT_EQ(p.g, 0);
