@@ -140,6 +140,116 @@ std::vector<Model> fitted(const Image& small, const Image& albedo, const Image& 
   return models;
 }
 
+// The four pixels of the small picture around one of the large one.
+struct FourPixels {
+  std::array<std::size_t, 4> at;
+  std::array<float, 4> part;
+  FourPixels(const Place& row, const Place& column, std::size_t width)
+      : at{row.first * width + column.first, row.first * width + column.second,
+           row.second * width + column.first, row.second * width + column.second},
+        part{(1 - row.part) * (1 - column.part), (1 - row.part) * column.part, row.part * (1 - column.part),
+             row.part * column.part} {}
+};
+
+Rgb divided(Rgb a, Rgb b) { return {a.r / b.r, a.g / b.g, a.b / b.b}; }
+
+// As bright as `light`, in the color that `around` has at that brightness. Where a bright and a dark surface
+// meet, colors that are told apart one by one may be of either, and their mixture of neither.
+Rgb in_color_of(std::array<Rgb, 4> around, Rgb light) {
+  const float bright = luminance(light);
+  std::sort(around.begin(), around.end(), [](Rgb a, Rgb b) { return luminance(a) < luminance(b); });
+  Rgb color = bright < luminance(around[3]) ? around[0] : around[3];
+  for (std::size_t k = 0; k + 1 < around.size(); ++k) {
+    const float low = luminance(around[k]), high = luminance(around[k + 1]);
+    if (bright < low || bright >= high) continue;
+    const float t = (bright - low) / (high - low);
+    color = around[k] * (1 - t) + around[k + 1] * t;
+  }
+  const float of_color = luminance(color);
+  return of_color > 0 ? color * (bright / of_color) : light;
+}
+
+class Enlarging {
+ public:
+  Enlarging(const Image& small, const Image& albedo, const Image& normal)
+      : small_(small),
+        albedo_(albedo),
+        normal_(normal),
+        small_albedo_(reduced(albedo, small.width, small.height)),
+        small_normal_(reduced(normal, small.width, small.height)) {
+    for (int color = 0; color < 3; ++color)
+      models_[static_cast<std::size_t>(color)] = fitted(small, small_albedo_, small_normal_, color);
+  }
+
+  Image picture() const {
+    Image large(albedo_.width, albedo_.height);
+    const auto rows = static_cast<std::size_t>(large.height), width = static_cast<std::size_t>(small_.width);
+    parallel_for(rows, kRowsOfImage, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y) {
+        const Place row = place(y, large.height, small_.height);
+        for (int x = 0; x < large.width; ++x) {
+          const Place column = place(static_cast<std::size_t>(x), large.width, small_.width);
+          const std::size_t pixel = static_cast<std::size_t>(large.width) * y + static_cast<std::size_t>(x);
+          large.pixels[pixel] = light_of(pixel, FourPixels(row, column, width));
+        }
+      }
+    });
+    return large;
+  }
+
+ private:
+  Rgb light_of(std::size_t pixel, const FourPixels& around) const {
+    const Rgb here = albedo_.pixels[pixel] + Rgb(kAddedAlbedo);
+    // One that counts for nothing lends no color.
+    const auto nearest = static_cast<std::size_t>(std::max_element(around.part.begin(), around.part.end()) -
+                                                  around.part.begin());
+    std::array<Rgb, 4> over{};
+    for (std::size_t k = 0; k < over.size(); ++k) {
+      const std::size_t at = around.at[around.part[k] > 0 ? k : nearest];
+      over[k] = divided(small_.pixels[at], small_albedo_.pixels[at] + Rgb(kAddedAlbedo));
+    }
+    bool all_tell = true;
+    Rgb light;
+    for (int color = 0; color < 3; ++color) light[color] = light_in(color, pixel, around, over, all_tell);
+    return all_tell ? in_color_of(over, divided(light, here)) * here : light;
+  }
+
+  // all_tell: becomes false if a pixel around has too little albedo to say anything of this one.
+  float light_in(int color, std::size_t pixel, const FourPixels& around, const std::array<Rgb, 4>& over,
+                 bool& all_tell) const {
+    const Features4 here = features_at(albedo_.pixels[pixel], normal_.pixels[pixel], color);
+    Features4 slopes{}, between{};
+    float value = 0;
+    LightRange range, over_albedo;
+    for (std::size_t k = 0; k < around.at.size(); ++k) {
+      const std::size_t at = around.at[k];
+      const float part = around.part[k];
+      const Features4 there = features_at(small_albedo_.pixels[at], small_normal_.pixels[at], color);
+      const Model& model = models_[static_cast<std::size_t>(color)][at];
+      for (std::size_t i = 0; i < kFeatures; ++i)
+        slopes[i] += part * model.slopes[i], between[i] += part * there[i];
+      value += part * small_.pixels[at][color];
+      if (!(part > 0)) continue;
+      range.extend(model.least, model.most);
+      const bool tells = there[0] >= kTellingAlbedo * here[0];
+      if (tells) over_albedo.extend(over[k][color], over[k][color]);
+      all_tell = all_tell && tells;
+    }
+    float wanted = value;
+    for (std::size_t i = 0; i < kFeatures; ++i) wanted += slopes[i] * (here[i] - between[i]);
+    // Interpolation stays where the model leads outside, or is not finite.
+    range = range.widened();
+    range.extend(value, value);
+    const float light = std::isfinite(wanted) ? range.nearest(wanted) : value;
+    // Beside a window are pixels without light: they have no albedo, and say nothing of its frame.
+    return over_albedo.empty() ? light : over_albedo.widened(here[0] + kAddedAlbedo).nearest(light);
+  }
+
+  const Image &small_, &albedo_, &normal_;
+  const Image small_albedo_, small_normal_;
+  std::array<std::vector<Model>, 3> models_;
+};
+
 }  // namespace
 
 Image reduced(const Image& image, int width, int height) {
@@ -170,55 +280,8 @@ Image reduced(const Image& image, int width, int height) {
 Image enlarged(const Image& small, const Image& albedo, const Image& normal) {
   if (albedo.width != normal.width || albedo.height != normal.height)
     throw InternalError("enlarged: features of different sizes");
-  const Image small_albedo = reduced(albedo, small.width, small.height),
-              small_normal = reduced(normal, small.width, small.height);
-  Image large(albedo.width, albedo.height);
-  const auto width = static_cast<std::size_t>(small.width);
-  for (int color = 0; color < 3; ++color) {
-    const std::vector<Model> models = fitted(small, small_albedo, small_normal, color);
-    parallel_for(
-        static_cast<std::size_t>(large.height), kRowsOfImage, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t y = begin; y < end; ++y) {
-            const Place row = place(y, large.height, small.height);
-            for (int x = 0; x < large.width; ++x) {
-              const Place column = place(static_cast<std::size_t>(x), large.width, small.width);
-              const std::size_t at[] = {row.first * width + column.first, row.first * width + column.second,
-                                        row.second * width + column.first,
-                                        row.second * width + column.second};
-              const float part[] = {(1 - row.part) * (1 - column.part), (1 - row.part) * column.part,
-                                    row.part * (1 - column.part), row.part * column.part};
-              const auto pixel = static_cast<std::size_t>(large.width) * y + static_cast<std::size_t>(x);
-              const Features4 here = features_at(albedo.pixels[pixel], normal.pixels[pixel], color);
-              Features4 slopes{}, between{};
-              float value = 0;
-              LightRange around, over_albedo;
-              for (std::size_t k = 0; k < 4; ++k) {
-                const Features4 there =
-                    features_at(small_albedo.pixels[at[k]], small_normal.pixels[at[k]], color);
-                const Model& model = models[at[k]];
-                for (std::size_t i = 0; i < kFeatures; ++i)
-                  slopes[i] += part[k] * model.slopes[i], between[i] += part[k] * there[i];
-                const float light = small.pixels[at[k]][color];
-                value += part[k] * light;
-                if (!(part[k] > 0)) continue;
-                around.extend(model.least, model.most);
-                const float over = light / (there[0] + kAddedAlbedo);
-                if (there[0] >= kTellingAlbedo * here[0]) over_albedo.extend(over, over);
-              }
-              float wanted = value;
-              for (std::size_t i = 0; i < kFeatures; ++i) wanted += slopes[i] * (here[i] - between[i]);
-              // Interpolation stays where the model leads outside, or is not finite.
-              around = around.widened();
-              around.extend(value, value);
-              float& out = large.pixels[pixel][color];
-              out = std::isfinite(wanted) ? around.nearest(wanted) : value;
-              // Beside a window are pixels without light: they have no albedo, and say nothing of its frame.
-              if (!over_albedo.empty()) out = over_albedo.widened(here[0] + kAddedAlbedo).nearest(out);
-            }
-          }
-        });
-  }
-  return large;
+  if (small.width == albedo.width && small.height == albedo.height) return small;
+  return Enlarging(small, albedo, normal).picture();
 }
 
 }  // namespace lumirank::denoise

@@ -16,8 +16,9 @@ image::Image reduced(const image::Image& image, int width, int height);
 // (guided upsampling by a first-order model, as in Bitterli et al. 2016, "Nonlinearly Weighted First-order
 // Regression for Denoising Monte Carlo Renderings"). What is added leads to no less than four fifths and no
 // more than five fourths of what the pixels around have, first of their light and then, where they have an
-// albedo, of their light over it. `small` must not have emission that is seen straight, which features do not
-// know, and no noise. Throws InternalError for features of different sizes, or smaller than the picture.
+// albedo, of their light over it; where all four have one, the color of the light over albedo is theirs at
+// that brightness. `small` must not have emission that is seen straight, which features do not know, and no
+// noise. Throws InternalError for features of different sizes, or smaller than the picture.
 image::Image enlarged(const image::Image& small, const image::Image& albedo, const image::Image& normal);
 
 }  // namespace lumirank::denoise

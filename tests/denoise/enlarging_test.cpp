@@ -152,6 +152,35 @@ TEST(Enlarged, FramesOfWindowsAreNotBlack) {
     }
 }
 
+// A table in warm light before a dark front in blue light: however features vary, no pixel has another color
+// than these and what lies between them.
+TEST(Enlarged, MixturesOfColorsAreOfNoThirdColor) {
+  Rng random(7, Stage::projection, 3);
+  const Rgb warm{30, 20, 10}, blue{0.2f, 0.3f, 0.6f};
+  const Image albedo = painted(kLargeWidth, kLargeHeight, [&](int, int) {
+    return Rgb{0.3f + 0.5f * random.next_float(), 0.3f + 0.5f * random.next_float(), 0.4f};
+  });
+  const Image normal = painted(kLargeWidth, kLargeHeight, [&](int, int y) {
+    return y < 31 ? Rgb{0, 1, 0} : Rgb{random.next_float(), 0, random.next_float()};
+  });
+  const Image small = painted(kLargeWidth / 2, kLargeHeight / 2, [&](int x, int y) {
+    const Rgb added(0.05f), light = y < 15 + x % 2 ? warm : blue;
+    return light * (reduced(albedo, kLargeWidth / 2, kLargeHeight / 2).at(x, y) + added);
+  });
+  const Image large = enlarged(small, albedo, normal);
+  for (int y = 0; y < kLargeHeight; ++y)
+    for (int x = 0; x < kLargeWidth; ++x) {
+      const Rgb here = albedo.at(x, y) + Rgb(0.05f), c = large.at(x, y);
+      // Red over blue is 3 or 1/3, and tells how much there is of each.
+      const float red = c.r / here.r / (c.b / here.b), green = c.g / here.g / (c.b / here.b);
+      EXPECT_GT(red, 0.333f) << x << ' ' << y;
+      EXPECT_LT(red, 3.003f) << x << ' ' << y;
+      const float part = (red * blue.b - blue.r) / (warm.r - blue.r - red * (warm.b - blue.b));
+      const Rgb mixed = warm * part + blue * (1 - part);
+      EXPECT_NEAR(green, mixed.g / mixed.b, 0.01f) << x << ' ' << y;
+    }
+}
+
 TEST(Enlarged, RefusesFeaturesOfOtherSizes) {
   EXPECT_THROW(enlarged(Image(8, 8), Image(16, 16), Image(16, 8)), InternalError);
   EXPECT_THROW(enlarged(Image(32, 8), Image(16, 16), Image(16, 16)), InternalError);
