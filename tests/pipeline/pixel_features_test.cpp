@@ -133,6 +133,26 @@ TEST(PixelFeatures, ALampOutOfFocusIsNoisyEmission) {
   EXPECT_GT(glaring, 0.9 * 3.14159265 * square(0.8) / 4);
 }
 
+// The edge of a lamp before a mirror that shows another one, which is noisy: such a pixel is left whole.
+TEST(PixelFeatures, WhereEmissionIsNoisyAllIsCovered) {
+  auto desc = square_in_view();
+  const int mirror = add_bsdf(desc, sd::ConductorDesc{}),
+            black = add_bsdf(desc, sd::DiffuseDesc{sd::ColorInput{Rgb(0)}});
+  use(desc, add_shape(desc, sd::RectangleDesc{}, Transform::scale(3, 3, 1)), mirror);
+  const Transform faces_it = Transform::translate(0, 0, 20) * Transform::rotate(0, 1, 0, 180);
+  const double edge = 0.3 * 2 / kFilmSide;
+  for (const Transform& at : {faces_it * Transform::scale(50, 50, 1),
+                              Transform::translate(3 + edge, 0, 1e-4) * Transform::scale(3, 3, 1)}) {
+    const int lamp = add_shape(desc, sd::RectangleDesc{}, at);
+    use(desc, lamp, black);
+    shine(desc, lamp, sd::ColorInput{Rgb(1)});
+  }
+  const PixelFeatures features = traced(desc);
+  for (int y = 0; y < kFilmSide; ++y)
+    for (int x = 0; x < kFilmSide; ++x)
+      EXPECT_EQ(features.cover.at(x, y), Rgb(x <= kFilmSide / 2 ? 1.0f : 0.0f)) << x << ' ' << y;
+}
+
 // A mirror shows a lamp behind the camera, and beside it a red wall.
 TEST(PixelFeatures, OfAMirrorAreThoseOfWhatItShows) {
   auto desc = square_in_view();
