@@ -28,7 +28,7 @@ image::Image MixedPicture::enlarged(image::Image image) const {
 
 SampledNoise MixedPicture::sampled_noise() const {
   SampledNoise noise;
-  noise.without_emission = !by_paths() || !has_own_emission();
+  noise.without_emission = !has_own_emission();
   if (!by_paths() || paths_->paths() < PictureDenoising::kPathsForNoise) return noise;
   noise.difference =
       with_share_of_noise(has_own_emission() ? paths_->difference() : paths_->sent_difference());

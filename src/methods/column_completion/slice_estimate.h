@@ -34,8 +34,7 @@ struct CompletionSpaceSettings {
 //   rows that were fitted would be 0 when the space has as many directions as there are rows.
 // - Points and rays have spaces of their own (the paper's sub-matrices), and share the measure of light.
 // - The rows in which columns are sampled (algorithm 2, ρ) stay until more of them are needed: the paper
-// draws
-//   them anew for every direction, and factors them anew. How many is found, with an end for each direction.
+//   draws and factors them anew for every direction. How many is found, with an end for each direction.
 // - Columns are drawn by what a few rows were found to get (column_draws.h), and those of a node that lie in
 //   one of its children are draws of the child as well, which needs so many less.
 // - The columns that decide whether a node is divided give no light: dark ones let it seem well known, and a
